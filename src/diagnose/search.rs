@@ -38,39 +38,18 @@ pub fn search(
     let mut settled = 0;
     let mut refused: Vec<&'static str> = Vec::new();
     loop {
-        let candidates = candidates(&after.base.vehicle, flights, signatures);
-        last = test_all(flights, &after, &candidates, signatures);
-        last.extend(between_grid(flights, &after, &last));
-        last.iter().for_each(Tested::emit);
-        let count = last.len() as f64;
-        tracing::debug!(candidates = last.len(), taken = steps.len(), "candidates tested");
         let price = Price::of(&after);
-        let ranked = |tested: &[Tested]| {
-            let open = tested.iter().filter(|tested| !refused.contains(&tested.candidate.id));
-            let passed = open.filter(|tested| passes(tested, &after, gates, count));
-            by_worth(passed.cloned().collect(), price)
-        };
-        let mut passed = ranked(&last);
-        if passed.is_empty() {
-            let mounted = mountings(flights, &after, signatures);
-            passed = ranked(&mounted);
-            last.extend(mounted);
-        }
+        let mut passed;
+        (passed, last) = ranked(flights, (&after, price), gates, signatures, &refused);
+        tracing::debug!(candidates = last.len(), taken = steps.len(), "candidates tested");
         match passed.first().cloned() {
             Some(taken) if steps.len() < gates.steps => {
-                let sharper = refined(flights, &after, taken.clone());
-                let mut fitted = with_taken(flights, &after, &sharper)?;
-                let mut taken = sharper;
-                if at_bound(&fitted, &taken) {
-                    // what is sharpest by its slope can lie too far off for the effect itself
-                    taken = passed[0].clone();
-                    fitted = with_taken(flights, &after, &taken)?;
-                }
-                if wanders(flights, &fitted, &taken) || at_bound(&fitted, &taken) {
-                    tracing::debug!(effect = taken.candidate.id, "effect refused");
-                    refused.push(taken.candidate.id);
+                let id = taken.candidate.id;
+                let Some((taken, fitted)) = accepted(flights, &after, taken)? else {
+                    tracing::debug!(effect = id, "effect refused");
+                    refused.push(id);
                     continue;
-                }
+                };
                 after = fitted;
                 let step = Step { taken, rivals: passed.split_off(1) };
                 step.emit();
@@ -79,16 +58,9 @@ pub fn search(
             _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
                 settled += 1;
-                let before = after.base.present.clone();
-                let (dropped, moved, found) = prune(flights, &mut after)?;
+                let (found, is_settled) = pruned(flights, &mut after, price, &mut refused)?;
                 beside = found;
-                let placed = one_place(flights, &mut after, price)? | other_form(flights, &mut after, price)?;
-                let gone = before.iter().map(|present| present.id());
-                let kept = |id: &&'static str| after.base.present.iter().any(|p| p.id() == *id);
-                refused.extend(gone.filter(|id| !kept(id)).inspect(|effect| {
-                    tracing::info!(effect, "effect dropped from the model");
-                }));
-                if !dropped && !placed && moved < UNCHANGED_S {
+                if is_settled {
                     break;
                 }
             }
@@ -105,6 +77,69 @@ pub fn search(
         ..found
     };
     Ok(Search { before, after, latency, steps, last })
+}
+
+/// The candidates that pass the gates, by worth, and all that were tested. Mountings are tested where no effect passes.
+fn ranked(
+    flights: &[Trace],
+    (after, price): (&Fitted, Price),
+    gates: &Gates,
+    signatures: &[&'static Signature],
+    refused: &[&'static str],
+) -> (Vec<Tested>, Vec<Tested>) {
+    let candidates = candidates(&after.base.vehicle, flights, signatures);
+    let mut all = test_all(flights, after, &candidates, signatures);
+    all.extend(between_grid(flights, after, &all));
+    all.iter().for_each(Tested::emit);
+    let count = all.len() as f64;
+    let ranked = |tested: &[Tested]| {
+        let open = tested.iter().filter(|tested| !refused.contains(&tested.candidate.id));
+        let passed = open.filter(|tested| passes(tested, after, gates, count));
+        by_worth(passed.cloned().collect(), price)
+    };
+    let mut passed = ranked(&all);
+    if passed.is_empty() {
+        let mounted = mountings(flights, after, signatures);
+        passed = ranked(&mounted);
+        all.extend(mounted);
+    }
+    (passed, all)
+}
+
+/// A candidate with its sharpest values and the model with it; `None` where it is refused.
+fn accepted(
+    flights: &[Trace],
+    after: &Fitted,
+    best: Tested,
+) -> Result<Option<(Tested, Fitted)>, PhysicsError> {
+    let mut taken = refined(flights, after, best.clone());
+    let mut fitted = with_taken(flights, after, &taken)?;
+    if at_bound(&fitted, &taken) {
+        // what is sharpest by its slope can lie too far off for the effect itself
+        taken = best;
+        fitted = with_taken(flights, after, &taken)?;
+    }
+    let is_refused = wanders(flights, &fitted, &taken) || at_bound(&fitted, &taken);
+    Ok((!is_refused).then_some((taken, fitted)))
+}
+
+/// Removes from the model what it no longer needs and tries other forms of the rest. Returns its latency, and whether
+/// the model stays as it is.
+fn pruned(
+    flights: &[Trace],
+    after: &mut Fitted,
+    price: Price,
+    refused: &mut Vec<&'static str>,
+) -> Result<(LatencyFinding, bool), PhysicsError> {
+    let before = after.base.present.clone();
+    let (dropped, moved, found) = prune(flights, after)?;
+    let placed = one_place(flights, after, price)? | other_form(flights, after, price)?;
+    let gone = before.iter().map(|present| present.id());
+    let kept = |id: &&'static str| after.base.present.iter().any(|p| p.id() == *id);
+    refused.extend(gone.filter(|id| !kept(id)).inspect(|effect| {
+        tracing::info!(effect, "effect dropped from the model");
+    }));
+    Ok((found, !dropped && !placed && moved < UNCHANGED_S))
 }
 
 /// Sorts candidates by the energy that they explain less the price of its columns.

@@ -166,11 +166,10 @@ fn identify_evenly(
         (Method::WeakRobust, robust.as_ref()),
         (Method::WeakIv, by_instruments.as_ref()),
     ];
-    methods.extend(
-        weak_forms
-            .into_iter()
-            .filter_map(|(method, found)| Some(MethodResult::new(method, &whole(found?), &nominal))),
-    );
+    let result_of = |(method, found): (Method, Option<&WeakEstimate>)| {
+        Some(MethodResult::new(method, &whole(found?), &nominal))
+    };
+    methods.extend(weak_forms.into_iter().filter_map(result_of));
     let best = recommend((&plain, &whole), robust.as_ref(), by_instruments.as_ref(), &nominal);
     notes.extend(disagreeing(&weak.rows, &nominal.theta));
     let by_commands = |signals: &Signals| signals.quality.thrust_source == ThrustSource::Command;

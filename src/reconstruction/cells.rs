@@ -74,29 +74,6 @@ impl Cells {
         let middles: Vec<f64> = time_s.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
         let places: Vec<Place> = middles.iter().map(|t| Place::of(&signals.grid, *t)).collect();
         let vectors = |of: &[Vector3<f64>]| places.iter().map(|place| place.between(of)).collect::<Vec<_>>();
-        let cell_of = |t: f64| {
-            let after = time_s.partition_point(|begin| *begin <= t);
-            after.checked_sub(1).filter(|cell| *cell < count)
-        };
-        let mut sums = vec![(Vector3::zeros(), 0.0); count];
-        for index in 0..force.len() {
-            let sample = Vector3::from_row_slice(force.sample(index));
-            if let Some(cell) = cell_of(force.time_s[index]).filter(|_| sample.iter().all(|v| v.is_finite()))
-            {
-                sums[cell].0 += sample;
-                sums[cell].1 += 1.0;
-            }
-        }
-        let mean = |(sum, n): (Vector3<f64>, f64)| (n > 0.0).then(|| (sum / n, n));
-        let sampled = |index: usize| {
-            let t = velocity.time_s[index];
-            let cell = cell_of(t)?;
-            let sample = Vector3::from_row_slice(velocity.sample(index));
-            sample.iter().all(|v| v.is_finite()).then(|| (cell, (t - time_s[cell]) / STEP_S, sample))
-        };
-        let mut velocity_m_s: Vec<_> = (0..velocity.len()).filter_map(sampled).collect();
-        // one a cell: what comes more often is the same integration
-        velocity_m_s.dedup_by_key(|(cell, ..)| *cell);
         let white = white_level(force);
         let noise = |axis: usize, _| white.get(axis).copied().unwrap_or(0.1).max(LEAST_NOISE_M_S2);
         let voltage = |of: &Vec<f64>| places.iter().map(|place| place.between(of)).collect();
@@ -109,9 +86,9 @@ impl Cells {
                 .map_or_else(|| vec![Vector3::zeros(); count], |p| vectors(p)),
             battery_voltage_v: signals.battery_voltage_v.as_ref().map(|series| voltage(series)),
             driven: driven(signals, &time_s),
-            specific_force_m_s2: sums.into_iter().map(mean).collect(),
+            specific_force_m_s2: force_by_cell(force, &time_s),
             accelerometer_noise_m_s2: Vector3::from_fn(noise),
-            velocity_m_s,
+            velocity_m_s: velocity_by_cell(velocity, &time_s),
             borders_m_s: time_s.iter().map(|t| Place::of(&signals.grid, *t).between(on_grid)).collect(),
             thrusts: CellThrusts::of(signals, vehicle, from_s, count),
             time_s,
@@ -123,6 +100,40 @@ impl Cells {
     pub fn len(&self) -> usize {
         self.attitude.len()
     }
+}
+
+/// The cell, among those with these borders (s), that a time lies in.
+fn cell_of(time_s: &[f64], t: f64) -> Option<usize> {
+    let after = time_s.partition_point(|begin| *begin <= t);
+    after.checked_sub(1).filter(|cell| cell + 1 < time_s.len())
+}
+
+/// Mean of the finite samples in each cell, m/s^2, and their number.
+fn force_by_cell(force: &Stream, time_s: &[f64]) -> Vec<Option<(Vector3<f64>, f64)>> {
+    let mut sums = vec![(Vector3::zeros(), 0.0); time_s.len() - 1];
+    for index in 0..force.len() {
+        let sample = Vector3::from_row_slice(force.sample(index));
+        let cell = cell_of(time_s, force.time_s[index]);
+        if let Some(cell) = cell.filter(|_| sample.iter().all(|v| v.is_finite())) {
+            sums[cell].0 += sample;
+            sums[cell].1 += 1.0;
+        }
+    }
+    sums.into_iter().map(|(sum, n)| (n > 0.0).then(|| (sum / n, n))).collect()
+}
+
+/// The first finite velocity in each cell (m/s) with its cell and its place there, 0 to 1: what comes more often is the same
+/// integration.
+fn velocity_by_cell(velocity: &Stream, time_s: &[f64]) -> Vec<(usize, f64, Vector3<f64>)> {
+    let sampled = |index: usize| {
+        let t = velocity.time_s[index];
+        let cell = cell_of(time_s, t)?;
+        let sample = Vector3::from_row_slice(velocity.sample(index));
+        sample.iter().all(|v| v.is_finite()).then(|| (cell, (t - time_s[cell]) / STEP_S, sample))
+    };
+    let mut out: Vec<_> = (0..velocity.len()).filter_map(sampled).collect();
+    out.dedup_by_key(|(cell, ..)| *cell);
+    out
 }
 
 /// First and last time in the air, s.

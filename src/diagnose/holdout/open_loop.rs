@@ -6,7 +6,7 @@ use super::floor::{command_noise, state_noise};
 use super::ready::{Ready, flown};
 use super::settings::HoldoutSettings;
 use crate::compare::{
-    CommandNoise, PlaybackSettings, StateNoise, WindowErrors, playback_floor, playback_windows,
+    CommandNoise, CompareError, PlaybackSettings, StateNoise, WindowErrors, playback_floor, playback_windows,
     unchanged_windows,
 };
 use crate::diagnose::base::Base;
@@ -79,6 +79,92 @@ fn models_of(ready: &Ready) -> Result<Models, PhysicsError> {
     })
 }
 
+/// One flight's windows, as predicted by each.
+struct Played {
+    unchanged: Vec<WindowErrors>,
+    before: Vec<WindowErrors>,
+    after: Vec<WindowErrors>,
+    noise: Vec<WindowErrors>,
+}
+
+fn played(
+    ready: &Ready,
+    models: &Models,
+    empirical: Option<&Empirical>,
+    (playback, seed): (&PlaybackSettings, u64),
+) -> Result<Played, CompareError> {
+    let signals = ready.flight.signals;
+    let run = |model: &Model, base: &Base, empirical: Option<&Empirical>| {
+        let push = empirical.map(Empirical::push);
+        let push = push.as_ref().map(|push| push as crate::simulate::Push);
+        playback_windows((model, &base.vehicle), push, signals, playback)
+    };
+    let (base_before, base_after) = ready.pair.predicting();
+    let ((before, after), noise) = rayon::join(
+        || {
+            rayon::join(
+                || run(&models.before, base_before, None),
+                || run(&models.after, base_after, empirical),
+            )
+        },
+        || {
+            let of = (&models.after, &ready.pair.after.vehicle);
+            playback_floor(of, signals, playback, (&models.noise, models.commands.as_ref(), seed))
+        },
+    );
+    let unchanged = unchanged_windows(signals, playback)?;
+    Ok(Played { unchanged, before: before?, after: after?, noise: noise? })
+}
+
+/// Errors of all flights' windows of one length.
+struct Sums {
+    blocks: Blocks,
+    /// squares and their number
+    floor: [(f64, usize); 4],
+    at_end: [[f64; 3]; 4],
+    windows: usize,
+}
+
+impl Sums {
+    /// Adds the windows of a flight that begin at `from_s` or later.
+    fn add(&mut self, (flight, from_s): (usize, f64), played: &Played) {
+        let each = played.unchanged.iter().zip(&played.before).zip(&played.after);
+        for ((unchanged, before), after) in each.filter(|((of, _), _)| of.start_s >= from_s) {
+            self.windows += 1;
+            let squares = Squares {
+                unchanged: Some(&unchanged.squares),
+                before: &before.squares,
+                after: &after.squares,
+                count: &before.counts.map(|count| count as f64),
+            };
+            self.blocks.add((flight, before.start_s), squares);
+            for (quantity, sums) in self.at_end.iter_mut().enumerate() {
+                for (sum, of) in sums.iter_mut().zip([unchanged, before, after]) {
+                    *sum += of.at_end[quantity];
+                }
+            }
+        }
+        for WindowErrors { squares, counts, .. } in &played.noise {
+            for (floor, (square, count)) in self.floor.iter_mut().zip(squares.iter().zip(counts)) {
+                *floor = (floor.0 + square, floor.1 + count);
+            }
+        }
+    }
+
+    /// Each quantity, and the mean improvement.
+    fn compared(&self, settings: &HoldoutSettings) -> (Vec<Option<Compared>>, Option<Interval>) {
+        let (mut each, improvement) = self.blocks.compared(settings.draws, settings.seed);
+        for ((compared, (sum, count)), at_end) in each.iter_mut().zip(self.floor).zip(self.at_end) {
+            if let Some(compared) = compared.as_mut().filter(|_| count > 0) {
+                compared.floor = Some((sum / count as f64).sqrt());
+                let [unchanged, before, after] = at_end.map(|sum| sum / self.windows as f64);
+                compared.at_end = Some(AtEnd { unchanged, before, after });
+            }
+        }
+        (each, improvement)
+    }
+}
+
 fn one_length(
     window_s: f64,
     (ready, models): (&[Ready], &[Models]),
@@ -88,71 +174,22 @@ fn one_length(
     // grids are seldom faster than 4 ms: one step an instant
     let playback =
         PlaybackSettings { window_s, stride_s: STRIDE_S, step_s: 0.004, ..PlaybackSettings::default() };
-    let mut blocks = Blocks::new(4, settings.block_s);
-    let (mut floor, mut at_end, mut windows) = ([(0.0, 0usize); 4], [[0.0; 3]; 4], 0);
+    let blocks = Blocks::new(4, settings.block_s);
+    let mut sums = Sums { blocks, floor: [(0.0, 0); 4], at_end: [[0.0; 3]; 4], windows: 0 };
     for (index, (ready, models)) in ready.iter().zip(models).enumerate() {
-        let failed = |source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source };
-        let signals = ready.flight.signals;
-        let run = |model: &Model, base: &Base, empirical: Option<&Empirical>| {
-            let push = empirical.map(Empirical::push);
-            let push = push.as_ref().map(|push| push as crate::simulate::Push);
-            playback_windows((model, &base.vehicle), push, signals, &playback)
-        };
-        let (base_before, base_after) = ready.pair.predicting();
-        let ((before, after), noise) = rayon::join(
-            || {
-                rayon::join(
-                    || run(&models.before, base_before, None),
-                    || run(&models.after, base_after, empirical),
-                )
-            },
-            || {
-                let seed = settings.seed ^ index as u64;
-                let of = (&models.after, &ready.pair.after.vehicle);
-                playback_floor(of, signals, &playback, (&models.noise, models.commands.as_ref(), seed))
-            },
-        );
-        let (before, after, noise) =
-            (before.map_err(failed)?, after.map_err(failed)?, noise.map_err(failed)?);
-        let unchanged = unchanged_windows(signals, &playback).map_err(failed)?;
-        let from_s = ready.pair.predicted_from_s();
-        let each = unchanged.iter().zip(&before).zip(&after);
-        for ((unchanged, before), after) in each.filter(|((of, _), _)| of.start_s >= from_s) {
-            windows += 1;
-            let squares = Squares {
-                unchanged: Some(&unchanged.squares),
-                before: &before.squares,
-                after: &after.squares,
-                count: &before.counts.map(|count| count as f64),
-            };
-            blocks.add((index, before.start_s), squares);
-            for (quantity, sums) in at_end.iter_mut().enumerate() {
-                for (sum, of) in sums.iter_mut().zip([unchanged, before, after]) {
-                    *sum += of.at_end[quantity];
-                }
-            }
-        }
-        for WindowErrors { squares, counts, .. } in noise {
-            for (floor, (square, count)) in floor.iter_mut().zip(squares.iter().zip(counts)) {
-                *floor = (floor.0 + square, floor.1 + count);
-            }
-        }
+        let seed = settings.seed ^ index as u64;
+        let played = played(ready, models, empirical, (&playback, seed))
+            .map_err(|source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source })?;
+        sums.add((index, ready.pair.predicted_from_s()), &played);
     }
-    let (mut each, improvement) = blocks.compared(settings.draws, settings.seed);
-    for ((compared, (sum, count)), at_end) in each.iter_mut().zip(floor).zip(at_end) {
-        if let Some(compared) = compared.as_mut().filter(|_| count > 0) {
-            compared.floor = Some((sum / count as f64).sqrt());
-            let [unchanged, before, after] = at_end.map(|sum| sum / windows as f64);
-            compared.at_end = Some(AtEnd { unchanged, before, after });
-        }
-    }
+    let (each, improvement) = sums.compared(settings);
     let of = OpenLoop {
         window_s,
-        windows,
+        windows: sums.windows,
         position_m: each[0],
         velocity_m_s: each[1],
         attitude_rad: each[2],
         rates_rad_s: each[3],
     };
-    Ok((of, improvement, blocks.len()))
+    Ok((of, improvement, sums.blocks.len()))
 }
