@@ -144,7 +144,7 @@ impl Sums {
                 }
             }
         }
-        for WindowErrors { squares, counts, .. } in &played.noise {
+        for WindowErrors { squares, counts, .. } in played.noise.iter().filter(|of| of.start_s >= from_s) {
             for (floor, (square, count)) in self.floor.iter_mut().zip(squares.iter().zip(counts)) {
                 *floor = (floor.0 + square, floor.1 + count);
             }
