@@ -12,7 +12,7 @@ use crate::simulate::{GroundContact, GroundSettings, Plant, PlantMemory};
 
 /// What sensors without noise show at one instant.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct HoldoutFit {
+pub(super) struct IdealSensors {
     /// motion
     pub(super) state: State,
     /// accelerometer, m/s^2
@@ -122,7 +122,7 @@ impl Craft {
     }
 
     /// One step under normalised outputs u; returns what sensors show before it.
-    pub(super) fn step(&mut self, commands: &[f64; MAX_ROTORS]) -> HoldoutFit {
+    pub(super) fn step(&mut self, commands: &[f64; MAX_ROTORS]) -> IdealSensors {
         let mut acting = *commands;
         if !self.sent.is_empty() {
             self.sent.push_back(*commands);
@@ -156,7 +156,7 @@ impl Craft {
         let hover_rad_s = self.model.airframe.hover_speed_rad_s;
         self.memory = plant.memory();
         self.steps += 1;
-        HoldoutFit {
+        IdealSensors {
             state: seen.state,
             specific_force_m_s2: seen.specific_force_m_s2,
             rotor_speed_rad_s: hover_rad_s.map(|hover_rad_s| now.rotors.speed.map(|n| n * hover_rad_s)),

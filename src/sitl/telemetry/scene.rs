@@ -4,14 +4,14 @@ use std::time::Duration;
 
 use crate::physics::{MAX_ROTORS, State};
 use crate::sitl::autopilot::Autopilot;
-use crate::sitl::craft::HoldoutFit;
+use crate::sitl::craft::IdealSensors;
 
 /// What the vehicle does at one instant.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::sitl) struct Snapshot {
     /// since boot
     pub(in crate::sitl) now: Duration,
-    pub(in crate::sitl) shown: HoldoutFit,
+    pub(in crate::sitl) shown: IdealSensors,
     /// pulses that are put out, microseconds
     pub(in crate::sitl) pulses_us: [u16; MAX_ROTORS],
 }
