@@ -4,6 +4,7 @@ use super::answer::answer;
 use super::figures;
 use super::hold_out::hold_out;
 use super::text::{after, scale};
+use crate::diagnose::holdout::RateLaw;
 use crate::diagnose::{Empirical, NO_LATENCY, Named, Verdict, called, clause};
 use crate::report::chart::inline;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
@@ -98,6 +99,7 @@ fn found(study: &ExplainStudy) -> Markup {
     let content = html! {
         @for named in study.effects.iter().chain(&study.closest) { (effect(study, named)) }
         @if let Some(term) = &study.empirical { (empirical(term)) }
+        @if let Some(law) = &study.rate_law { (rate_law(law)) }
     };
     section(heading, &content)
 }
@@ -148,6 +150,20 @@ fn empirical(term: &Empirical) -> Markup {
     let rows: Vec<Vec<Cell>> = term.knots.iter().zip(&term.force_n).map(row).collect();
     let at = format!("{} ({})|", term.along.name(), term.along.unit());
     html! { (paragraph(&what)) (table("Empirical force", &[&at, "x (N)|", "y (N)|", "z (N)|"], &rows)) }
+}
+
+fn rate_law(law: &RateLaw) -> Markup {
+    let what = "An empirical law, not a mechanism, for open-loop predictions: over 0.5 s the torques of the model predict these \
+                rates or attitudes worse than no change at all. A share of them acts, and the rates decay as the controller \
+                lets them: it holds for this vehicle under this controller.";
+    let row = |axis: usize| {
+        let values = [law.share[axis], law.decay_1_s[axis], law.offset_rad_s2[axis]];
+        let values = values.map(|value| number(significant(value, 3)));
+        std::iter::once(text(["x", "y", "z"][axis])).chain(values).collect()
+    };
+    let rows: Vec<Vec<Cell>> = (0..3).map(row).collect();
+    let head = ["about body", "share of the torque|", "decay (1/s)|", "constant (rad/s^2)|"];
+    html! { (paragraph(what)) (table("Empirical law of the rates", &head, &rows)) }
 }
 
 fn rigid_body(study: &ExplainStudy) -> Markup {

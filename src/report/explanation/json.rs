@@ -2,6 +2,7 @@
 
 use super::answer::answer;
 use super::fit_json::{FitValues, fit_values};
+use crate::diagnose::holdout::RateLaw;
 use crate::diagnose::{Along, CHANNEL_NAMES, Named};
 use crate::note::Note;
 use crate::report::thrust_source::thrust_name;
@@ -19,6 +20,8 @@ pub struct ExplanationDocument {
     effects: Vec<EffectValue>,
     closest: Vec<EffectValue>,
     empirical: Option<EmpiricalValue>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rate_law: Option<RateLawValue>,
     localisation: Located,
     #[serde(rename = "fit")]
     prediction: FitValues,
@@ -72,6 +75,15 @@ struct EmpiricalValue {
     force_n: Vec<[f64; 3]>,
     frame: &'static str,
     gain_percent: f64,
+}
+
+/// How the rates move in open loop, body x y z.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct RateLawValue {
+    /// of the model's torque that acts, 0..1
+    share: [f64; 3],
+    decay_1_s: [f64; 3],
+    offset_rad_s2: [f64; 3],
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -173,6 +185,7 @@ impl ExplanationDocument {
             effects: effect_values(study, &study.effects),
             closest: effect_values(study, &study.closest),
             empirical: empirical(study),
+            rate_law: study.rate_law.map(RateLawValue::from),
             localisation: study.located.clone(),
             prediction: fit_values(study),
             parameters: study
@@ -239,6 +252,16 @@ fn empirical(study: &ExplainStudy) -> Option<EmpiricalValue> {
         },
         gain_percent: 100.0 * term.gain,
     })
+}
+
+impl From<RateLaw> for RateLawValue {
+    fn from(law: RateLaw) -> Self {
+        Self {
+            share: law.share.into(),
+            decay_1_s: law.decay_1_s.into(),
+            offset_rad_s2: law.offset_rad_s2.into(),
+        }
+    }
 }
 
 fn moved(study: &ExplainStudy) -> BTreeMap<&'static str, Moved> {
