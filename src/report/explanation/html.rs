@@ -5,7 +5,7 @@ use super::figures;
 use super::hold_out::hold_out;
 use super::text::{after, scale};
 use crate::diagnose::holdout::RateLaw;
-use crate::diagnose::{Empirical, NO_LATENCY, Named, Verdict, called, clause};
+use crate::diagnose::{Empirical, NO_LATENCY, Named, Slight, Verdict, called, clause};
 use crate::report::chart::inline;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::{chance, significant, spoken, with_error};
@@ -98,6 +98,7 @@ fn found(study: &ExplainStudy) -> Markup {
     };
     let content = html! {
         @for named in study.effects.iter().chain(&study.closest) { (effect(study, named)) }
+        @if !study.explanation.slight.is_empty() { (traces(study)) }
         @if let Some(term) = &study.empirical { (empirical(term)) }
         @if let Some(law) = &study.rate_law { (rate_law(law)) }
     };
@@ -135,6 +136,33 @@ fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
             )))
         }
     }
+}
+
+fn traces(study: &ExplainStudy) -> Markup {
+    let percent =
+        |of: Option<f64>| number(of.map_or_else(|| "-".to_owned(), |of| significant(100.0 * of, 2)));
+    let row = |of: &Slight| {
+        let sizes = of.effect.parameters.iter().map(|p| {
+            let size = with_error(p.value, p.std);
+            format!("{} {size} {}", p.name, spoken(p.unit))
+        });
+        let materiality = of.materiality.as_ref();
+        vec![
+            text(called(of.effect.id)),
+            text(sizes.collect::<Vec<_>>().join(", ")),
+            number(format!("{:.1}", of.effect.strength.z)),
+            percent(materiality.map(|of| of.force)),
+            percent(materiality.map(|of| of.torque)),
+            percent(materiality.map(|of| of.misfit)),
+        ]
+    };
+    let rows: Vec<Vec<Cell>> = study.explanation.slight.iter().map(row).collect();
+    let head = ["effect", "size", "z|", "% of the weight|", "% of the torque|", "% of the misfit|"];
+    table(
+        "Traces: certain, but too small to matter, and no names. Slow errors of sensors and estimators make as much",
+        &head,
+        &rows,
+    )
 }
 
 fn empirical(term: &Empirical) -> Markup {

@@ -3,7 +3,7 @@
 use super::answer::answer;
 use super::fit_json::{FitValues, fit_values};
 use crate::diagnose::holdout::RateLaw;
-use crate::diagnose::{Along, CHANNEL_NAMES, Named};
+use crate::diagnose::{Along, CHANNEL_NAMES, Materiality, Named, NamedParameter, Slight};
 use crate::note::Note;
 use crate::report::thrust_source::thrust_name;
 use crate::report::value::{Thrust, thrust};
@@ -18,6 +18,7 @@ pub struct ExplanationDocument {
     verdict: &'static str,
     answer: String,
     effects: Vec<EffectValue>,
+    traces: Vec<TraceValue>,
     closest: Vec<EffectValue>,
     empirical: Option<EmpiricalValue>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -48,6 +49,21 @@ struct EffectValue {
     confusable_with: Vec<&'static str>,
     /// their distance in this flight, standard deviations
     distinguishability: BTreeMap<&'static str, Option<f64>>,
+}
+
+/// Certain, and too small to matter.
+#[derive(Debug, Clone, Serialize)]
+struct TraceValue {
+    id: &'static str,
+    parameters: Vec<ParameterOf>,
+    z: f64,
+    /// of its own part, root mean square
+    #[serde(skip_serializing_if = "Option::is_none")]
+    of_weight_percent: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    of_torque_percent: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    of_misfit_percent: Option<f64>,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -183,6 +199,7 @@ impl ExplanationDocument {
             verdict: study.verdict().name(),
             answer: answer(study),
             effects: effect_values(study, &study.effects),
+            traces: study.explanation.slight.iter().map(TraceValue::from).collect(),
             closest: effect_values(study, &study.closest),
             empirical: empirical(study),
             rate_law: study.rate_law.map(RateLawValue::from),
@@ -218,11 +235,7 @@ fn effect_values(study: &ExplainStudy, effects: &[Named]) -> Vec<EffectValue> {
         .map(|effect| EffectValue {
             id: effect.id,
             sentence: format!("{}.", crate::diagnose::clause(effect, study.vehicle())),
-            parameters: effect
-                .parameters
-                .iter()
-                .map(|p| ParameterOf { name: p.name, value: p.value, std: p.std, unit: p.unit })
-                .collect(),
+            parameters: effect.parameters.iter().map(ParameterOf::from).collect(),
             evidence: EvidenceValue {
                 z: effect.strength.z,
                 gain_percent: 100.0 * effect.strength.gain,
@@ -237,6 +250,26 @@ fn effect_values(study: &ExplainStudy, effects: &[Named]) -> Vec<EffectValue> {
                 .collect(),
         })
         .collect()
+}
+
+impl From<&Slight> for TraceValue {
+    fn from(slight: &Slight) -> Self {
+        let percent = |of: fn(&Materiality) -> f64| slight.materiality.as_ref().map(|m| 100.0 * of(m));
+        Self {
+            id: slight.effect.id,
+            parameters: slight.effect.parameters.iter().map(ParameterOf::from).collect(),
+            z: slight.effect.strength.z,
+            of_weight_percent: percent(|of| of.force),
+            of_torque_percent: percent(|of| of.torque),
+            of_misfit_percent: percent(|of| of.misfit),
+        }
+    }
+}
+
+impl From<&NamedParameter> for ParameterOf {
+    fn from(&NamedParameter { name, value, std, unit }: &NamedParameter) -> Self {
+        Self { name, value, std, unit }
+    }
 }
 
 fn empirical(study: &ExplainStudy) -> Option<EmpiricalValue> {

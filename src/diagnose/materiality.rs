@@ -1,0 +1,73 @@
+//! Whether what is certain also matters: small certain things are traces and get no name.
+//!
+//! A long quiet flight makes everything certain, also what slow errors of the sensors, of the estimator and of the log's stamps
+//! imitate. What those imitate is small: an accelerometer's bias and a level that is off by a third of a degree are half a percent
+//! of the weight.
+
+use super::channels::{CHANNELS, SECOND};
+use super::fit::Fitted;
+use super::signature::EffectTerm;
+use nalgebra::DVector;
+use std::ops::Range;
+
+/// Force that matters, as a share of the weight. Names that were false on flights with an estimator in the loop had up to 0.0045,
+/// true ones 0.0055 and more unless they passed one of the other two: 166 flights of `bench blind --realistic` and of two autopilots'
+/// simulators.
+const FORCE: f64 = 0.005;
+/// Torque that matters, as a share of the rms of the torque that the motion needs. On the same flights false names had up to 0.06,
+/// true ones of torques 0.116 and more.
+const TORQUE: f64 = 0.1;
+/// Share of the misfit without the effect from which on it matters, however small it is: the misfit itself is as small then. On the
+/// same flights false names had up to 0.1.
+const MISFIT: f64 = 0.2;
+
+/// The part of an effect that no other column of the model can take over, root mean square.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Materiality {
+    /// greatest along an axis, as a share of the weight
+    pub force: f64,
+    /// greatest about an axis, as a share of the rms of the torque that the motion needs
+    pub torque: f64,
+    /// share of the misfit's energy without it, 0..1
+    pub misfit: f64,
+}
+
+impl Materiality {
+    /// Of the effect whose free values have these columns; `None` where it has no estimated amount, or no part of its own.
+    pub(super) fn of(fitted: &Fitted, term: &EffectTerm, columns: Range<usize>) -> Option<Self> {
+        let all = &fitted.weighted;
+        let gram = all.normal.as_ref()?.l_dirty().lower_triangle();
+        let gram = &gram * gram.transpose();
+        let mut coefficients = DVector::zeros(gram.nrows());
+        for (column, &slot) in columns.clone().zip(&term.free).filter(|(_, slot)| term.is_amount(**slot)) {
+            coefficients[column] = term.from_nothing(slot);
+        }
+        let others: Vec<usize> = (0..gram.nrows()).filter(|index| !columns.contains(index)).collect();
+        let normal = gram.select_rows(&others).select_columns(&others);
+        let taken = normal.cholesky()?.solve(&(&gram * &coefficients).select_rows(&others));
+        others.iter().zip(taken.iter()).for_each(|(&index, taken)| coefficients[index] = -taken);
+        let own = all.nuisances.times(&coefficients);
+        let energy = own.norm_squared();
+        if energy.is_nan() || energy <= 0.0 {
+            return None;
+        }
+        let weight_n = fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2;
+        let rms = |channel: usize| {
+            let squares = own.rows(channel * all.rows, all.rows).norm_squared();
+            (squares / all.count_of(channel).max(1) as f64).sqrt() * all.sigma[channel]
+        };
+        let greatest = |of: &mut dyn Iterator<Item = f64>| of.fold(0.0, f64::max);
+        let of_torque = |axis: usize| rms(3 + axis) / fitted.rows.torque_rms[axis].max(f64::MIN_POSITIVE);
+        Some(Self {
+            force: greatest(&mut (0..3).chain(SECOND..CHANNELS).map(rms)) / weight_n,
+            torque: greatest(&mut (0..3).map(of_torque)),
+            misfit: energy / (energy + all.left.norm_squared()),
+        })
+    }
+
+    /// Whether it is more than a trace.
+    #[must_use]
+    pub fn matters(&self) -> bool {
+        self.force >= FORCE || self.torque >= TORQUE || self.misfit >= MISFIT
+    }
+}
