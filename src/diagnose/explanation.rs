@@ -42,6 +42,7 @@ impl Explanation {
             let FieldTest { certain, beats_named, .. } = field;
             tracing::debug!(certain, beats_named, "a force of the room tested");
         }
+        self.aperiodic.emit();
         let (named, too_little_excitation) = (self.named.len(), self.too_little_excitation);
         tracing::info!(verdict = self.verdict.name(), named, too_little_excitation, "explained");
     }
