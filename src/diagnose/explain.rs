@@ -22,6 +22,7 @@ use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
+use nalgebra::DVector;
 use std::ops::Range;
 
 /// Settings of an explanation.
@@ -69,6 +70,8 @@ const LACK_P: f64 = 1e-6;
 const LACK_FORCE_G: f64 = 0.002;
 /// Least torque that is left at the harmonics, as a share of the rms of the torque. Chosen; not measured by itself.
 const LACK_TORQUE: f64 = 0.1;
+/// Standard errors by which a size must be beyond what is ordinary: 97.5 % of one side.
+const BEYOND: f64 = 2.0;
 /// Air that moves by less is called still, m/s rms: a draught in a room. Chosen; not measured.
 const STILL_M_S: f64 = 0.15;
 /// Least share of the energy of the accepted effect that a rival must explain. Chosen; not measured.
@@ -193,7 +196,7 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
         None => {}
     }
     let a_field = field.as_ref().is_some_and(|field| field.certain);
-    let limits = limits(&found.last, &found.after.base.vehicle);
+    let limits = limits(&found.last, &found.after);
     let too_little_excitation = too_little_excitation(&found.after, &limits);
     // what is large only of a torque that hardly anything took is noise
     let (axes, aperiodic) =
@@ -300,7 +303,11 @@ fn names(traces: &[Trace], found: &Search) -> (Vec<Named>, Vec<Slight>) {
             confusable_with: step.map_or_else(Vec::new, |step| confusable(traces, found, place, step)),
         };
         let materiality = Materiality::of(fitted, present, first..index);
-        let matters = materiality.is_none_or(|of| of.matters()) || is_part(present, &fitted.base);
+        let matters = if present.is_of_sensors() {
+            is_beyond_ordinary(fitted, present, first)
+        } else {
+            materiality.is_none_or(|of| of.matters()) || is_part(present, &fitted.base)
+        };
         if matters {
             named.push(effect);
         } else {
@@ -308,6 +315,17 @@ fn names(traces: &[Trace], found: &Search) -> (Vec<Named>, Vec<Slight>) {
         }
     }
     (named, slight)
+}
+
+/// Whether its size is certainly beyond what is ordinary; its first free value has the column `first`.
+fn is_beyond_ordinary(fitted: &Fitted, term: &EffectTerm, first: usize) -> bool {
+    let Some(ordinary) = term.signature.naming.ordinary else { return true };
+    let size = term.size();
+    let along = |slot: usize| if term.is_amount(slot) { term.values[slot] / size } else { 0.0 };
+    let unit = DVector::from_iterator(term.free.len(), term.free.iter().map(|&slot| along(slot)));
+    let count = term.free.len();
+    let variance = unit.dot(&(fitted.covariance.view((first, first), (count, count)) * &unit));
+    size - BEYOND * variance.max(0.0).sqrt() > ordinary
 }
 
 /// Whether it is a part of another effect of the model: both are one to a reader.

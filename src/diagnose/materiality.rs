@@ -5,6 +5,7 @@
 //! of the weight.
 
 use super::channels::{CHANNELS, SECOND};
+use super::evidence::Evidence;
 use super::fit::Fitted;
 use super::signature::EffectTerm;
 use nalgebra::DVector;
@@ -74,10 +75,39 @@ impl Materiality {
         })
     }
 
+    /// Of a candidate beside a fit, by its test there.
+    pub(super) fn of_candidate(evidence: &Evidence, fitted: &Fitted) -> Self {
+        let weight_n = fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2;
+        let force = (0..3).chain(SECOND..CHANNELS).map(|channel| evidence.rms[channel]).fold(0.0, f64::max);
+        let of_torque =
+            |axis: usize| evidence.rms[3 + axis] / fitted.rows.torque_rms[axis].max(f64::MIN_POSITIVE);
+        Self {
+            force: force / weight_n,
+            torque: (0..3).map(of_torque).fold(0.0, f64::max),
+            misfit: evidence.energy / fitted.weighted.energy.max(f64::MIN_POSITIVE),
+        }
+    }
+
+    /// How many times as large it would have to be to matter: at least by its force or its torque, or by its share of the misfit.
+    pub(super) fn times_to_matter(&self) -> f64 {
+        let by_size = 1.0 / self.size().max(f64::MIN_POSITIVE);
+        // e s^2 / (rest + e s^2) = share, for the energy e of now
+        let enough = |share: f64| {
+            let (own, rest) = (self.misfit, (1.0 - self.misfit).max(0.0));
+            (share / (1.0 - share) * rest / own.max(f64::MIN_POSITIVE)).sqrt()
+        };
+        (PLAIN * by_size).min(by_size.max(enough(SHOWS))).min(enough(MISFIT))
+    }
+
+    /// The greater of force and torque, over what matters.
+    fn size(&self) -> f64 {
+        (self.force / FORCE).max(self.torque / TORQUE)
+    }
+
     /// Whether it is more than a trace.
     #[must_use]
     pub fn matters(&self) -> bool {
-        let size = (self.force / FORCE).max(self.torque / TORQUE);
+        let size = self.size();
         size >= PLAIN || size >= 1.0 && self.misfit >= SHOWS || self.misfit >= MISFIT
     }
 }
