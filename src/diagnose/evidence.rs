@@ -53,6 +53,8 @@ pub struct Evidence {
     pub energy: f64,
     /// root mean square of its contribution without the part of the nuisances, each channel, N and N m
     pub rms: [f64; CHANNELS],
+    /// the same of one unit of each coefficient
+    pub unit_rms: Vec<[f64; CHANNELS]>,
 }
 
 impl Evidence {
@@ -247,7 +249,8 @@ impl Weighted {
             p_cluster: chance_by_stretches(&scores.transposed(), &inverse, &theta),
             gain: energy / self.energy.max(f64::MIN_POSITIVE),
             energy,
-            rms: self.rms(&(&partialled * &theta)),
+            rms: self.rms((&partialled * &theta).as_slice()),
+            unit_rms: partialled.column_iter().map(|column| self.rms(column.as_slice())).collect(),
             theta: theta.iter().copied().collect(),
             covariance,
         })
@@ -263,10 +266,11 @@ impl Weighted {
         Some(normal_deviate(theta.dot(&covariance.cholesky()?.solve(&theta)), size))
     }
 
-    fn rms(&self, series: &DVector<f64>) -> [f64; CHANNELS] {
+    fn rms(&self, series: &[f64]) -> [f64; CHANNELS] {
         std::array::from_fn(|channel| {
-            let part = series.rows(channel * self.rows, self.rows);
-            (part.norm_squared() / self.count_of(channel).max(1) as f64).sqrt() * self.sigma[channel]
+            let part = &series[channel * self.rows..(channel + 1) * self.rows];
+            let squares: f64 = part.iter().map(|value| value * value).sum();
+            (squares / self.count_of(channel).max(1) as f64).sqrt() * self.sigma[channel]
         })
     }
 

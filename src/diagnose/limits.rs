@@ -28,10 +28,11 @@ pub(super) fn limits(last: &[Tested], fitted: &Fitted) -> Vec<DetectionLimit> {
     };
     for tested in last.iter().filter(has_size) {
         let Candidate { id, parts, .. } = &tested.candidate;
-        let times = Materiality::of_candidate(&tested.evidence, fitted).times_to_matter();
-        let material = times * tested.evidence.size();
+        let mut units = tested.evidence.unit_rms.iter();
         for part in parts {
             for &free in &part.free {
+                let material =
+                    units.next().map_or(0.0, |unit| Materiality::of_unit(unit, fitted).times_to_matter());
                 let Some(parameter) = part.parameter(free) else { continue };
                 let naming = &part.signature.naming;
                 // certainty alone is not enough for a name
