@@ -11,7 +11,7 @@ use crate::log::report::{Details, ReadReport};
 
 /// Telemetry logs.
 pub(in crate::log) const FORMAT: Format =
-    Format { name: "telemetry log (.tlog)", takes_system: true, takes_columns: false, sniff, read };
+    Format { name: "telemetry log (.tlog)", takes_system: true, takes_columns: false, sniff, read, read_whole: None };
 
 /// A record: a stamp, and a frame whose checksum is right.
 fn sniff(head: &[u8]) -> Option<Certainty> {
