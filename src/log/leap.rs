@@ -3,14 +3,14 @@
 
 /// So many stamps from before the leap, behind it: it was damage.
 const BACK: usize = 2;
-/// So many that go on from it, itself among them: time passed.
+/// So many at or after it, itself among them: time passed.
 const AHEAD: usize = 8;
-/// Where the log ends before: time passed if so many go on from it.
-const AHEAD_AT_END: usize = 2;
 /// No more messages wait.
 const MOST: usize = 256;
-/// A stamp goes on from another one if it is no further from it, s.
-const NEAR_S: f64 = 10.0;
+/// Messages of several threads run back by less, s.
+const THREADS_S: f64 = 10.0;
+/// The last stamp of a log leaps by no more, s: nothing behind it tells. A vehicle that rests writes something each half a minute.
+const LAST_S: f64 = 60.0;
 
 /// A leap, and the messages from it on.
 #[derive(Debug)]
@@ -45,11 +45,10 @@ impl<T> Leap<T> {
 
     /// Takes the message behind; `true` where it tells, or no more can wait.
     pub(super) fn wait(&mut self, stamp_s: Option<f64>, message: T) -> bool {
-        let apart_s = |from_s: f64| stamp_s.map_or(f64::INFINITY, |stamp_s| (stamp_s - from_s).abs());
-        let (ahead_s, back_s) = (apart_s(self.leapt_s), apart_s(self.before_s));
-        let is_ahead = ahead_s < back_s && ahead_s < NEAR_S;
+        let is_ahead = stamp_s.is_some_and(|stamp_s| stamp_s >= self.leapt_s - THREADS_S);
+        let is_back = !is_ahead && stamp_s.is_some_and(|stamp_s| stamp_s >= self.before_s - THREADS_S);
         self.ahead += usize::from(is_ahead);
-        self.back += usize::from(!is_ahead && back_s < NEAR_S);
+        self.back += usize::from(is_back);
         self.waiting.push((if is_ahead { Side::Ahead } else { Side::Other }, message));
         self.ahead >= AHEAD || self.back >= BACK || self.waiting.len() >= MOST
     }
@@ -57,7 +56,8 @@ impl<T> Leap<T> {
     /// What it was, as far as it has been told.
     pub(super) fn settle(self) -> Settled<T> {
         let messages = self.waiting.into_iter();
-        if self.back < BACK && self.ahead >= AHEAD_AT_END && self.ahead > self.back {
+        let is_last = self.ahead == 1 && self.leapt_s - self.before_s > LAST_S;
+        if self.back < BACK && self.ahead > self.back && !is_last {
             return Settled::Passed(messages.map(|(_, message)| message).collect());
         }
         let others = messages.filter(|(side, _)| *side == Side::Other);
@@ -69,9 +69,9 @@ impl<T> Leap<T> {
 mod tests {
     use super::{Leap, Settled};
 
-    /// What follows on a leap from 100 to 1100; how many were damaged, and how many messages are left.
-    fn settled(stamps_s: &[f64]) -> (usize, usize) {
-        let mut leap = Leap::new(100.0, 1100.0, 1100.0);
+    /// What follows on a leap from 100 s; how many were damaged, and how many messages are left.
+    fn settled(leapt_s: f64, stamps_s: &[f64]) -> (usize, usize) {
+        let mut leap = Leap::new(100.0, leapt_s, leapt_s);
         for stamp_s in stamps_s {
             if leap.wait(Some(*stamp_s), *stamp_s) {
                 break;
@@ -85,16 +85,16 @@ mod tests {
 
     #[test]
     fn what_follows_tells_a_pause_from_damage() {
-        // stamps go on from it
-        assert_eq!(settled(&[1100.1; 9]), (0, 8));
+        let of = |stamps_s: &[f64]| settled(1100.0, stamps_s);
+        // stamps go on from it, near or far
+        assert_eq!((of(&[1100.1; 9]), of(&[1131.0, 1162.0, 1193.0])), ((0, 8), (0, 4)));
         // taken back, after one and after three
-        assert_eq!(settled(&[100.1, 100.2]), (1, 2));
-        assert_eq!(settled(&[1100.0, 1100.1, 100.1, 100.2]), (3, 2));
+        assert_eq!((of(&[100.1, 100.2]), of(&[131.0, 162.0])), ((1, 2), (1, 2)));
+        assert_eq!(of(&[1100.0, 1100.1, 100.1, 100.2]), (3, 2));
         // one of the old time that was late, and one that is damaged itself
-        assert_eq!(settled(&[99.9, 1100.0, 9e9, 1100.1, 1100.2, 1100.2, 1100.2, 1100.3, 1100.3]), (0, 10));
+        assert_eq!(of(&[99.9, 1100.0, 9.0, 1100.1, 1100.2, 1100.2, 1100.2, 1100.3, 1100.3]), (0, 10));
         // the log ends
-        assert_eq!(settled(&[1100.1]), (0, 2));
-        assert_eq!(settled(&[]), (1, 0));
-        assert_eq!(settled(&[100.1]), (1, 1));
+        assert_eq!((of(&[1100.1]), of(&[]), of(&[100.1])), ((0, 2), (1, 0), (1, 1)));
+        assert_eq!(settled(131.0, &[]), (0, 1));
     }
 }

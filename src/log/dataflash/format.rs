@@ -83,11 +83,19 @@ impl<R: Read> Messages for DataflashReader<R> {
     fn next(&mut self) -> Result<Option<(Message<'_>, &Definitions)>, LogError> {
         self.next_with_definitions()
     }
+
+    fn definitions(&self) -> &Definitions {
+        self.definitions()
+    }
 }
 
 impl<R: std::io::BufRead> Messages for DataflashTextReader<R> {
     fn next(&mut self) -> Result<Option<(Message<'_>, &Definitions)>, LogError> {
         self.next_with_definitions()
+    }
+
+    fn definitions(&self) -> &Definitions {
+        self.definitions()
     }
 }
 
