@@ -107,7 +107,7 @@ impl RecordingBuilder {
         let of_quantity = &mut self.by_quantity[quantity];
         // names are compared by where they stand first: a reader gives the same one each time
         let at = |is_same: fn(&StreamKey, &StreamKey) -> bool| {
-            of_quantity.iter().copied().find(|&index| is_same(&self.streams[index].key(), &key))
+            of_quantity.iter().copied().find(|&index| is_same(self.streams[index].key(), &key))
         };
         let stands_there =
             |a: &StreamKey, b: &StreamKey| a.instance == b.instance && std::ptr::eq(a.source, b.source);

@@ -165,7 +165,8 @@ impl Run {
     /// Adds one stream's samples; the order of the message and the time, s, of the last one.
     fn decode(&self, clock: &Clock, bound: &Bound, growing: &mut Growing) -> Option<(usize, f64)> {
         let mut last = None;
-        for ((order, stamp_us), bytes) in self.stamps.iter().zip(self.bytes.chunks_exact(self.length.max(1))) {
+        for ((order, stamp_us), bytes) in self.stamps.iter().zip(self.bytes.chunks_exact(self.length.max(1)))
+        {
             let Some(time_s) = time_s(clock, bound, bytes, *stamp_us) else { continue };
             bound.sample(bytes, |values| {
                 growing.push(time_s, values);
