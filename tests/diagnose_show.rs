@@ -4,7 +4,8 @@
 
 use mavid::diagnose::experiment::{NextError, NextFlight, NextSettings, design, told_apart};
 use mavid::diagnose::holdout::{
-    HeldOut, HoldoutError, HoldoutFit, HoldoutSettings, differing, on_holdout, split_last_periods,
+    Explained, HeldOut, HoldoutError, HoldoutFit, HoldoutSettings, differing, on_holdout, on_identification,
+    split_last_periods,
 };
 use mavid::diagnose::{Along, Empirical, ExplainSettings, Explanation, Verdict, explain};
 use mavid::physics::effects::by_id;
@@ -63,7 +64,7 @@ fn explained(vehicles: &VehiclePair, effects: Vec<ActiveEffect>) -> (Explanation
 
 fn shown(explanation: &Explanation, nominal: &Vehicle, flight: &(Recording, Signals)) -> HoldoutFit {
     let held = HeldOut { name: "holdout", signals: &flight.1, recording: Some(&flight.0) };
-    on_holdout((explanation, None), &[held], nominal, &HoldoutSettings::default()).unwrap()
+    on_holdout(Explained::of(explanation), &[held], nominal, &HoldoutSettings::default()).unwrap()
 }
 
 #[test]
@@ -188,15 +189,15 @@ fn nothing_missing_changes_nothing_and_no_flight_is_refused() {
     assert!(last(&split.identify) < first && last(&split.holdout) == last(&flight));
     let held = HeldOut { name: "end", signals: &split.holdout, recording: None };
     let settings = HoldoutSettings { same_flight: true, ..HoldoutSettings::default() };
-    let shown = on_holdout((&found, None), &[held], &vehicles.nominal, &settings).unwrap();
+    let shown = on_holdout(Explained::of(&found), &[held], &vehicles.nominal, &settings).unwrap();
     assert_eq!(shown.improvement_percent.unwrap().value, 0.0);
     assert_eq!(shown.other_vehicle, None);
     let mut nothing = flight.clone();
     nothing.usable.fill(false);
     let held = HeldOut { name: "ground", signals: &nothing, recording: None };
-    let refused = on_holdout((&found, None), &[held], &vehicles.nominal, &settings);
+    let refused = on_holdout(Explained::of(&found), &[held], &vehicles.nominal, &settings);
     assert!(matches!(refused, Err(HoldoutError::TooShort { .. })));
-    let refused = on_holdout((&found, None), &[], &vehicles.nominal, &settings);
+    let refused = on_holdout(Explained::of(&found), &[], &vehicles.nominal, &settings);
     assert!(matches!(refused, Err(HoldoutError::NoFlight)));
     let next = design(&found, &[flight], &vehicles.nominal, &NextSettings::default());
     assert!(matches!(next, Err(NextError::NothingToTell)));
@@ -218,7 +219,7 @@ fn the_moment_of_a_mass_change_is_found_again() {
     let split = split_last_periods(&flight).unwrap();
     let held = HeldOut { name: "end", signals: &split.holdout, recording: None };
     let settings = HoldoutSettings { same_flight: true, ..HoldoutSettings::default() };
-    let shown = on_holdout((&found, None), &[held], &vehicles.nominal, &settings).unwrap();
+    let shown = on_holdout(Explained::of(&found), &[held], &vehicles.nominal, &settings).unwrap();
     assert!(shown.agreement.iter().all(|of| of.name != "mass_change.delta" && of.held_out_std.is_finite()));
     let force_z = shown.weak[2].unwrap();
     assert!(force_z.after.value < 0.5 * force_z.before.value, "{force_z:?}");
@@ -245,10 +246,41 @@ fn a_force_fixed_in_the_room_is_predicted_without_a_name() {
     assert_eq!(term.along, Along::Position(0));
     let holdout = flown(both, (Vec::new(), field()), trajectory(6), (2, 34.0));
     let held = HeldOut { name: "holdout", signals: &holdout.1, recording: Some(&holdout.0) };
-    let shown =
-        on_holdout((&found, Some(&term)), &[held], &vehicles.nominal, &HoldoutSettings::default()).unwrap();
+    let with_term = Explained { empirical: Some(&term), ..Explained::of(&found) };
+    let shown = on_holdout(with_term, &[held], &vehicles.nominal, &HoldoutSettings::default()).unwrap();
     assert!(shown.improvement_percent.unwrap().range.unwrap().0 > 0.0, "{:?}", shown.improvement_percent);
     assert!(shown.closed_loop.is_err());
+}
+
+#[test]
+fn torques_that_do_not_tell_the_rates_give_way_to_a_law_of_the_rates() {
+    let vehicles = pair();
+    let (found, flight) = explained(&vehicles, Vec::new());
+    let both = (&vehicles.truth, &vehicles.nominal);
+    let (_, other) = flown(both, (Vec::new(), None), trajectory(6), (2, 44.0));
+    let settings = HoldoutSettings::default();
+    let fitted = |signals: &Signals| {
+        let used = HeldOut { name: "used", signals, recording: None };
+        on_identification(Explained::of(&found), &[used], &vehicles.nominal, &settings).unwrap()
+    };
+    let sound = fitted(&flight);
+    assert_eq!(sound.rate_law, None);
+    let [.., attitude, rates] = sound.open_loop[1].quantities().map(Option::unwrap);
+    assert!(!attitude.is_worse_than_unchanged() && !rates.is_worse_than_unchanged());
+    // the commands of another flight
+    let foreign = Signals { rotor_thrust_n: other.rotor_thrust_n.clone(), ..flight.clone() };
+    let fit = fitted(&foreign);
+    let law = fit.rate_law.unwrap();
+    assert!(law.share.x < 0.1 && law.share.y < 0.1 && law.decay_1_s.min() >= 0.0, "{law:?}");
+    let rates = fit.open_loop[1].rates_rad_s.unwrap();
+    assert!(!rates.is_worse_than_unchanged() && rates.after.value < 0.6 * rates.before.value, "{rates:?}");
+    // it is what predicts a hold-out too, and no simulation in closed loop
+    let held = || [HeldOut { name: "holdout", signals: &foreign, recording: None }];
+    let with_law = Explained { rate_law: fit.rate_law, ..Explained::of(&found) };
+    let shown = on_holdout(with_law, &held(), &vehicles.nominal, &settings).unwrap();
+    let without = on_holdout(Explained::of(&found), &held(), &vehicles.nominal, &settings).unwrap();
+    let rates = |fit: &HoldoutFit| fit.half_second().unwrap().rates_rad_s.unwrap().after.value;
+    assert!(rates(&shown) < 0.6 * rates(&without));
 }
 
 #[test]

@@ -11,5 +11,5 @@ pub use error::CompareError;
 pub use improvement::improvement_percent;
 pub use playback::{
     CommandNoise, Fit, PlaybackSettings, StateNoise, WindowErrors, playback, playback_floor,
-    playback_windows, unchanged_windows,
+    playback_windows, torques_along, unchanged_windows,
 };

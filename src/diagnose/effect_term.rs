@@ -1,7 +1,7 @@
 //! Values of an effect as a term of the model.
 
 use super::signature::{EffectTerm, Growth, Signature};
-use crate::physics::{Effect, Parameter};
+use crate::physics::{Effect, Hook, Parameter};
 use crate::vehicle::VehicleSize;
 
 impl EffectTerm {
@@ -50,6 +50,11 @@ impl EffectTerm {
     #[must_use]
     pub fn is_amount(&self, slot: usize) -> bool {
         self.signature.amounts.contains(&slot)
+    }
+
+    /// Whether it changes what sensors show and nothing else: how much force that makes says nothing of its size.
+    pub(super) fn is_of_sensors(&self) -> bool {
+        self.effect().hooks().iter().all(|hook| *hook == Hook::Sensors)
     }
 
     /// Whether a parameter is the share of a force that acts at the rotors' hubs: it shows only in torques.

@@ -1,5 +1,6 @@
 //! The whole method: search, lack of fit, verdict.
 
+use super::base::Base;
 use super::channels::{AXES, CHANNELS};
 use super::confusable::confusable_with;
 use super::evidence::LEAST_ROWS;
@@ -10,16 +11,18 @@ use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
 use super::latency_name::latency_name;
 use super::limits::{limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
-use super::named::{Confusable, Named, NamedParameter, Strength};
+use super::materiality::Materiality;
+use super::named::{Confusable, Named, NamedParameter, Slight, Strength};
 use super::search::search;
 use super::settle::{fitted_strength, settle};
-use super::signature::Signature;
+use super::signature::{EffectTerm, Signature};
 use super::signatures::{ALL, GUST};
 use super::tested::{Search, Step, Tested};
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
+use nalgebra::DVector;
 use std::ops::Range;
 
 /// Settings of an explanation.
@@ -67,6 +70,10 @@ const LACK_P: f64 = 1e-6;
 const LACK_FORCE_G: f64 = 0.002;
 /// Least torque that is left at the harmonics, as a share of the rms of the torque. Chosen; not measured by itself.
 const LACK_TORQUE: f64 = 0.1;
+/// Standard errors by which a size must be beyond what is ordinary: 97.5 % of one side.
+const BEYOND: f64 = 2.0;
+/// Air that moves by less is called still, m/s rms: a draught in a room. Chosen; not measured.
+const STILL_M_S: f64 = 0.15;
 /// Least share of the energy of the accepted effect that a rival must explain. Chosen; not measured.
 const RIVAL: f64 = 0.93;
 
@@ -181,11 +188,15 @@ fn is_lacking(lack: &LackOfFit, fitted: &Fitted, mut axes: Range<usize>) -> bool
 /// Verdict and names.
 fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> Explanation {
     let Beyond { lack, located_before, located_after, field, aperiodic } = beyond;
-    let mut named = names(traces, &found);
+    let (mut named, mut slight) = names(traces, &found);
     named.extend(latency_name(traces, vehicle, &found));
-    named.extend(aperiodic.gust.as_ref().and_then(gust_name));
+    match aperiodic.gust.as_ref().and_then(|gust| Some((gust_name(gust)?, gust.sigma_m_s < STILL_M_S))) {
+        Some((effect, true)) => slight.push(Slight { effect, materiality: None }),
+        Some((effect, false)) => named.push(effect),
+        None => {}
+    }
     let a_field = field.as_ref().is_some_and(|field| field.certain);
-    let limits = limits(&found.last, &found.after.base.vehicle);
+    let limits = limits(&found.last, &found.after);
     let too_little_excitation = too_little_excitation(&found.after, &limits);
     // what is large only of a torque that hardly anything took is noise
     let (axes, aperiodic) =
@@ -208,6 +219,7 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
     Explanation {
         verdict,
         named,
+        slight,
         closest,
         limits,
         too_little_excitation,
@@ -254,11 +266,11 @@ fn explained_energy(found: &Search) -> f64 {
         .sum()
 }
 
-/// A name for each accepted effect.
-fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
+/// A name for each accepted effect that matters, and the others.
+fn names(traces: &[Trace], found: &Search) -> (Vec<Named>, Vec<Slight>) {
     let fitted = &found.after;
     let mut index = fitted.rows.nuisances.len();
-    let mut out = Vec::new();
+    let (mut named, mut slight) = (Vec::new(), Vec::new());
     for (place, present) in fitted.base.present.iter().enumerate() {
         let mut parameters = Vec::new();
         let first = index;
@@ -283,15 +295,43 @@ fn names(traces: &[Trace], found: &Search) -> Vec<Named> {
             .steps
             .iter()
             .find(|step| step.taken.candidate.parts.iter().any(|part| part.is(present.signature)));
-        out.push(Named {
+        let effect = Named {
             id: present.id(),
             sentence: present.effect().sentence(),
             parameters,
             strength: step.map_or_else(|| fitted_strength(fitted, present, first), strength),
             confusable_with: step.map_or_else(Vec::new, |step| confusable(traces, found, place, step)),
-        });
+        };
+        let materiality = Materiality::of(fitted, present, first..index);
+        let matters = if present.is_of_sensors() {
+            is_beyond_ordinary(fitted, present, first)
+        } else {
+            materiality.is_none_or(|of| of.matters()) || is_part(present, &fitted.base)
+        };
+        if matters {
+            named.push(effect);
+        } else {
+            slight.push(Slight { effect, materiality });
+        }
     }
-    out
+    (named, slight)
+}
+
+/// Whether its size is certainly beyond what is ordinary; its first free value has the column `first`.
+fn is_beyond_ordinary(fitted: &Fitted, term: &EffectTerm, first: usize) -> bool {
+    let Some(ordinary) = term.signature.naming.ordinary else { return true };
+    let size = term.size();
+    let along = |slot: usize| if term.is_amount(slot) { term.values[slot] / size } else { 0.0 };
+    let unit = DVector::from_iterator(term.free.len(), term.free.iter().map(|&slot| along(slot)));
+    let count = term.free.len();
+    let variance = unit.dot(&(fitted.covariance.view((first, first), (count, count)) * &unit));
+    size - BEYOND * variance.max(0.0).sqrt() > ordinary
+}
+
+/// Whether it is a part of another effect of the model: both are one to a reader.
+fn is_part(term: &EffectTerm, base: &Base) -> bool {
+    let whole = term.signature.role.axial_part_of;
+    whole.is_some_and(|whole| base.present.iter().any(|other| other.id() == whole.id()))
 }
 
 fn strength(step: &Step) -> Strength {

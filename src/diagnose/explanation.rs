@@ -2,7 +2,7 @@
 
 use super::harmonics::LackOfFit;
 use super::locate::{Aperiodic, FieldTest, Localisation};
-use super::named::{DetectionLimit, Named};
+use super::named::{DetectionLimit, Named, Slight};
 use super::tested::Search;
 
 /// The answer in one word.
@@ -42,6 +42,7 @@ impl Explanation {
             let FieldTest { certain, beats_named, .. } = field;
             tracing::debug!(certain, beats_named, "a force of the room tested");
         }
+        self.aperiodic.emit();
         let (named, too_little_excitation) = (self.named.len(), self.too_little_excitation);
         tracing::info!(verdict = self.verdict.name(), named, too_little_excitation, "explained");
     }
@@ -54,6 +55,8 @@ pub struct Explanation {
     pub verdict: Verdict,
     /// effects that the rigid body lacks
     pub named: Vec<Named>,
+    /// certain effects that are too small to matter: traces, without a name
+    pub slight: Vec<Slight>,
     /// the effects that come closest, if none explains the residual
     pub closest: Vec<Named>,
     /// detection limits of the effects without a name

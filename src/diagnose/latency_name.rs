@@ -44,7 +44,9 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
         (parts.delay_s - held_s(traces) - motor_s, std_s.hypot(unsure_s))
     };
     let (own, others) = if is_lag { (against_lag, against_delay) } else { (against_delay, against_lag) };
-    let told_apart = others > TOLD_APART && own < 0.5 * REFUSED;
+    // how much of a delay is the motor's own lag is not known of a vehicle that states none
+    let stated = is_lag || vehicle.propulsion.mean_time_constant_s().is_some();
+    let told_apart = stated && others > TOLD_APART && own < 0.5 * REFUSED;
     let z = (total_s - ordinary_s) / found.latency.std_s.hypot(ORDINARY_STD_S);
     Some(Named {
         id: kind.id(),

@@ -7,11 +7,11 @@
 use super::candidates::Candidate;
 use super::fit::Fitted;
 use super::gates::Gates;
+use super::materiality::Materiality;
 use super::named::DetectionLimit;
 use super::signature::EffectTerm;
 use super::signatures::signature_of;
 use super::tested::Tested;
-use crate::vehicle::Vehicle;
 
 /// Standard errors by which an effect of its usual size must differ from zero: the z of [`Gates`](super::Gates).
 const CERTAIN: f64 = 4.0;
@@ -19,7 +19,8 @@ const CERTAIN: f64 = 4.0;
 const PLAIN: f64 = 8.0;
 
 /// The smallest coefficient that this flight would have shown, for every candidate that was not named.
-pub(super) fn limits(last: &[Tested], vehicle: &Vehicle) -> Vec<DetectionLimit> {
+pub(super) fn limits(last: &[Tested], fitted: &Fitted) -> Vec<DetectionLimit> {
+    let vehicle = &fitted.base.vehicle;
     let mut out: Vec<DetectionLimit> = Vec::new();
     let has_size = |tested: &&Tested| {
         let Candidate { parts, through, .. } = &tested.candidate;
@@ -27,6 +28,8 @@ pub(super) fn limits(last: &[Tested], vehicle: &Vehicle) -> Vec<DetectionLimit> 
     };
     for tested in last.iter().filter(has_size) {
         let Candidate { id, parts, .. } = &tested.candidate;
+        let times = Materiality::of_candidate(&tested.evidence, fitted).times_to_matter();
+        let material = times * tested.evidence.size();
         for part in parts {
             for &free in &part.free {
                 let Some(parameter) = part.parameter(free) else { continue };
@@ -34,7 +37,9 @@ pub(super) fn limits(last: &[Tested], vehicle: &Vehicle) -> Vec<DetectionLimit> 
                 // certainty alone is not enough for a name
                 let least = naming.ordinary.unwrap_or(naming.least);
                 let certain = Gates::default().deviate(part.signature);
-                let limit = (certain * least_std(part, free, last)).max(least);
+                // nor is a size that does not matter
+                let material = if part.is_of_sensors() || !part.is_amount(free) { 0.0 } else { material };
+                let limit = (certain * least_std(part, free, last)).max(least).max(material);
                 let same = out.iter_mut().find(|l| l.id == *id && l.parameter == parameter.name);
                 match same {
                     Some(same) => same.limit = same.limit.max(limit),

@@ -1,5 +1,6 @@
 //! An effect that was named, with its values and the evidence for it.
 
+use super::materiality::Materiality;
 use crate::text::with_error;
 use std::fmt;
 
@@ -16,6 +17,15 @@ pub struct Named {
     pub strength: Strength,
     /// effects from which the flight does not distinguish it
     pub confusable_with: Vec<Confusable>,
+}
+
+/// An effect that is certain, and too small to matter: it is in the model and has no name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slight {
+    /// which, with its values
+    pub effect: Named,
+    /// how little it is; `None` of gusts, which have no part of their own in the model
+    pub materiality: Option<Materiality>,
 }
 
 /// A parameter of a named effect.

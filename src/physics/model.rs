@@ -47,6 +47,19 @@ impl Model {
         Self::assembled(self.body, self.airframe.clone(), effects)
     }
 
+    /// The same vehicle with one more effect, which acts after the others.
+    ///
+    /// # Errors
+    /// If the vehicle's description lacks what the effect needs.
+    pub fn with(&self, effect: ActiveEffect) -> Result<Self, PhysicsError> {
+        if let Some(what) = effect.effect.missing(&self.airframe) {
+            return Err(PhysicsError::Missing { id: effect.effect.id(), what });
+        }
+        let mut effects = self.effects.clone();
+        effects.push(effect);
+        Ok(Self::assembled(self.body, self.airframe.clone(), effects))
+    }
+
     fn assembled(body: RigidBodyModel, airframe: Airframe, effects: Vec<ActiveEffect>) -> Self {
         let (mut slots, mut own_state_count) = (Vec::with_capacity(effects.len()), 0);
         for active in &effects {

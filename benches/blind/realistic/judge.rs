@@ -4,6 +4,7 @@ use mavid::report::ExplanationDocument;
 use mavid::study::{ExplainRequest, ReadSettings, Silent, VehicleGiven, explain};
 use rayon::prelude::*;
 use serde_json::Value;
+use std::path::PathBuf;
 
 use super::answers::{answer, put_down};
 use crate::maker::realistic::case::RealCase;
@@ -92,7 +93,8 @@ pub fn all(wanted: &[Wanted]) -> Vec<Judged> {
 fn one(wanted: Wanted) -> Result<(Judged, String), String> {
     let (case, flown) = RealCase::flown(wanted.seed, wanted.entries)?;
     let name = format!("mavid_blind_{}_{}_{}", std::process::id(), wanted.seed, wanted.entries.join("_"));
-    let folder = std::env::temp_dir().join(&name);
+    let kept = std::env::var_os("BLIND_KEEP").map(PathBuf::from);
+    let folder = kept.clone().unwrap_or_else(std::env::temp_dir).join(&name);
     put_down(&folder, &name, (&case, &flown));
     let request = ExplainRequest {
         logs: vec![folder.join("identify.tlog")],
@@ -103,13 +105,15 @@ fn one(wanted: Wanted) -> Result<(Judged, String), String> {
         design_next: false,
     };
     let study = explain(&request, &Silent).map_err(|error| error.to_string());
-    let _ = std::fs::remove_dir_all(&folder);
     let said = serde_json::to_value(ExplanationDocument::new(&study?)).map_err(|error| error.to_string())?;
     let truth = answer(&case, &flown[0]);
     let judged = Judged {
         axes: (axes_said(&said), flown[0].seen.where_it_is()),
         ..judged(wanted.entries, &said, &truth)
     };
+    if kept.is_none() || judged.right {
+        let _ = std::fs::remove_dir_all(&folder);
+    }
     let line = told(&judged, &case);
     Ok((judged, line))
 }

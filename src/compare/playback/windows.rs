@@ -9,6 +9,7 @@ use crate::physics::{Model, State};
 use crate::signals::{Grid, Signals, ThrustSource};
 use crate::simulate::{Plant, Push};
 use crate::vehicle::Vehicle;
+use nalgebra::Vector3;
 use std::cmp::Ordering;
 
 /// [`playback`](super::playback) window by window, for whoever needs to know how the error is spread. `push` acts beside
@@ -150,11 +151,33 @@ impl<'a> Played<'a> {
         Ok(Self { model, push, windows, commands, step_s, substeps })
     }
 
+    /// The vehicle as it was measured at an instant, with rotors that have long followed their commands.
+    pub fn plant(&self, index: usize) -> Result<Plant<'_>, CompareError> {
+        let (state, commands) = (self.windows.states.at(index), self.commands.at(index, 0.0));
+        Ok(Plant::new(self.model, self.push, &state, &commands)?)
+    }
+
+    /// Torque (body, N m) in the middle of the step from an instant to the next one, as measured; moves the effects' own states on.
+    pub fn torque_nm(&self, plant: &mut Plant, index: usize) -> Vector3<f64> {
+        plant.set_state(&self.windows.states.at(index));
+        let torque_nm = plant.evaluate(&self.commands.at(index, 0.5)).wrench.torque_nm;
+        self.step(plant, index);
+        torque_nm
+    }
+
+    /// One instant on, under the recorded commands.
+    fn step(&self, plant: &mut Plant, index: usize) {
+        for substep in 0..self.substeps {
+            let share = (f64::from(substep) + 0.5) / f64::from(self.substeps);
+            plant.step(&self.commands.at(index, share), self.step_s / f64::from(self.substeps));
+        }
+    }
+
     /// States at the instants after `start`, from `initial` there.
     pub fn window(&self, start: usize, initial: &State) -> Result<Vec<State>, CompareError> {
         let Windows { states, window, warm_up, .. } = &self.windows;
         let first = start - warm_up;
-        let mut plant = Plant::new(self.model, self.push, &states.at(first), &self.commands.at(first, 0.0))?;
+        let mut plant = self.plant(first)?;
         let mut out = Vec::with_capacity(*window);
         for index in first..start + window {
             match index.cmp(&start) {
@@ -162,10 +185,7 @@ impl<'a> Played<'a> {
                 Ordering::Equal => plant.set_state(initial),
                 Ordering::Greater => {}
             }
-            for substep in 0..self.substeps {
-                let share = (f64::from(substep) + 0.5) / f64::from(self.substeps);
-                plant.step(&self.commands.at(index, share), self.step_s / f64::from(self.substeps));
-            }
+            self.step(&mut plant, index);
             if index >= start {
                 out.push(plant.state());
             }

@@ -1,10 +1,10 @@
 //! Transfer of the identified model to another flight.
 
 use super::loading::{Loaded, loaded};
-use super::settings::{HeldOut, HoldoutSettings};
+use super::rate_law::RateLaw;
+use super::settings::{Explained, HeldOut, HoldoutSettings};
 use crate::diagnose::base::Base;
-use crate::diagnose::empirical::Empirical;
-use crate::diagnose::explanation::{Explanation, Verdict};
+use crate::diagnose::explanation::Verdict;
 use crate::diagnose::latency::{stated_lag_s, stated_uneven};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::rows::Rows;
@@ -21,6 +21,8 @@ pub(super) struct Pair {
     pub(super) after: Base,
     /// with the flight's own centre of mass, where its beginning shows another one: what is predicted with
     pub(super) loaded: Option<LoadedPair>,
+    /// how the rates of the model after move in open loop
+    pub(super) rate_law: Option<RateLaw>,
     /// parameters that were not kept, as sentences
     pub(super) notes: Vec<String>,
 }
@@ -47,11 +49,8 @@ impl Pair {
 
 /// The rigid body alone, and the model with its effects. A latency with a name is an effect: the rigid body alone then
 /// has the stated motor and the log's sampling instead.
-pub(super) fn pair(
-    (explanation, empirical): (&Explanation, Option<&Empirical>),
-    vehicle: &Vehicle,
-    command_period_s: f64,
-) -> Pair {
+pub(super) fn pair(explained: Explained, vehicle: &Vehicle, command_period_s: f64) -> Pair {
+    let Explained { explanation, empirical, rate_law } = explained;
     let mut before = explanation.search.before.base.clone();
     if explanation.named.iter().any(|named| latency_kind(named.id).is_some()) {
         before.latency = ActuationLatency {
@@ -68,12 +67,12 @@ pub(super) fn pair(
     if let Some(term) = empirical {
         after.vehicle.body.mass_kg += term.mass_change_kg;
     }
-    Pair { before, after, loaded: None, notes: Vec::new() }
+    Pair { before, after, loaded: None, rate_law, notes: Vec::new() }
 }
 
 /// The pair for a hold-out flight. Parameters that belong to the day or to a time are estimated again or reported.
 pub(super) fn carried_over(
-    explained: (&Explanation, Option<&Empirical>),
+    explained: Explained,
     (flight, trace): (&HeldOut, &Trace),
     vehicle: &Vehicle,
     settings: &HoldoutSettings,

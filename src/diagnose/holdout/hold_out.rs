@@ -4,12 +4,11 @@ use super::bootstrap::Interval;
 use super::carried::{carried_over, pair};
 use super::error::HoldoutError;
 use super::open_loop::OpenLoop;
+use super::rate_law::RateLaw;
 use super::ready::{Ready, trace_of};
-use super::settings::{HeldOut, HoldoutSettings};
+use super::settings::{Explained, HeldOut, HoldoutSettings};
 use super::shown::HoldoutFit;
 use super::{closed_loop, open_loop, other_vehicle, weak};
-use crate::diagnose::empirical::Empirical;
-use crate::diagnose::explanation::Explanation;
 use crate::vehicle::Vehicle;
 
 /// Compares the explained model with the rigid body alone on hold-out flights. `empirical` acts in addition to the
@@ -18,16 +17,17 @@ use crate::vehicle::Vehicle;
 /// # Errors
 /// [`HoldoutError`] where a flight lacks streams or is too short.
 pub fn on_holdout(
-    (explanation, empirical): (&Explanation, Option<&Empirical>),
+    explained: Explained,
     flights: &[HeldOut],
     vehicle: &Vehicle,
     settings: &HoldoutSettings,
 ) -> Result<HoldoutFit, HoldoutError> {
     let _stage = tracing::info_span!("predict", holdout = true, flights = flights.len()).entered();
+    let Explained { explanation, empirical, .. } = explained;
     let mut ready = Vec::with_capacity(flights.len());
     for flight in flights {
         let trace = trace_of(flight, vehicle, settings)?;
-        let pair = carried_over((explanation, empirical), (flight, &trace), vehicle, settings)?;
+        let pair = carried_over(explained, (flight, &trace), vehicle, settings)?;
         ready.push(Ready { flight, trace, pair });
     }
     if ready.is_empty() {
@@ -66,23 +66,57 @@ pub fn on_holdout(
     })
 }
 
-/// The same open-loop errors on the flights that were used, for comparison.
+/// Open-loop prediction on the flights that were used.
+#[derive(Debug, Clone)]
+pub struct IdentificationFit {
+    /// one entry a length of window
+    pub open_loop: Vec<OpenLoop>,
+    /// mean over the four quantities at 0.5 s of `100 (1 - after/before)`
+    pub improvement_percent: Option<Interval>,
+    /// the law of the rates that predicts instead of the torques, where these predict worse than no change
+    pub rate_law: Option<RateLaw>,
+}
+
+impl IdentificationFit {
+    /// The number of quantities that a state that does not change predicts better over 0.5 s, and whether rates or attitude are among
+    /// them.
+    fn worse(&self) -> (usize, bool) {
+        let half = self.open_loop.iter().find(|of| (of.window_s - 0.5).abs() < 1e-9);
+        let quantities = half.map_or([None; 4], OpenLoop::quantities);
+        let worse = quantities.map(|of| of.is_some_and(|of| of.is_worse_than_unchanged()));
+        (worse.iter().filter(|worse| **worse).count(), worse[2] || worse[3])
+    }
+}
+
+/// The same open-loop errors on the flights that were used, for comparison. Where a state that does not change predicts rates or
+/// attitude better, a law of the rates is fitted, and kept if this then holds for fewer quantities.
 ///
 /// # Errors
 /// [`HoldoutError`] where a flight cannot be played back.
 pub fn on_identification(
-    (explanation, empirical): (&Explanation, Option<&Empirical>),
+    explained: Explained,
     flights: &[HeldOut],
     vehicle: &Vehicle,
     settings: &HoldoutSettings,
-) -> Result<(Vec<OpenLoop>, Option<Interval>), HoldoutError> {
+) -> Result<IdentificationFit, HoldoutError> {
     let _stage = tracing::info_span!("predict", holdout = false, flights = flights.len()).entered();
     let mut ready = Vec::with_capacity(flights.len());
     for flight in flights {
         let trace = trace_of(flight, vehicle, settings)?;
-        let pair = pair((explanation, empirical), vehicle, trace.command_period_s);
+        let pair = pair(explained, vehicle, trace.command_period_s);
         ready.push(Ready { flight, trace, pair });
     }
-    let (open_loop, improvement, _) = open_loop::open_loop(&ready, empirical, settings)?;
-    Ok((open_loop, improvement))
+    let shown = |ready: &[Ready], rate_law| {
+        let (open_loop, improvement_percent, _) = open_loop::open_loop(ready, explained.empirical, settings)?;
+        Ok::<_, HoldoutError>(IdentificationFit { open_loop, improvement_percent, rate_law })
+    };
+    let plain = shown(&ready, explained.rate_law)?;
+    let (worse, rotation_worse) = plain.worse();
+    if !rotation_worse || explained.rate_law.is_some() {
+        return Ok(plain);
+    }
+    let Some(law) = open_loop::rate_law(&ready)? else { return Ok(plain) };
+    ready.iter_mut().for_each(|ready| ready.pair.rate_law = Some(law));
+    let lawful = shown(&ready, Some(law))?;
+    Ok(if lawful.worse().0 < worse { lawful } else { plain })
 }

@@ -3,15 +3,16 @@
 use super::bootstrap::{AtEnd, Blocks, Compared, Interval, Squares};
 use super::error::HoldoutError;
 use super::floor::{command_noise, state_noise};
+use super::rate_law::{EmpiricalRates, Path, RateLaw, WINDOW_S as LAW_S};
 use super::ready::{Ready, flown};
 use super::settings::HoldoutSettings;
 use crate::compare::{
     CommandNoise, CompareError, PlaybackSettings, StateNoise, WindowErrors, playback_floor, playback_windows,
-    unchanged_windows,
+    torques_along, unchanged_windows,
 };
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
-use crate::physics::{Model, PhysicsError};
+use crate::physics::{ActiveEffect, Model, PhysicsError};
 use rayon::prelude::*;
 
 /// Time from one window's start to the next one's, s. Motions that repeat must not always be met at the same place. Chosen; not
@@ -71,12 +72,39 @@ pub(super) fn open_loop(
 
 fn models_of(ready: &Ready) -> Result<Models, PhysicsError> {
     let (before, after) = ready.pair.predicting();
+    let after = predicting(after, ready.pair.rate_law)?;
     Ok(Models {
         before: flown(before)?,
-        after: flown(after)?,
+        after,
         noise: state_noise(ready.flight.signals),
         commands: command_noise(ready.flight.signals, &ready.pair.after.vehicle.propulsion),
     })
+}
+
+/// A base's model with its latency as effects, and with a law of its rates.
+fn predicting(base: &Base, rate_law: Option<RateLaw>) -> Result<Model, PhysicsError> {
+    let model = flown(base)?;
+    let Some(law) = rate_law else { return Ok(model) };
+    model.with(ActiveEffect::new(&EmpiricalRates, &law.values(&model.body.inertia_kg_m2))?)
+}
+
+fn path_of<'a>(ready: &'a Ready) -> Result<Path<'a>, HoldoutError> {
+    let (_, base) = ready.pair.predicting();
+    let (model, signals) = (flown(base)?, ready.flight.signals);
+    let torques_nm = torques_along((&model, &base.vehicle), signals, &playback_of(LAW_S))
+        .map_err(|source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source })?;
+    Ok(Path { signals, torques_nm, inertia_kg_m2: model.body.inertia_kg_m2 })
+}
+
+/// A law of the rates, fitted to flights.
+pub(super) fn rate_law(ready: &[Ready]) -> Result<Option<RateLaw>, HoldoutError> {
+    let paths: Vec<Path> = ready.par_iter().map(path_of).collect::<Result<_, HoldoutError>>()?;
+    Ok(RateLaw::fit(&paths, STRIDE_S))
+}
+
+// grids are seldom faster than 4 ms: one step an instant
+fn playback_of(window_s: f64) -> PlaybackSettings {
+    PlaybackSettings { window_s, stride_s: STRIDE_S, step_s: 0.004, ..PlaybackSettings::default() }
 }
 
 /// One flight's windows, as predicted by each.
@@ -171,9 +199,7 @@ fn one_length(
     empirical: Option<&Empirical>,
     settings: &HoldoutSettings,
 ) -> Result<(OpenLoop, Option<Interval>, usize), HoldoutError> {
-    // grids are seldom faster than 4 ms: one step an instant
-    let playback =
-        PlaybackSettings { window_s, stride_s: STRIDE_S, step_s: 0.004, ..PlaybackSettings::default() };
+    let playback = playback_of(window_s);
     let blocks = Blocks::new(4, settings.block_s);
     let mut sums = Sums { blocks, floor: [(0.0, 0); 4], at_end: [[0.0; 3]; 4], windows: 0 };
     for (index, (ready, models)) in ready.iter().zip(models).enumerate() {

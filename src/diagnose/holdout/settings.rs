@@ -1,6 +1,9 @@
-//! Settings and flights of the hold-out comparison.
+//! Settings, models and flights of the hold-out comparison.
 
+use super::rate_law::RateLaw;
+use crate::diagnose::empirical::Empirical;
 use crate::diagnose::explain::ExplainSettings;
+use crate::diagnose::explanation::Explanation;
 use crate::recording::Recording;
 use crate::signals::Signals;
 
@@ -28,6 +31,25 @@ impl Default for HoldoutSettings {
             seed: 1,
             same_flight: false,
         }
+    }
+}
+
+/// What predicts: an explanation, and what stands in where no mechanism serves.
+#[derive(Debug, Clone, Copy)]
+pub struct Explained<'a> {
+    /// the rigid body and the better model
+    pub explanation: &'a Explanation,
+    /// a force beside the better model
+    pub empirical: Option<&'a Empirical>,
+    /// how the rates of the better model move in open loop
+    pub rate_law: Option<RateLaw>,
+}
+
+impl<'a> Explained<'a> {
+    /// With nothing beside its effects.
+    #[must_use]
+    pub fn of(explanation: &'a Explanation) -> Self {
+        Self { explanation, empirical: None, rate_law: None }
     }
 }
 

@@ -8,9 +8,10 @@ use super::super::trace::Trace;
 use super::gust::{GustFound, gust};
 use super::localisation::Localisation;
 use super::redness::{
-    LEAST_TORQUE, Quantity, Redness, beside_harmonics, red_fit, red_quantities, redness, scale, weight_n,
+    Quantity, Redness, beside_harmonics, red_fit, red_quantities, redness, scale, weight_n,
 };
 use super::view::{Followed, View};
+use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_TORQUE};
 use nalgebra::Vector3;
 
 /// A slow trend.
@@ -72,6 +73,21 @@ impl Aperiodic {
         }
     }
 
+    /// Emits what is certain as tracing events.
+    pub(in crate::diagnose) fn emit(&self) {
+        for red in self.redness.iter().filter(|red| red.certain) {
+            let Redness { of, statistic, rms, correlation_s, relative, .. } = red;
+            tracing::debug!(?of, statistic, rms, correlation_s, relative, "red noise left");
+        }
+        if let Some(Trend { of, per_min, z, relative, .. }) = self.trend.filter(|trend| trend.certain) {
+            tracing::debug!(?of, per_min, z, relative, "a trend left");
+        }
+        if let Some(StateLack { channel, state, p_value, rms, .. }) = self.state.filter(|state| state.certain)
+        {
+            tracing::debug!(channel, ?state, p_value, rms, "left along a state");
+        }
+    }
+
     /// Whether a significant result remains that is not a gust.
     #[must_use]
     pub fn is_lacking(&self) -> bool {
@@ -86,16 +102,12 @@ impl Aperiodic {
 /// Least normal deviate of a trend. It is above that of a name, because eight trends are tried and nothing is exactly
 /// constant. Chosen; not measured by itself.
 const TREND_Z: f64 = 5.5;
-/// Least change over a flight, as a share of the weight. Chosen; not measured.
-const TREND_G: f64 = 0.005;
 /// Likelihood ratio beyond which a force drifts by itself. Chosen; not measured.
 const WANDERING: f64 = 12.0;
 /// Time around a mass change that is left out, s. Chosen; not measured.
 const CHANGE_S: f64 = 2.5;
 /// p-value below which the residual depends on a state. Chosen; not measured by itself.
 const STATE_P: f64 = 1e-6;
-/// Least force that depends on a state, as a share of the weight. Chosen; not measured.
-const STATE_G: f64 = 0.002;
 
 /// Tests the residual of a fit.
 #[must_use]
@@ -172,7 +184,7 @@ fn trend(traces: &[Trace], fitted: &Fitted, view: &View) -> Option<Trend> {
             let evidence = fitted.weighted.test(&[column])?;
             let per_min = evidence.theta[0];
             let relative = per_min.abs() * longest_s / 60.0 / scale(fitted, of).max(f64::MIN_POSITIVE);
-            let least = if matches!(of, Quantity::Torque(_)) { LEAST_TORQUE } else { TREND_G };
+            let least = if matches!(of, Quantity::Torque(_)) { UNNAMED_TORQUE } else { UNNAMED_FORCE };
             let certain = evidence.z > TREND_Z && relative > least;
             Some(Trend { of, per_min, std_per_min: evidence.std(0), z: evidence.z, relative, certain })
         })
@@ -215,13 +227,17 @@ fn state_lack(view: &View, fitted: &Fitted, located: &Localisation) -> Option<St
     if view.flights.iter().any(|(_, period_s)| period_s.is_some()) {
         return None;
     }
-    let tested: Vec<_> = located.follows.iter().filter(|follow| !follow.state.is_slow()).collect();
+    let tested: Vec<_> = located
+        .follows
+        .iter()
+        .filter(|follow| !follow.state.is_slow() && !follow.state.is_commanded())
+        .collect();
     let count = tested.len() as f64;
     let least = |channel: usize| {
         if channel < 3 {
-            STATE_G * weight_n(fitted)
+            UNNAMED_FORCE * weight_n(fitted)
         } else {
-            LEAST_TORQUE * fitted.rows.torque_rms[channel - 3]
+            UNNAMED_TORQUE * fitted.rows.torque_rms[channel - 3]
         }
     };
     tested

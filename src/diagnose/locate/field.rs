@@ -7,6 +7,7 @@
 use super::super::channels::{AXES, CHANNELS, Channels, channels};
 use super::super::fit::Fitted;
 use super::super::trace::Trace;
+use crate::diagnose::materiality::UNNAMED_FORCE;
 use crate::stats::quantile;
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
@@ -68,8 +69,6 @@ const LEAST_STRETCHES: usize = 8;
 const TRIED: [(usize, usize); 8] = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1), (0, 2), (1, 2)];
 /// Least share of the residual energy. Chosen; not measured.
 const FIELD_GAIN: f64 = 0.01;
-/// Least height of the bump, as a share of the weight. Chosen; not measured.
-const FIELD_G: f64 = 0.004;
 /// Normal deviate beyond which the strength of an effect depends on the place. Chosen; not measured.
 const UNEVEN_Z: f64 = 5.5;
 /// Relative change of the strength beyond which it depends on the place. Chosen; not measured.
@@ -102,7 +101,7 @@ pub fn field_test(
     let (where_m, extent_m, force_n) =
         bump(traces, after, (component, along), ranges[along]).unwrap_or((0.0, 0.0, 0.0));
     let body = &after.base.vehicle;
-    let least_n = FIELD_G * body.body.mass_kg * body.gravity_m_s2;
+    let least_n = UNNAMED_FORCE * body.body.mass_kg * body.gravity_m_s2;
     let certain = evidence.z > FIELD_Z
         && evidence.gain >= FIELD_GAIN
         && force_n.abs() >= least_n

@@ -37,7 +37,9 @@ pub(super) fn gust(view: &View, fitted: &Fitted, redness: &[Redness]) -> Option<
     let each = x.statistic.min(y.statistic) > 0.5 * RED_STATISTIC;
     // no wind where the velocity's error alone makes as much
     let each = each && axes.iter().all(|red| red.rms > CONTRADICTED * red.of_velocity_n);
-    if !(alike && each && (x.certain || y.certain)) {
+    // how much wind it is decides whether it matters, not how much force
+    let certain = x.statistic.max(y.statistic) > RED_STATISTIC;
+    if !(alike && each && certain) {
         return None;
     }
     let (drag, drag_std) = lateral_drag(view, fitted)?;

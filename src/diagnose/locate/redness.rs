@@ -4,6 +4,7 @@ use super::super::fit::Fitted;
 use super::lateral_drag::{axial_drag_n_s_m, lateral_drag};
 use super::spectrum::{Ordinate, VELOCITY_SCALE_S2, noise_shapes, periodogram};
 use super::view::View;
+use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_TORQUE};
 use crate::stats::{Whittle, whittle};
 use std::f64::consts::TAU;
 
@@ -53,12 +54,16 @@ pub(super) fn redness(view: &View, fitted: &Fitted, of: Quantity, series: &[f64]
     let (correlation_s, fit, statistic) = red_fit(view, &ordinates)?;
     let rms = fit.coefficients[2].sqrt();
     let relative = rms / scale(fitted, of).max(f64::MIN_POSITIVE);
-    let least = if matches!(of, Quantity::Torque(_)) { LEAST_TORQUE } else { RED_G };
+    let least = if matches!(of, Quantity::Torque(_)) { UNNAMED_TORQUE } else { UNNAMED_FORCE };
     let of_velocity_n = force_of_velocity_error_n(view, fitted, (of, correlation_s));
     let of_jitter =
         matches!(of, Quantity::Torque(_)) && correlation_s < OF_JITTER * fitted.base.latency.lag_s;
-    let certain =
-        statistic > RED_STATISTIC && relative > least && rms > CONTRADICTED * of_velocity_n && !of_jitter;
+    let of_noise = matches!(of, Quantity::World(_)) && correlation_s < LEAST_S;
+    let certain = !of_noise
+        && statistic > RED_STATISTIC
+        && relative > least
+        && rms > CONTRADICTED * of_velocity_n
+        && !of_jitter;
     Some(Redness { of, statistic, rms, correlation_s, relative, of_velocity_n, certain })
 }
 
@@ -153,16 +158,14 @@ pub(super) const CONTRADICTED: f64 = 2.0;
 /// Least likelihood ratio of a red spectrum in the difference of the two measurements of force. Chosen; not measured.
 const CONTRADICTION_STATISTIC: f64 = 10.0;
 
-/// Least rms of a red force, as a share of the weight. Chosen; not measured.
-const RED_G: f64 = 0.002;
-
 /// A torque whose correlation time is shorter than this many time constants of the rotors comes from commands between
 /// two samples. With it, 0 of 10 simulated flights of `configs/crazyflie.toml` without effects were unexplained; 6 of
 /// 20 without it.
 const OF_JITTER: f64 = 2.0;
 
-/// Least torque that counts, as a share of the rms of the torque. Chosen; not measured.
-pub(super) const LEAST_TORQUE: f64 = 0.1;
+/// A horizontal force whose correlation time is shorter comes from the sensors' filters and from the estimator: air moves more slowly, s.
+/// Chosen; not measured.
+const LEAST_S: f64 = 0.3;
 
 /// Correlation times that are tried, s: from the kernel's width to twenty seconds.
 const TIMES_S: [f64; 16] =

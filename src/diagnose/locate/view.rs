@@ -78,6 +78,11 @@ impl Followed {
         }
     }
 
+    /// Whether a state is of the commands: their own noise is in the residual as well, which then follows them.
+    pub(super) fn is_commanded(self) -> bool {
+        matches!(self, Self::Thrust | Self::ThrustRate | Self::Rotor(_))
+    }
+
     /// Whether a state is slow: each value occurs once in a flight, so periods are not replicates of it.
     pub(super) fn is_slow(self) -> bool {
         matches!(self, Self::Time | Self::Voltage)

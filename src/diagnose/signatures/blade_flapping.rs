@@ -1,14 +1,22 @@
 //! Signature: the rotors' hub moment.
 
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Role, Signature};
+use crate::diagnose::signature::{EffectTerm, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::BladeFlapping;
+
+/// Height over the centre of mass at which an ordinary drag may act, m: nobody knows a vehicle's centre of mass better. Chosen; not
+/// measured.
+const ORDINARY_HEIGHT_M: f64 = 0.003;
+
+/// Airspeed at which a drag is taken, m/s.
+const ABOUT_M_S: f64 = 1.0;
 
 /// A moment at the rotors' hubs by the airspeed across their axes.
 pub static SIGNATURE: Signature = Signature {
     needs: &[Need::Velocity],
     forms: |_| vec![SIGNATURE.form(&[0.0], &[0])],
+    naming: Naming { is_ordinary, ..Naming::PLAIN },
     role: Role { of_air: true, ..Role::NONE },
     ..Signature::of(
         &BladeFlapping,
@@ -24,3 +32,13 @@ pub static SIGNATURE: Signature = Signature {
         },
     )
 };
+
+/// A moment that the drag of the model makes a little above or below the centre of mass.
+fn is_ordinary(term: &EffectTerm, all: &[EffectTerm]) -> bool {
+    let drag_n_s_m = |of: &EffectTerm| {
+        let slope = of.signature.role.lateral_slope?;
+        Some(slope(ABOUT_M_S) * of.values[0].max(of.values[1]))
+    };
+    let drag_n_s_m: f64 = all.iter().filter_map(drag_n_s_m).sum();
+    term.values[0].abs() < ORDINARY_HEIGHT_M * drag_n_s_m
+}

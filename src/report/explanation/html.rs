@@ -4,7 +4,8 @@ use super::answer::answer;
 use super::figures;
 use super::hold_out::hold_out;
 use super::text::{after, scale};
-use crate::diagnose::{Empirical, NO_LATENCY, Named, Verdict, called, clause};
+use crate::diagnose::holdout::RateLaw;
+use crate::diagnose::{Empirical, NO_LATENCY, Named, Slight, Verdict, called, clause};
 use crate::report::chart::inline;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::{chance, significant, spoken, with_error};
@@ -97,7 +98,9 @@ fn found(study: &ExplainStudy) -> Markup {
     };
     let content = html! {
         @for named in study.effects.iter().chain(&study.closest) { (effect(study, named)) }
+        @if !study.explanation.slight.is_empty() { (traces(study)) }
         @if let Some(term) = &study.empirical { (empirical(term)) }
+        @if let Some(law) = &study.rate_law { (rate_law(law)) }
     };
     section(heading, &content)
 }
@@ -135,6 +138,33 @@ fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
     }
 }
 
+fn traces(study: &ExplainStudy) -> Markup {
+    let percent =
+        |of: Option<f64>| number(of.map_or_else(|| "-".to_owned(), |of| significant(100.0 * of, 2)));
+    let row = |of: &Slight| {
+        let sizes = of.effect.parameters.iter().map(|p| {
+            let size = with_error(p.value, p.std);
+            format!("{} {size} {}", p.name, spoken(p.unit))
+        });
+        let materiality = of.materiality.as_ref();
+        vec![
+            text(called(of.effect.id)),
+            text(sizes.collect::<Vec<_>>().join(", ")),
+            number(format!("{:.1}", of.effect.strength.z)),
+            percent(materiality.map(|of| of.force)),
+            percent(materiality.map(|of| of.torque)),
+            percent(materiality.map(|of| of.misfit)),
+        ]
+    };
+    let rows: Vec<Vec<Cell>> = study.explanation.slight.iter().map(row).collect();
+    let head = ["effect", "size", "z|", "% of the weight|", "% of the torque|", "% of the misfit|"];
+    table(
+        "Traces: certain, but too small to matter, and no names. Slow errors of sensors and estimators make as much",
+        &head,
+        &rows,
+    )
+}
+
 fn empirical(term: &Empirical) -> Markup {
     let what = format!(
         "An empirical term, not a mechanism: a force along {}, linear between the knots and zero outside of the flown \
@@ -148,6 +178,20 @@ fn empirical(term: &Empirical) -> Markup {
     let rows: Vec<Vec<Cell>> = term.knots.iter().zip(&term.force_n).map(row).collect();
     let at = format!("{} ({})|", term.along.name(), term.along.unit());
     html! { (paragraph(&what)) (table("Empirical force", &[&at, "x (N)|", "y (N)|", "z (N)|"], &rows)) }
+}
+
+fn rate_law(law: &RateLaw) -> Markup {
+    let what = "An empirical law, not a mechanism, for open-loop predictions: over 0.5 s the torques of the model predict these \
+                rates or attitudes worse than no change at all. A share of them acts, and the rates decay as the controller \
+                lets them: it holds for this vehicle under this controller.";
+    let row = |axis: usize| {
+        let values = [law.share[axis], law.decay_1_s[axis], law.offset_rad_s2[axis]];
+        let values = values.map(|value| number(significant(value, 3)));
+        std::iter::once(text(["x", "y", "z"][axis])).chain(values).collect()
+    };
+    let rows: Vec<Vec<Cell>> = (0..3).map(row).collect();
+    let head = ["about body", "share of the torque|", "decay (1/s)|", "constant (rad/s^2)|"];
+    html! { (paragraph(what)) (table("Empirical law of the rates", &head, &rows)) }
 }
 
 fn rigid_body(study: &ExplainStudy) -> Markup {

@@ -2,7 +2,8 @@
 
 use super::answer::answer;
 use super::fit_json::{FitValues, fit_values};
-use crate::diagnose::{Along, CHANNEL_NAMES, Named};
+use crate::diagnose::holdout::RateLaw;
+use crate::diagnose::{Along, CHANNEL_NAMES, Materiality, Named, NamedParameter, Slight};
 use crate::note::Note;
 use crate::report::thrust_source::thrust_name;
 use crate::report::value::{Thrust, thrust};
@@ -17,8 +18,11 @@ pub struct ExplanationDocument {
     verdict: &'static str,
     answer: String,
     effects: Vec<EffectValue>,
+    traces: Vec<TraceValue>,
     closest: Vec<EffectValue>,
     empirical: Option<EmpiricalValue>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rate_law: Option<RateLawValue>,
     localisation: Located,
     #[serde(rename = "fit")]
     prediction: FitValues,
@@ -47,6 +51,21 @@ struct EffectValue {
     distinguishability: BTreeMap<&'static str, Option<f64>>,
 }
 
+/// Certain, and too small to matter.
+#[derive(Debug, Clone, Serialize)]
+struct TraceValue {
+    id: &'static str,
+    parameters: Vec<ParameterOf>,
+    z: f64,
+    /// of its own part, root mean square
+    #[serde(skip_serializing_if = "Option::is_none")]
+    of_weight_percent: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    of_torque_percent: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    of_misfit_percent: Option<f64>,
+}
+
 #[derive(Debug, Clone, Serialize)]
 struct ParameterOf {
     name: &'static str,
@@ -72,6 +91,15 @@ struct EmpiricalValue {
     force_n: Vec<[f64; 3]>,
     frame: &'static str,
     gain_percent: f64,
+}
+
+/// How the rates move in open loop, body x y z.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct RateLawValue {
+    /// of the model's torque that acts, 0..1
+    share: [f64; 3],
+    decay_1_s: [f64; 3],
+    offset_rad_s2: [f64; 3],
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -171,8 +199,10 @@ impl ExplanationDocument {
             verdict: study.verdict().name(),
             answer: answer(study),
             effects: effect_values(study, &study.effects),
+            traces: study.explanation.slight.iter().map(TraceValue::from).collect(),
             closest: effect_values(study, &study.closest),
             empirical: empirical(study),
+            rate_law: study.rate_law.map(RateLawValue::from),
             localisation: study.located.clone(),
             prediction: fit_values(study),
             parameters: study
@@ -205,11 +235,7 @@ fn effect_values(study: &ExplainStudy, effects: &[Named]) -> Vec<EffectValue> {
         .map(|effect| EffectValue {
             id: effect.id,
             sentence: format!("{}.", crate::diagnose::clause(effect, study.vehicle())),
-            parameters: effect
-                .parameters
-                .iter()
-                .map(|p| ParameterOf { name: p.name, value: p.value, std: p.std, unit: p.unit })
-                .collect(),
+            parameters: effect.parameters.iter().map(ParameterOf::from).collect(),
             evidence: EvidenceValue {
                 z: effect.strength.z,
                 gain_percent: 100.0 * effect.strength.gain,
@@ -226,6 +252,26 @@ fn effect_values(study: &ExplainStudy, effects: &[Named]) -> Vec<EffectValue> {
         .collect()
 }
 
+impl From<&Slight> for TraceValue {
+    fn from(slight: &Slight) -> Self {
+        let percent = |of: fn(&Materiality) -> f64| slight.materiality.as_ref().map(|m| 100.0 * of(m));
+        Self {
+            id: slight.effect.id,
+            parameters: slight.effect.parameters.iter().map(ParameterOf::from).collect(),
+            z: slight.effect.strength.z,
+            of_weight_percent: percent(|of| of.force),
+            of_torque_percent: percent(|of| of.torque),
+            of_misfit_percent: percent(|of| of.misfit),
+        }
+    }
+}
+
+impl From<&NamedParameter> for ParameterOf {
+    fn from(&NamedParameter { name, value, std, unit }: &NamedParameter) -> Self {
+        Self { name, value, std, unit }
+    }
+}
+
 fn empirical(study: &ExplainStudy) -> Option<EmpiricalValue> {
     let term = study.empirical.as_ref()?;
     Some(EmpiricalValue {
@@ -239,6 +285,16 @@ fn empirical(study: &ExplainStudy) -> Option<EmpiricalValue> {
         },
         gain_percent: 100.0 * term.gain,
     })
+}
+
+impl From<RateLaw> for RateLawValue {
+    fn from(law: RateLaw) -> Self {
+        Self {
+            share: law.share.into(),
+            decay_1_s: law.decay_1_s.into(),
+            offset_rad_s2: law.offset_rad_s2.into(),
+        }
+    }
 }
 
 fn moved(study: &ExplainStudy) -> BTreeMap<&'static str, Moved> {

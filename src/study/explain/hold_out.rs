@@ -4,13 +4,19 @@ use super::result::ExplainStudy;
 use super::shown_on::ShownOn;
 use crate::diagnose::Empirical;
 use crate::diagnose::holdout::{
-    HeldOut, HoldoutError, HoldoutSettings, Split, differing, on_holdout, on_identification,
-    split_last_periods,
+    Explained, HeldOut, HoldoutError, HoldoutSettings, IdentificationFit, Split, differing, on_holdout,
+    on_identification, split_last_periods,
 };
 use crate::note::{About, Note};
 use crate::signals::{Signals, clock_offset};
 use crate::study::flights::{Prepared, shared};
 use crate::study::{Predicted, StudyError};
+
+/// What a law of the rates is.
+const BY_RATE_LAW: &str = "over 0.5 s these flights' body rates or attitude are predicted better by no change at all than by the torques \
+                           of the model: calm flight under a controller says little of them. Open-loop predictions use an \
+                           empirical law of the rates instead (\"rate_law\"): it holds for this vehicle under this \
+                           controller, it is no property of the vehicle, and model.toml does not hold it";
 
 /// A flight that was used, or a part of it, shows nothing as a hold-out.
 pub(super) fn refuse_shared(flights: &Prepared, held: &Prepared) -> Result<(), StudyError> {
@@ -65,9 +71,11 @@ impl ExplainStudy {
         };
         let used = flights.held_out();
         let settings = HoldoutSettings::default();
-        match on_identification((&self.explanation, self.empirical.as_ref()), &used, vehicle, &settings) {
-            Ok((open_loop, improvement_percent)) => {
+        match on_identification(self.explained(), &used, vehicle, &settings) {
+            Ok(IdentificationFit { open_loop, improvement_percent, rate_law }) => {
                 self.identify = Some(Predicted { open_loop, improvement_percent });
+                self.rate_law = rate_law;
+                self.notes.extend(rate_law.map(|_| Note::warning(About::Estimate, BY_RATE_LAW)));
             }
             Err(error) => {
                 self.notes.push(Note::warning(About::Estimate, format!("open-loop prediction: {error}")));
@@ -88,6 +96,12 @@ impl ExplainStudy {
         }
     }
 
+    /// What predicts.
+    fn explained(&self) -> Explained<'_> {
+        let (explanation, empirical) = (&self.explanation, self.empirical.as_ref());
+        Explained { explanation, empirical, rate_law: self.rate_law }
+    }
+
     /// The same on flights that were not used, or on the part held back.
     pub(super) fn show_held_out(&mut self, held: &Prepared, back: Option<&Signals>, shown_on: ShownOn) {
         let mut flights = held.held_out();
@@ -103,8 +117,7 @@ impl ExplainStudy {
     fn shown_on(&mut self, flights: &[HeldOut], shown_on: ShownOn) -> Result<(), HoldoutError> {
         let same_flight = matches!(shown_on, ShownOn::HeldBack { .. });
         let settings = HoldoutSettings { same_flight, ..HoldoutSettings::default() };
-        let model = (&self.explanation, self.empirical.as_ref());
-        let shown = on_holdout(model, flights, &self.given.vehicle, &settings)?;
+        let shown = on_holdout(self.explained(), flights, &self.given.vehicle, &settings)?;
         let other = shown.other_vehicle.iter();
         self.notes.extend(other.map(|other| Note::warning(About::HoldOut, other.reason.clone())));
         self.holdout = Some(Predicted::from(&shown));

@@ -5,7 +5,7 @@ use super::predicted::Predicted;
 use super::readers::for_readers;
 use super::shown_on::ShownOn;
 use crate::diagnose::experiment::{NextError, NextFlight};
-use crate::diagnose::holdout::{Difference, HoldoutFit};
+use crate::diagnose::holdout::{Difference, HoldoutFit, RateLaw};
 use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::{
     AXES, CHANNEL_NAMES, CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, LatencyFinding, Named,
@@ -62,6 +62,8 @@ pub struct ExplainStudy {
     pub shown: Option<HoldoutFit>,
     /// a term without a mechanism, where none serves
     pub empirical: Option<Empirical>,
+    /// a law of the rates for open-loop predictions, where the torques predict worse than no change
+    pub rate_law: Option<RateLaw>,
     /// which flights those are
     pub shown_on: ShownOn,
     /// where simulation and recording differ
@@ -133,6 +135,7 @@ impl ExplainStudy {
             holdout: None,
             shown: None,
             empirical: None,
+            rate_law: None,
             shown_on: ShownOn::Nothing { reason: "no hold-out".to_owned() },
             notes: Vec::new(),
             differing: None,

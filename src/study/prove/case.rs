@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::folders::{VEHICLE, logs};
 use crate::config::read_vehicle;
-use crate::diagnose::holdout::{HoldoutFit, HoldoutSettings, on_holdout};
+use crate::diagnose::holdout::{Explained, HoldoutFit, HoldoutSettings, on_holdout};
 use crate::diagnose::{Empirical, ExplainSettings, Explanation, Named, explain};
 use crate::signals::{ConditionSettings, ThrustPreference};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, shared};
@@ -136,7 +136,7 @@ fn explained(folder: &Path, sha256: &mut Vec<String>) -> Result<Found, StudyErro
     if held.is_empty() {
         return Ok((explanation, empirical, None));
     }
-    let model = (&explanation, empirical.as_ref());
+    let model = Explained { explanation: &explanation, empirical: empirical.as_ref(), rate_law: None };
     let shown = on_holdout(model, &held.held_out(), &vehicle, &HoldoutSettings::default())
         .map_err(|error| refuse(&error))?;
     Ok((explanation, empirical, Some(shown)))
