@@ -10,7 +10,7 @@ use std::process::Command;
 use mavid::config::load_vehicle;
 use mavid::inspect::{Inspection, inspect, inspect_recording};
 use mavid::log::{self, Input, Loss, OpenOptions};
-use mavid::recording::Quantity;
+use mavid::recording::{Quantity, Stream};
 use mavid::vehicle::Vehicle;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -176,6 +176,58 @@ fn stray_stamps_lengthen_nothing_and_are_counted() {
     // of topics that are read
     let left_out: u64 = found.losses[0].split(' ').next().unwrap().parse().unwrap();
     assert!((1..=strays).contains(&left_out), "{:?}", found.losses);
+}
+
+/// Adds a quarter of an hour to the stamps of some messages.
+fn later(messages: &mut [Vec<u8>], which: &[usize], stamp_at: usize) {
+    for index in which {
+        let stamp = &mut messages[*index][stamp_at..stamp_at + 8];
+        let us = u64::from_le_bytes(stamp.try_into().unwrap()) + 1_000_000_000;
+        stamp.copy_from_slice(&us.to_le_bytes());
+    }
+}
+
+#[test]
+fn stamps_that_are_minutes_ahead_lengthen_nothing_and_a_pause_costs_nothing() {
+    let open =
+        |bytes: &[u8]| log::open(Input::Bytes { name: "bytes", bytes }, &OpenOptions::default()).unwrap();
+    let strays = |count| vec![Loss::StrayStamps { count }];
+    let (head, sound) = minute();
+    let whole = std::fs::read(fixture("px4_flight.ulg")).unwrap();
+    let all: Vec<Vec<u8>> = messages(&whole).into_iter().map(<[u8]>::to_vec).collect();
+    let is_sensor = |message: &&Vec<u8>| message[2] == b'A' && message[6..] == *b"sensor_combined";
+    let id = all.iter().find(is_sensor).unwrap()[4..6].to_vec();
+    let of_sensor: Vec<usize> =
+        (0..all.len()).filter(|index| all[*index][2] == DATA && all[*index][3..5] == id).collect();
+    let span_s = inspected(&whole).clock.span_s;
+    // here and there, one behind the other, and at the end
+    for which in [[500, 2000, 4000], [3000, 3001, 3002], [100, 4500, 5999]] {
+        let mut damaged = sound.clone();
+        later(&mut damaged, &which, 3);
+        let bytes = [head.clone(), damaged.concat()].concat();
+        assert_eq!(open(&bytes).report.losses, strays(3));
+        let found = inspected(&bytes).clock.span_s;
+        assert!(found.0.abs() < 1e-9 && (found.1 - 59.99).abs() < 0.02, "{found:?}");
+    }
+    for which in [[50, 200, 400], [300, 301, 302]] {
+        let mut damaged = all.clone();
+        later(&mut damaged, &which.map(|index| of_sensor[index]), 5);
+        let bytes = [&whole[..HEADER], &damaged.concat()].concat();
+        assert_eq!(open(&bytes).report.losses, strays(3));
+        assert_eq!(inspected(&bytes).clock.span_s, span_s);
+    }
+    // everything from here on
+    let mut paused = sound.clone();
+    later(&mut paused, &(3000..6000).collect::<Vec<_>>(), 3);
+    let opened = open(&[head, paused.concat()].concat());
+    let streams: Vec<usize> = opened.recording.streams.values().map(Stream::len).collect();
+    assert_eq!((opened.report.losses, streams), (vec![], vec![6000, 6000]));
+    let mut paused = all.clone();
+    let later_ones: Vec<usize> =
+        (all.len() / 2..all.len() - 1).filter(|index| all[*index][2] == DATA).collect();
+    later(&mut paused, &later_ones, 5);
+    let opened = open(&[&whole[..HEADER], &paused.concat()].concat());
+    assert_eq!(opened.report.losses, []);
 }
 
 #[test]

@@ -10,8 +10,8 @@ use std::sync::Arc;
 
 use mavid::autopilot::VehicleKind;
 use mavid::log::ulog::{Message, UlogReader, UlogReport};
-use mavid::log::{self, Input, LogError, Loss, OpenOptions, Opened};
-use mavid::recording::{Quantity, Stream, StreamKey};
+use mavid::log::{self, Input, LogError, Loss, OpenOptions, Opened, ReadReport};
+use mavid::recording::{Quantity, Recording, RecordingBuilder, Stream, StreamKey};
 use serde_json::Value;
 
 /// What the values of one field are.
@@ -514,4 +514,69 @@ fn the_damaged_logs_that_others_keep_are_read_and_their_loss_said() {
     // more than another reader finds: only what the damage covers is gone
     let found: u64 = messages(&read("derived_corrupt.ulg")).values().sum();
     assert!(found > 6700, "{found}");
+}
+
+/// A recording to the last bit, and what was met.
+fn bits(recording: &Recording, report: &ReadReport) -> (Vec<(StreamKey, Vec<u64>)>, String) {
+    let of = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    let stream =
+        |(key, stream): (&StreamKey, &Stream)| (*key, [of(&stream.time_s), of(&stream.values)].concat());
+    let Recording { parameters, parameter_changes, clock_resets_s, estimator_resets_s, texts, .. } =
+        recording;
+    let rest = format!(
+        "{parameters:?} {parameter_changes:?} {clock_resets_s:?} {estimator_resets_s:?} {texts:?} {report:?}"
+    );
+    (recording.streams.iter().map(stream).collect(), rest)
+}
+
+/// That the log as a whole is what its messages say one by one.
+fn is_read_whole(name: &str, bytes: &[u8]) {
+    let input = Input::Bytes { name, bytes };
+    let opened = log::open(input, &OpenOptions::default()).unwrap();
+    let mut builder = RecordingBuilder::new();
+    let mut report = log::stream(input, &OpenOptions::default(), &mut |_, event| builder.add(event)).unwrap();
+    let (recording, repairs) = builder.finish();
+    report.streams = repairs;
+    assert_eq!(bits(&opened.recording, &opened.report), bits(&recording, &report), "{name}");
+}
+
+#[test]
+fn a_log_that_is_read_whole_is_what_its_messages_say_one_by_one() {
+    let flight = flight();
+    is_read_whole("flight", &flight);
+    is_read_whole("two", &[flight.clone(), flight.clone()].concat());
+    let places = places(&flight);
+    let between: Vec<usize> = places.iter().copied().filter(|place| *place > flight.len() / 3).collect();
+    let mut numbers = Numbers(5);
+    for round in 0..60 {
+        let (name, fault) = FAULTS[round % FAULTS.len()];
+        let mut damaged = flight.clone();
+        fault(&mut numbers, &mut damaged, &between);
+        is_read_whole(name, &damaged);
+    }
+    // half of a topic's messages under another number, and a parameter that changes among them
+    let name = b"vehicle_attitude";
+    let is_named = |at: &&usize| flight[**at + 2] == b'A' && flight[**at + 6..].starts_with(name);
+    let subscribed = *places.iter().find(is_named).unwrap();
+    let (id, length) = ([flight[subscribed + 4], flight[subscribed + 5]], 3 + 3 + name.len());
+    let first = *places.iter().find(|at| flight[**at + 2] == b'D').unwrap();
+    let mut both = flight[..first].to_vec();
+    let mut again = flight[subscribed..subscribed + length].to_vec();
+    again[4..6].copy_from_slice(&500_u16.to_le_bytes());
+    both.extend(again);
+    for (index, pair) in places.windows(2).filter(|pair| pair[0] >= first).enumerate() {
+        let mut message = flight[pair[0]..pair[1]].to_vec();
+        if message[2] == b'D' && message[3..5] == id && index % 2 == 0 {
+            message[3..5].copy_from_slice(&500_u16.to_le_bytes());
+        }
+        both.extend(message);
+        if index % 1000 == 999 {
+            let changed = [b"\x11\x00P\x0cfloat A_GAIN".as_slice(), &(index as f32).to_le_bytes()].concat();
+            both.extend(changed);
+        }
+    }
+    is_read_whole("two numbers", &both);
+    let input = Input::Bytes { name: "two numbers", bytes: &both };
+    let opened = log::open(input, &OpenOptions::default()).unwrap();
+    assert!(!opened.recording.parameter_changes.is_empty());
 }

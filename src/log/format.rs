@@ -4,7 +4,7 @@ use super::error::LogError;
 use super::input::Input;
 use super::options::OpenOptions;
 use super::report::ReadReport;
-use crate::recording::Event;
+use crate::recording::{Event, RecordingBuilder};
 
 /// A format of logs: how a file of it is told from others, and how it is read.
 #[derive(Debug, Clone, Copy)]
@@ -20,7 +20,12 @@ pub struct Format {
     /// reads a log and gives each piece of the flight to the sink as it comes, in memory that does not grow with the log.
     /// What the file holds and cannot be given is counted in the report
     pub read: fn(&Input<'_>, &OpenOptions, &mut Sink<'_>) -> Result<ReadReport, LogError>,
+    /// adds the same to a recording, sooner; `None` where `read` does it
+    pub read_whole: Option<ReadWhole>,
 }
+
+/// Reads a log into a recording.
+pub type ReadWhole = fn(&Input<'_>, &OpenOptions, &mut RecordingBuilder) -> Result<ReadReport, LogError>;
 
 /// How sure a format is that a file is of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -45,7 +45,7 @@ impl<'a> Input<'a> {
     ///
     /// # Errors
     /// The file cannot be opened.
-    pub fn open(&self) -> Result<Box<dyn Read + 'a>, LogError> {
+    pub fn open(&self) -> Result<Box<dyn Read + Send + 'a>, LogError> {
         match *self {
             Self::File(path) => match File::open(path) {
                 Ok(file) => Ok(Box::new(file)),

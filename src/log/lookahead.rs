@@ -16,12 +16,18 @@ pub(super) struct LookAhead<R> {
     filled: usize,
     ended: bool,
     base: u64,
+    chunk_bytes: usize,
 }
 
 impl<R: Read> LookAhead<R> {
     /// At the first byte of `from`, which needs no buffering of its own.
     pub(super) fn new(from: R) -> Self {
-        Self { from, buffer: Vec::new(), at: 0, filled: 0, ended: false, base: 0 }
+        Self::with_chunk(from, CHUNK_BYTES)
+    }
+
+    /// The same, which reads so much at once.
+    pub(super) fn with_chunk(from: R, chunk_bytes: usize) -> Self {
+        Self { from, buffer: Vec::new(), at: 0, filled: 0, ended: false, base: 0, chunk_bytes }
     }
 
     /// Makes sure that `bytes` bytes are in sight, or all that are left.
@@ -36,7 +42,7 @@ impl<R: Read> LookAhead<R> {
         self.base += self.at as u64;
         self.filled -= self.at;
         self.at = 0;
-        self.buffer.resize(self.buffer.len().max(bytes + CHUNK_BYTES), 0);
+        self.buffer.resize(self.buffer.len().max(bytes + self.chunk_bytes), 0);
         while self.filled < self.buffer.len() {
             match self.from.read(&mut self.buffer[self.filled..]) {
                 Ok(0) => {

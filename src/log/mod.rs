@@ -14,6 +14,7 @@ mod flights;
 mod foreign;
 mod format;
 mod input;
+mod leap;
 mod lookahead;
 mod loss;
 mod onboard;
@@ -29,7 +30,7 @@ pub use dataflash::{
 };
 pub use error::LogError;
 pub use flights::{Flights, Hold, LogFlight};
-pub use format::{Certainty, Format, Place, Sink};
+pub use format::{Certainty, Format, Place, ReadWhole, Sink};
 pub use input::Input;
 pub use loss::{Loss, Oddity, Position, RowRejection};
 pub use onboard::{OnboardReport, Topic};

@@ -46,7 +46,10 @@ pub fn open<'a>(log: impl Into<Input<'a>>, options: &OpenOptions) -> Result<Open
     let format = format_of(input)?;
     let (mut report, builder) = of_the_flown(options, |options| {
         let mut builder = RecordingBuilder::new();
-        let report = (format.read)(&input, options, &mut |_, event| builder.add(event))?;
+        let report = match format.read_whole {
+            Some(read_whole) => read_whole(&input, options, &mut builder)?,
+            None => (format.read)(&input, options, &mut |_, event| builder.add(event))?,
+        };
         Ok((report, builder))
     })?;
     let (recording, repairs) = builder.finish();

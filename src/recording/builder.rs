@@ -2,18 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use super::event::Event;
 use super::flight::{ParameterChange, Recording};
-use super::stream::{Stream, StreamKey};
-
-/// What putting a stream's samples in order took.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct StreamRepair {
-    /// samples with a stamp that the stream has already, dropped
-    pub duplicates: u64,
-    /// samples that came after a later one, sorted in
-    pub out_of_order: u64,
-}
+use super::growing::{Growing, StreamRepair};
+use super::stream::StreamKey;
 
 /// Collects events into a [`Recording`].
 #[derive(Debug, Default)]
@@ -30,13 +24,6 @@ pub struct RecordingBuilder {
 /// Changes of parameters that are kept: a vehicle that tunes itself makes hundreds.
 const MOST_CHANGES: usize = 10_000;
 
-#[derive(Debug)]
-struct Growing {
-    key: StreamKey,
-    stream: Stream,
-    repair: StreamRepair,
-}
-
 impl RecordingBuilder {
     /// Nothing collected yet.
     #[must_use]
@@ -49,7 +36,8 @@ impl RecordingBuilder {
         match event {
             Event::Autopilot(autopilot) => self.rest.autopilot = autopilot,
             Event::Sample { stream, time_s, values } => {
-                let growing = self.stream(stream);
+                let place = self.place(stream);
+                let growing = &mut self.streams[place];
                 let before = growing.numbers();
                 growing.push(time_s, values);
                 let added = growing.numbers() - before;
@@ -93,17 +81,25 @@ impl RecordingBuilder {
     #[must_use]
     pub fn finish(mut self) -> (Recording, BTreeMap<StreamKey, StreamRepair>) {
         let mut repairs = BTreeMap::new();
-        for mut growing in self.streams {
-            if growing.repair.out_of_order > 0 {
-                growing.sort();
-            }
-            repairs.insert(growing.key, growing.repair);
-            self.rest.streams.insert(growing.key, growing.stream);
+        let given = self.streams.into_iter().filter(|growing| growing.numbers() > 0);
+        for (key, stream, repair) in given.map(Growing::finish) {
+            repairs.insert(key, repair);
+            self.rest.streams.insert(key, stream);
         }
         (self.rest, repairs)
     }
 
-    fn stream(&mut self, key: StreamKey) -> &mut Growing {
+    /// Fills streams side by side, each by `fill` from its [place](Self::place): what it gives is the samples' order in the log
+    /// and the time, s, of the last one that it added, or `None` where it added none.
+    pub fn fill(&mut self, fill: impl Fn(usize, &mut Growing) -> Option<(usize, f64)> + Sync) {
+        let filled = self.streams.par_iter_mut().with_max_len(1).enumerate();
+        let last = filled.filter_map(|(place, growing)| fill(place, growing)).max_by_key(|(order, _)| *order);
+        self.now_s = last.map(|(_, time_s)| time_s).or(self.now_s);
+        self.numbers = self.streams.iter().map(Growing::numbers).sum();
+    }
+
+    /// Where the stream of a key is among those that are collected. One that no sample comes to is not in the recording.
+    pub fn place(&mut self, key: StreamKey) -> usize {
         let quantity = key.quantity as usize;
         if quantity >= self.by_quantity.len() {
             self.by_quantity.resize(quantity + 1, Vec::new());
@@ -111,64 +107,15 @@ impl RecordingBuilder {
         let of_quantity = &mut self.by_quantity[quantity];
         // names are compared by where they stand first: a reader gives the same one each time
         let at = |is_same: fn(&StreamKey, &StreamKey) -> bool| {
-            of_quantity.iter().copied().find(|&index| is_same(&self.streams[index].key, &key))
+            of_quantity.iter().copied().find(|&index| is_same(self.streams[index].key(), &key))
         };
         let stands_there =
             |a: &StreamKey, b: &StreamKey| a.instance == b.instance && std::ptr::eq(a.source, b.source);
-        let index = at(stands_there).or_else(|| at(|a, b| a == b)).unwrap_or_else(|| {
+        at(stands_there).or_else(|| at(|a, b| a == b)).unwrap_or_else(|| {
             of_quantity.push(self.streams.len());
-            self.streams.push(Growing { key, stream: Stream::default(), repair: StreamRepair::default() });
+            self.streams.push(Growing::new(key));
             self.streams.len() - 1
-        });
-        &mut self.streams[index]
-    }
-}
-
-impl Growing {
-    fn numbers(&self) -> usize {
-        self.stream.time_s.len() + self.stream.values.len()
-    }
-
-    fn push(&mut self, time_s: f64, values: &[f64]) {
-        if let Some(&last_s) = self.stream.time_s.last() {
-            if time_s == last_s {
-                self.repair.duplicates += 1;
-                return;
-            }
-            self.repair.out_of_order += u64::from(time_s < last_s);
-        }
-        if values.len() > self.stream.width {
-            self.widen(values.len());
-        }
-        self.stream.time_s.push(time_s);
-        self.stream.values.extend_from_slice(values);
-        if values.len() < self.stream.width {
-            self.stream.values.resize(self.stream.time_s.len() * self.stream.width, 0.0);
-        }
-    }
-
-    /// Makes room for channels that were zero so far.
-    fn widen(&mut self, width: usize) {
-        let stream = &mut self.stream;
-        let mut values = Vec::with_capacity(stream.len().max(64) * width);
-        for index in 0..stream.len() {
-            values.extend_from_slice(stream.sample(index));
-            values.resize((index + 1) * width, 0.0);
-        }
-        stream.values = values;
-        stream.width = width;
-    }
-
-    /// Sorts by time; of samples with the same stamp the first stays.
-    fn sort(&mut self) {
-        let stream = &mut self.stream;
-        let mut order: Vec<usize> = (0..stream.len()).collect();
-        order.sort_by(|&a, &b| stream.time_s[a].total_cmp(&stream.time_s[b]));
-        order.dedup_by(|b, a| stream.time_s[*a] == stream.time_s[*b]);
-        self.repair.duplicates += (stream.len() - order.len()) as u64;
-        let time_s = order.iter().map(|&index| stream.time_s[index]).collect();
-        let values = order.iter().flat_map(|&index| stream.sample(index).iter().copied()).collect();
-        *stream = Stream { time_s, width: stream.width, values };
+        })
     }
 }
 

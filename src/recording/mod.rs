@@ -7,14 +7,16 @@
 mod builder;
 mod event;
 mod flight;
+mod growing;
 mod overlap;
 mod quantity;
 mod statistics;
 mod stream;
 
-pub use builder::{RecordingBuilder, StreamRepair};
+pub use builder::RecordingBuilder;
 pub use event::Event;
 pub use flight::{ParameterChange, Recording};
+pub use growing::{Growing, StreamRepair};
 pub use overlap::shared_share;
 pub use quantity::Quantity;
 pub use statistics::{StreamStats, StreamTally};

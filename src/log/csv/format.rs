@@ -16,6 +16,7 @@ pub(in crate::log) const FORMAT: Format = Format {
     takes_columns: true,
     sniff,
     read,
+    read_whole: None,
 };
 
 /// What may stand between cells, whatever the mapping says.

@@ -3,13 +3,10 @@
 /// A stamp this much before the last one, s, is of another clock, or of no clock. Messages of several threads run back by
 /// less.
 const BACK_S: f64 = 10.0;
-/// A stamp this much after the last one, s, needs a second one that agrees: damage hides in stamps. The first one is not read, so
-/// that pauses of a log are let pass.
-const LEAP_S: f64 = 3600.0;
+/// A stamp this much after the last one, s, leaps: what follows tells time that passed from damage.
+const LEAP_S: f64 = 10.0;
 /// A stamp this much after the last one, s, is damaged, whatever agrees with it: no log lasts for a month.
 const NEVER_S: f64 = 2.7e6;
-/// A leap this long, s, that the next stamp takes back was damage.
-const DOUBTFUL_S: f64 = 10.0;
 /// Two stamps behind one another agree within this, s.
 const AGREES_S: f64 = 2.0;
 /// Between two logs of which one stands behind the other, s: the pause itself is not known.
@@ -24,6 +21,8 @@ pub(super) enum Placed {
     Anew(f64),
     /// fits no clock
     Stray,
+    /// far ahead: [`Clock::leap`] where time passed, [`Clock::damaged`] where it did not
+    Leaps,
 }
 
 /// The vehicle's clock.
@@ -35,8 +34,6 @@ pub(super) struct Clock {
     latest_s: f64,
     /// a stamp far from the last one, until another agrees with it
     doubted_s: Option<f64>,
-    /// the last stamp before a leap, s, until another has followed it
-    before_leap_s: Option<f64>,
     /// definitions began anew: so may the clock
     may_restart: bool,
     /// stamps that fit no clock
@@ -77,38 +74,55 @@ impl Clock {
             (self.last_s, self.latest_s) = (stamp_s, stamp_s);
             return Placed::At(0.0);
         };
-        let follows = |last_s: f64| (-BACK_S..LEAP_S).contains(&(stamp_s - last_s));
-        let agrees = |doubted_s: f64| (stamp_s - doubted_s).abs() < AGREES_S;
         if std::mem::take(&mut self.may_restart) && stamp_s < self.last_s {
             let time_s = self.latest_s - zero_s + PAUSE_S;
             self.zero_s = Some(stamp_s - time_s);
             (self.last_s, self.latest_s, self.doubted_s) = (stamp_s, stamp_s, None);
             return Placed::Anew(time_s);
         }
-        let taken_back = |before_s: &f64| (-BACK_S..DOUBTFUL_S).contains(&(stamp_s - before_s));
-        let mut before_leap_s = (stamp_s - self.last_s > DOUBTFUL_S).then_some(self.last_s);
-        if self.before_leap_s.take().as_ref().is_some_and(taken_back) {
+        let since_s = stamp_s - self.last_s;
+        if since_s > NEVER_S {
             self.strays += 1;
-            self.latest_s = stamp_s;
-        } else if !follows(self.last_s) {
-            if stamp_s - self.last_s > NEVER_S || !self.doubted_s.is_some_and(agrees) {
+            return Placed::Stray;
+        }
+        if since_s > LEAP_S {
+            return Placed::Leaps;
+        }
+        if since_s < -BACK_S {
+            let agrees = |doubted_s: f64| (stamp_s - doubted_s).abs() < AGREES_S;
+            if !self.doubted_s.is_some_and(agrees) {
                 self.doubted_s = Some(stamp_s);
                 self.strays += 1;
                 return Placed::Stray;
             }
             // the first of both is not read, and was right
             self.strays -= 1;
-            before_leap_s = None;
-            if stamp_s < self.last_s {
-                self.ran_back += 1;
-                self.ran_back_most_s = self.ran_back_most_s.max(self.last_s - stamp_s);
-            }
+            self.ran_back += 1;
+            self.ran_back_most_s = self.ran_back_most_s.max(-since_s);
         }
+        self.go_on(stamp_s);
+        Placed::At(stamp_s - zero_s)
+    }
+
+    /// The last stamp, s.
+    pub(super) fn last_s(&self) -> f64 {
+        self.last_s
+    }
+
+    /// Time passed up to a stamp that leaps, s.
+    pub(super) fn leap(&mut self, stamp_s: f64) {
+        self.go_on(stamp_s);
+    }
+
+    /// So many stamps that leapt were damaged.
+    pub(super) fn damaged(&mut self, count: u64) {
+        self.strays += count;
+    }
+
+    fn go_on(&mut self, stamp_s: f64) {
         self.doubted_s = None;
-        self.before_leap_s = before_leap_s;
         self.last_s = stamp_s;
         self.latest_s = self.latest_s.max(stamp_s);
-        Placed::At(stamp_s - zero_s)
     }
 }
 
@@ -117,30 +131,22 @@ mod tests {
     use super::{Clock, Placed};
 
     #[test]
-    fn one_wrong_stamp_is_a_stray_and_two_that_agree_are_a_leap() {
+    fn a_wrong_stamp_is_a_stray_and_a_leap_waits() {
         let mut clock = Clock::default();
         assert_eq!(clock.place(40.0), Placed::At(0.0));
         assert_eq!(clock.place(41.0), Placed::At(1.0));
-        assert_eq!(clock.place(9e9), Placed::Stray);
-        assert_eq!(clock.place(41.5), Placed::At(1.5));
+        // years ahead, whatever agrees with it
+        assert_eq!([clock.place(9e9), clock.place(9e9 + 0.1)], [Placed::Stray; 2]);
         // threads
-        assert_eq!(clock.place(41.25), Placed::At(1.25));
-        assert_eq!([clock.place(9000.0), clock.place(9001.0)], [Placed::Stray, Placed::At(8961.0)]);
-        assert_eq!((clock.strays, clock.ran_back), (1, 0));
+        assert_eq!([clock.place(41.5), clock.place(41.25)], [Placed::At(1.5), Placed::At(1.25)]);
+        assert_eq!((clock.strays, clock.ran_back), (2, 0));
+        assert_eq!([clock.place(900.0), clock.place(42.0)], [Placed::Leaps, Placed::At(2.0)]);
+        clock.damaged(1);
+        assert_eq!(clock.place(9000.0), Placed::Leaps);
+        clock.leap(9000.0);
+        assert_eq!(clock.place(9000.0), Placed::At(8960.0));
         assert_eq!([clock.place(50.0), clock.place(51.0)], [Placed::Stray, Placed::At(11.0)]);
-        assert_eq!((clock.strays, clock.ran_back), (1, 1));
-        // one that is wrong by less than an hour is read, and the next one takes it back
-        assert_eq!([clock.place(900.0), clock.place(51.25)], [Placed::At(860.0), Placed::At(11.25)]);
-        assert_eq!((clock.strays, clock.ran_back), (2, 1));
-        // two wrong ones that do not agree
-        assert_eq!([clock.place(9000.0), clock.place(20_000.0)], [Placed::Stray; 2]);
-        assert_eq!(clock.place(51.5), Placed::At(11.5));
-        assert_eq!((clock.strays, clock.ran_back), (4, 1));
-        // two wrong ones that agree, years ahead
-        assert_eq!(
-            [clock.place(9e9), clock.place(9e9 + 0.1), clock.place(52.0)],
-            [Placed::Stray, Placed::Stray, Placed::At(12.0)]
-        );
+        assert_eq!((clock.strays, clock.ran_back), (3, 1));
     }
 
     #[test]

@@ -24,6 +24,7 @@ pub(in crate::log) const BINARY: Format = Format {
     takes_columns: false,
     sniff: sniff_binary,
     read: read_binary,
+    read_whole: None,
 };
 
 /// Text logs.
@@ -33,6 +34,7 @@ pub(in crate::log) const TEXT: Format = Format {
     takes_columns: false,
     sniff: sniff_text,
     read: read_text,
+    read_whole: None,
 };
 
 /// A definition is this long; text logs have fewer columns in old releases.
@@ -81,11 +83,19 @@ impl<R: Read> Messages for DataflashReader<R> {
     fn next(&mut self) -> Result<Option<(Message<'_>, &Definitions)>, LogError> {
         self.next_with_definitions()
     }
+
+    fn definitions(&self) -> &Definitions {
+        self.definitions()
+    }
 }
 
 impl<R: std::io::BufRead> Messages for DataflashTextReader<R> {
     fn next(&mut self) -> Result<Option<(Message<'_>, &Definitions)>, LogError> {
         self.next_with_definitions()
+    }
+
+    fn definitions(&self) -> &Definitions {
+        self.definitions()
     }
 }
 

@@ -24,6 +24,37 @@ enum Body<'a> {
     Cells(&'a str, &'a [(usize, usize)]),
 }
 
+/// A message that waits until it can be read, with what it is made of.
+#[derive(Debug)]
+pub(super) struct Kept {
+    offset: u64,
+    definition: Definition,
+    body: KeptBody,
+}
+
+#[derive(Debug)]
+enum KeptBody {
+    Bytes(Vec<u8>),
+    Cells(String, Vec<(usize, usize)>),
+}
+
+impl Kept {
+    pub(super) fn of(message: &Message<'_>) -> Self {
+        let body = match message.body {
+            Body::Bytes(bytes) => KeptBody::Bytes(bytes.to_vec()),
+            Body::Cells(line, cells) => KeptBody::Cells(line.to_owned(), cells.to_vec()),
+        };
+        Self { offset: message.offset, definition: message.definition.clone(), body }
+    }
+
+    pub(super) fn message(&self) -> Message<'_> {
+        match &self.body {
+            KeptBody::Bytes(bytes) => Message::binary(self.offset, &self.definition, bytes),
+            KeptBody::Cells(line, cells) => Message::line(self.offset, &self.definition, line, cells),
+        }
+    }
+}
+
 impl<'a> Message<'a> {
     pub(super) fn binary(offset: u64, definition: &'a Definition, bytes: &'a [u8]) -> Self {
         Self { offset, definition, body: Body::Bytes(bytes) }

@@ -12,6 +12,29 @@ const INSTANCE_FIELDS: [&str; 5] = ["I", "C", "IMU", "Instance", "Inst"];
 /// The unit of such a field, where the log marks it.
 const INSTANCE_UNIT: &str = "instance";
 
+/// Where the fields of all messages go, by number.
+pub(super) struct AllRoutes(Vec<Option<Routes>>);
+
+impl Default for AllRoutes {
+    fn default() -> Self {
+        let mut all = Vec::new();
+        all.resize_with(256, || None);
+        Self(all)
+    }
+}
+
+impl AllRoutes {
+    /// Those of a message.
+    pub(super) fn of(&mut self, message: &Message<'_>, definitions: &Definitions) -> &mut Routes {
+        let number = message.definition.number;
+        let slot = &mut self.0[usize::from(number)];
+        if slot.as_ref().is_some_and(|routes| routes.revision != definitions.revision(number)) {
+            *slot = None;
+        }
+        slot.get_or_insert_with(|| Routes::of(message.definition, definitions))
+    }
+}
+
 /// Where the fields of one definition go.
 #[derive(Debug)]
 pub(super) struct Routes {
@@ -106,12 +129,11 @@ impl Route {
     }
 
     /// The fields of a message in SI, in the log's frames, where a number is `times` one of the newest releases.
-    pub(super) fn values(&self, message: &Message<'_>, times: f64) -> Values {
-        let mut values = Values::NONE;
+    pub(super) fn values(&self, message: &Message<'_>, times: f64, values: &mut Values) {
+        values.clear();
         for (field, factor) in &self.columns {
             values.push(message.number(*field) * factor / times);
         }
-        values
     }
 
     pub(super) fn instance(&self, of_message: u8) -> u8 {

@@ -24,6 +24,11 @@ pub(super) type Convert = fn(&mut Values);
 impl Values {
     pub(super) const NONE: Self = Self { list: [0.0; MOST], count: 0 };
 
+    /// None any more.
+    pub(super) fn clear(&mut self) {
+        self.count = 0;
+    }
+
     pub(super) fn push(&mut self, value: f64) {
         if let Some(slot) = self.list.get_mut(self.count) {
             *slot = value;

@@ -6,17 +6,19 @@ use super::definition::FMT;
 use super::definitions::Definitions;
 use super::identity::Identity;
 use super::join::Join;
-use super::message::Message;
+use super::message::{Kept, Message};
 use super::outlet::Outlet;
-use super::routes::{Route, Routes};
+use super::routes::{AllRoutes, Route, Routes};
 use super::special::Special;
 use super::states::{IN_AIR, Meaning, ON_GROUND, States, meaning};
 use super::tally::Tally;
 use super::topics::{Demand, Part};
+use super::values::Values;
 use crate::autopilot::{ARDUPILOT, Autopilot};
 use crate::frames::Geodetic;
 use crate::log::error::LogError;
 use crate::log::format::Sink;
+use crate::log::leap::{Leap, Settled};
 use crate::recording::{Event, Quantity};
 
 /// MAV_SEVERITY of texts, which carry none, and of errors.
@@ -38,6 +40,9 @@ const DEFAULT: &str = "Default";
 pub(super) trait Messages {
     /// The next message and all that is defined; `None` at the end.
     fn next(&mut self) -> Result<Option<(Message<'_>, &Definitions)>, LogError>;
+
+    /// All that is defined so far.
+    fn definitions(&self) -> &Definitions;
 }
 
 /// What a walk met beside samples.
@@ -54,9 +59,11 @@ pub(super) struct Walked {
 
 /// Gives each event with its place to `sink`; memory does not grow with the log.
 pub(super) fn walk(messages: &mut impl Messages, sink: &mut Sink<'_>) -> Result<Walked, LogError> {
+    let mut all_routes = AllRoutes::default();
     let mut walk = Walk {
         out: Outlet::new(sink),
-        routes: Vec::new(),
+        leap: None,
+        values: Values::NONE,
         join: Join::default(),
         batches: Batches::default(),
         states: States::default(),
@@ -67,10 +74,15 @@ pub(super) fn walk(messages: &mut impl Messages, sink: &mut Sink<'_>) -> Result<
         rates_as_now: None,
         walked: Walked::default(),
     };
-    walk.routes.resize_with(256, || None);
     walk.out.give(Event::Autopilot(Autopilot::ArduPilot));
     while let Some((message, definitions)) = messages.next()? {
-        walk.take(&message, definitions);
+        walk.take(&message, all_routes.of(&message, definitions));
+        while walk.leap.as_ref().is_some_and(|(_, is_told)| *is_told) {
+            walk.settle(definitions, &mut all_routes);
+        }
+    }
+    while walk.leap.is_some() {
+        walk.settle(messages.definitions(), &mut all_routes);
     }
     walk.finish();
     Ok(walk.walked)
@@ -78,7 +90,10 @@ pub(super) fn walk(messages: &mut impl Messages, sink: &mut Sink<'_>) -> Result<
 
 struct Walk<'a, 'b> {
     out: Outlet<'a, 'b>,
-    routes: Vec<Option<Routes>>,
+    /// a stamp leapt: messages wait until it is told, as it is here, what that was
+    leap: Option<(Leap<Kept>, bool)>,
+    /// of the sample in hand
+    values: Values,
     join: Join,
     batches: Batches,
     states: States,
@@ -96,28 +111,52 @@ struct Walk<'a, 'b> {
 }
 
 impl Walk<'_, '_> {
-    fn take(&mut self, message: &Message<'_>, definitions: &Definitions) {
-        let number = message.definition.number;
-        self.out.at(message.offset);
-        if number == FMT && message.number(0) == f64::from(FMT) {
-            self.walked.clock.definitions_anew();
+    fn take(&mut self, message: &Message<'_>, routes: &mut Routes) {
+        let stamp_s = routes.stamp_s(message);
+        match &mut self.leap {
+            Some((leap, is_told)) => *is_told |= leap.wait(stamp_s, Kept::of(message)),
+            None => self.route(message, stamp_s, routes),
         }
-        let slot = usize::from(number);
-        let kept = self.routes[slot].take();
-        let mut routes = match kept {
-            Some(routes) if routes.revision == definitions.revision(number) => routes,
-            _ => Routes::of(message.definition, definitions),
-        };
-        self.route(message, &mut routes);
-        self.routes[slot] = Some(routes);
     }
 
-    fn route(&mut self, message: &Message<'_>, routes: &mut Routes) {
+    /// Messages that waited do so no longer.
+    fn settle(&mut self, definitions: &Definitions, all_routes: &mut AllRoutes) {
+        let messages = match self.leap.take().map(|(leap, _)| leap.settle()) {
+            Some(Settled::Passed(messages)) => {
+                let first = messages.first().map(Kept::message);
+                let stamp_s = first.and_then(|first| all_routes.of(&first, definitions).stamp_s(&first));
+                stamp_s.into_iter().for_each(|stamp_s| self.walked.clock.leap(stamp_s));
+                messages
+            }
+            Some(Settled::Damage(damaged, others)) => {
+                self.walked.clock.damaged(damaged as u64);
+                others
+            }
+            None => Vec::new(),
+        };
+        for kept in messages {
+            let message = kept.message();
+            self.take(&message, all_routes.of(&message, definitions));
+        }
+    }
+
+    fn route(&mut self, message: &Message<'_>, stamp_s: Option<f64>, routes: &mut Routes) {
+        self.out.at(message.offset);
+        if message.definition.number == FMT && message.number(0) == f64::from(FMT) {
+            self.walked.clock.definitions_anew();
+        }
         let instance = routes.instance(message);
-        let stamp_s = routes.stamp_s(message);
         let placed = stamp_s.map(|stamp_s| (stamp_s, self.walked.clock.place(stamp_s)));
-        self.walked.tally.count(message, instance, stamp_s, routes);
         let own_s = match placed {
+            Some((stamp_s, Placed::Leaps)) => {
+                let leap = Leap::new(self.walked.clock.last_s(), stamp_s, Kept::of(message));
+                self.leap = Some((leap, false));
+                return;
+            }
+            Some((_, Placed::Stray)) => {
+                self.walked.tally.count(message, instance, None, routes);
+                return;
+            }
             Some((_, Placed::At(time_s))) => Some(time_s),
             Some((stamp_s, Placed::Anew(time_s))) => {
                 self.finish_samples();
@@ -126,9 +165,9 @@ impl Walk<'_, '_> {
                 self.out.give(Event::ClockReset { time_s, stamp_s });
                 Some(time_s)
             }
-            Some((_, Placed::Stray)) => return,
             None => None,
         };
+        self.walked.tally.count(message, instance, stamp_s, routes);
         let time_s = own_s.unwrap_or_else(|| self.walked.clock.now_s());
         while let Some((topic, time_s, values)) = self.join.due(time_s) {
             self.out.values(topic, 0, time_s, &values);
@@ -158,7 +197,7 @@ impl Walk<'_, '_> {
             Demand::Rates(before) => self.rates_as_now.map(|as_now| if as_now { 1.0 } else { before }),
             _ => Some(1.0),
         };
-        let mut values = route.values(message, times.unwrap_or(1.0));
+        route.values(message, times.unwrap_or(1.0), &mut self.values);
         // states are kept, and told again; yes and no are those of armed, or of in the air
         let states = match topic.quantity {
             Quantity::Armed => Some([0.0, 1.0]),
@@ -166,7 +205,7 @@ impl Walk<'_, '_> {
             _ => None,
         };
         if let Some([no, yes]) = states {
-            if let Some(value) = values.get().first() {
+            if let Some(value) = self.values.get().first() {
                 let is_change = topic.message == CHANGES;
                 self.state(topic.quantity, if *value > 0.5 { yes } else { no }, time_s, is_change);
             }
@@ -186,14 +225,14 @@ impl Walk<'_, '_> {
         let time_s = sampled.unwrap_or(own_s);
         let slot = match topic.part {
             None => {
-                (topic.convert)(&mut values);
-                self.out.values(topic, route.instance(instance), time_s, &values);
+                (topic.convert)(&mut self.values);
+                self.out.values(topic, route.instance(instance), time_s, &self.values);
                 return;
             }
             Some(Part::OfInstance) => usize::from(instance),
             Some(Part::Index(index) | Part::From(index)) => index,
         };
-        if let Some((topic, time_s, values)) = self.join.take(topic, slot, time_s, values.get()) {
+        if let Some((topic, time_s, values)) = self.join.take(topic, slot, time_s, self.values.get()) {
             self.out.values(topic, 0, time_s, &values);
         }
     }

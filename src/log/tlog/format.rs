@@ -10,8 +10,14 @@ use crate::log::options::OpenOptions;
 use crate::log::report::{Details, ReadReport};
 
 /// Telemetry logs.
-pub(in crate::log) const FORMAT: Format =
-    Format { name: "telemetry log (.tlog)", takes_system: true, takes_columns: false, sniff, read };
+pub(in crate::log) const FORMAT: Format = Format {
+    name: "telemetry log (.tlog)",
+    takes_system: true,
+    takes_columns: false,
+    sniff,
+    read,
+    read_whole: None,
+};
 
 /// A record: a stamp, and a frame whose checksum is right.
 fn sniff(head: &[u8]) -> Option<Certainty> {

@@ -7,9 +7,8 @@ use crate::units::seconds_from_us;
 
 /// A topic's stamps may run back by this much.
 const BACKWARD_US: u64 = 2_000_000;
-/// A longer leap forward must be confirmed by further stamps: damage hides in stamps. The first ones are not read, so that pauses
-/// of a log are let pass; a vehicle that cannot write for longer says so.
-const FORWARD_US: u64 = 60_000_000;
+/// What follows tells a longer leap forward from damage.
+const FORWARD_US: u64 = 10_000_000;
 /// Stamps behind one another agree within this.
 const AGREES_US: u64 = 2_000_000;
 /// So many stamps in a row that agree with each other but not with the clock: it has leapt or started anew.
@@ -26,6 +25,8 @@ pub(super) enum Placed {
     Restarted,
     /// its stamp fits neither the clock nor a new one (so far): drop the message
     Stale,
+    /// its stamp leaps ahead: [`Clock::leap`] where time passed
+    Leaps,
 }
 
 /// The recording's clock.
@@ -60,24 +61,57 @@ impl Clock {
     #[inline]
     pub(super) fn seconds(&self, stamp_us: u64) -> f64 {
         let since_us = i128::from(stamp_us) - self.zero_us;
-        // 64 bits become a number in one instruction
-        seconds_from_us(i64::try_from(since_us).map_or_else(|_| since_us as f64, |us| us as f64))
+        seconds_from_us(match i64::try_from(since_us) {
+            // 64 bits become a number in one instruction
+            Ok(us) => us as f64,
+            Err(_) => far(since_us),
+        })
     }
 
-    /// Takes the stamp of a topic's message; `before_us` is that of its last one. A topic's first message may be old: it
-    /// was true before the log began.
+    /// Whether a stamp of a topic's message goes on from the last ones; `before_us` is that of the topic's last one. A topic's
+    /// first message may be old: it was true before the log began.
     #[inline]
-    pub(super) fn place(&mut self, stamp_us: u64, before_us: Option<u64>) -> Placed {
-        let is_first = before_us.is_none() && stamp_us <= self.last_us;
-        let backward = before_us.is_some_and(|before_us| before_us.saturating_sub(stamp_us) > BACKWARD_US);
-        let forward = self.runs && stamp_us.saturating_sub(self.last_us) > FORWARD_US;
-        if is_first || !backward && !forward {
-            self.last_us = self.last_us.max(stamp_us);
-            self.runs = true;
-            self.suspects = 0;
-            return Placed::At;
+    pub(super) fn goes_on(&self, stamp_us: u64, before_us: Option<u64>) -> bool {
+        match before_us {
+            None if stamp_us <= self.last_us => true,
+            Some(before_us) if before_us.saturating_sub(stamp_us) > BACKWARD_US => false,
+            _ => !self.is_ahead(stamp_us),
         }
-        self.suspect(stamp_us)
+    }
+
+    fn is_ahead(&self, stamp_us: u64) -> bool {
+        self.runs && stamp_us.saturating_sub(self.last_us) > FORWARD_US
+    }
+
+    /// Takes a stamp that goes on from the last ones.
+    #[inline]
+    pub(super) fn go_on(&mut self, stamp_us: u64) {
+        self.last_us = self.last_us.max(stamp_us);
+        self.runs = true;
+        self.suspects = 0;
+    }
+
+    /// Takes the stamp of a topic's message; `before_us` is that of its last one.
+    pub(super) fn place(&mut self, stamp_us: u64, before_us: Option<u64>) -> Placed {
+        if self.goes_on(stamp_us, before_us) {
+            self.go_on(stamp_us);
+            Placed::At
+        } else if self.is_ahead(stamp_us) {
+            Placed::Leaps
+        } else {
+            self.suspect(stamp_us)
+        }
+    }
+
+    /// The latest stamp, s.
+    pub(super) fn last_s(&self) -> f64 {
+        seconds_from_us(self.last_us as f64)
+    }
+
+    /// Time passed up to a stamp that leaps.
+    pub(super) fn leap(&mut self, stamp_us: u64) {
+        self.last_us = self.last_us.max(stamp_us);
+        self.suspects = 0;
     }
 
     fn suspect(&mut self, stamp_us: u64) -> Placed {
@@ -88,12 +122,8 @@ impl Clock {
             return Placed::Stale;
         }
         self.suspects = 0;
-        if stamp_us > self.last_us {
-            self.last_us = stamp_us;
-            return Placed::At;
-        }
         self.ran_back += 1;
-        self.ran_back_most_us = self.ran_back_most_us.max(self.last_us - stamp_us);
+        self.ran_back_most_us = self.ran_back_most_us.max(self.last_us.saturating_sub(stamp_us));
         self.restart(stamp_us);
         Placed::Restarted
     }
@@ -104,6 +134,12 @@ impl Clock {
         self.zero_us = i128::from(first_us) - last_time_us - RESTART_US;
         self.last_us = first_us;
     }
+}
+
+#[cold]
+#[inline(never)]
+fn far(us: i128) -> f64 {
+    us as f64
 }
 
 #[cfg(test)]
@@ -125,8 +161,8 @@ mod tests {
         let mut clock = Clock::default();
         clock.begin(0);
         assert_eq!(clock.place(10_000_000, None), Placed::At);
-        for odd in [0, 5_000_000, u64::MAX, 500_000_000] {
-            assert_eq!(clock.place(odd, Some(10_000_000)), Placed::Stale, "{odd}");
+        for (odd, placed) in [(0, Placed::Stale), (5_000_000, Placed::Stale), (u64::MAX, Placed::Leaps)] {
+            assert_eq!(clock.place(odd, Some(10_000_000)), placed, "{odd}");
             assert_eq!(clock.place(10_010_000, Some(10_000_000)), Placed::At);
         }
     }
@@ -145,12 +181,14 @@ mod tests {
     }
 
     #[test]
-    fn a_leap_that_further_stamps_confirm_is_time_that_passed() {
+    fn a_leap_counts_once_it_is_known_to_be_time_that_passed() {
         let mut clock = Clock::default();
         clock.begin(0);
         clock.place(1_000_000, None);
-        let placed = [200_000_000, 200_000_100, 200_000_200].map(|us| clock.place(us, Some(1_000_000)));
-        assert_eq!(placed, [Placed::Stale, Placed::Stale, Placed::At]);
+        assert_eq!(clock.place(200_000_000, Some(1_000_000)), Placed::Leaps);
+        assert!((clock.last_s() - 1.0).abs() < 1e-9);
+        clock.leap(200_000_000);
+        assert_eq!(clock.place(200_000_000, Some(1_000_000)), Placed::At);
         assert!((clock.seconds(200_000_200) - 200.0002).abs() < 1e-9);
     }
 }

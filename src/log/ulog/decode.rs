@@ -7,8 +7,10 @@ use super::schema::Subscription;
 use super::topics::{Bound, streams_of};
 use crate::autopilot::Autopilot;
 use crate::log::flights::is_state;
+use crate::log::leap::{Leap, Settled};
 use crate::recording::Event;
 use crate::text;
+use crate::units::seconds_from_us;
 
 /// `sys_name` of PX4, and a parameter that it alone has.
 const PX4: (&str, &str) = ("PX4", "SYS_AUTOSTART");
@@ -19,11 +21,21 @@ fn is_truth(name: &str) -> bool {
     TRUTH.iter().any(|beginning| name.starts_with(beginning))
 }
 
+/// Which stream of which topic goes to each place of a recording.
+pub(super) type Places = Vec<Option<(usize, usize)>>;
+
 /// Turns messages into events.
 #[derive(Debug, Default)]
 pub(super) struct Decoder {
-    clock: Clock,
-    topics: Vec<Option<Topic>>,
+    pub(super) clock: Clock,
+    /// by number; none where nothing is read of it
+    pub(super) topics: Vec<Option<Topic>>,
+    /// of each number
+    pub(super) streams: Vec<Vec<Bound>>,
+    /// a stamp leapt: messages wait until it is known what that was
+    pub(super) leap: Option<Leap<Waiting>>,
+    /// of a log that is read whole; empty until they are known
+    pub(super) places: Places,
     /// said before the first sample
     autopilot: Option<Autopilot>,
     told: bool,
@@ -32,10 +44,19 @@ pub(super) struct Decoder {
 
 /// A topic whose messages hold streams.
 #[derive(Debug)]
-struct Topic {
-    streams: Vec<Bound>,
-    resets: ResetCounters,
-    last_us: Option<u64>,
+pub(super) struct Topic {
+    pub(super) resets: ResetCounters,
+    pub(super) last_us: Option<u64>,
+    /// no other topic has streams of the same key
+    pub(super) is_alone: bool,
+}
+
+/// A message of a topic that waits.
+#[derive(Debug)]
+pub(super) struct Waiting {
+    slot: usize,
+    stamp_us: u64,
+    bytes: Vec<u8>,
 }
 
 /// What became of the messages.
@@ -60,7 +81,10 @@ impl Decoder {
         match message {
             Message::Data { subscription, bytes } => self.data(subscription, bytes, sink),
             Message::Begin { start_us } => {
+                self.finish(sink);
                 self.topics.clear();
+                self.streams.clear();
+                self.places.clear();
                 if self.clock.begin(start_us) {
                     self.restarted(start_us, sink);
                 }
@@ -69,6 +93,7 @@ impl Decoder {
             Message::Parameter { name, value } => self.parameter(name, value, sink),
             Message::Subscribe(subscription) => {
                 self.tell_autopilot(sink);
+                self.finish(sink);
                 self.subscribe(subscription);
             }
             Message::Text { severity, stamp_us, text } => {
@@ -113,16 +138,32 @@ impl Decoder {
         let slot = usize::from(subscription.id);
         if slot >= self.topics.len() {
             self.topics.resize_with(slot + 1, || None);
+            self.streams.resize_with(slot + 1, Vec::new);
         }
-        let streams = streams_of(subscription);
+        self.streams[slot] = streams_of(subscription);
         let resets = ResetCounters::of(subscription);
-        self.topics[slot] = (!streams.is_empty()).then_some(Topic { streams, resets, last_us: None });
+        let topic = Topic { resets, last_us: None, is_alone: false };
+        self.topics[slot] = (!self.streams[slot].is_empty()).then_some(topic);
+        self.places.clear();
     }
 
     fn data(&mut self, subscription: &Subscription, bytes: &[u8], sink: &mut dyn FnMut(Event<'_>)) {
-        let slot = usize::from(subscription.id);
+        if let Some(stamp_us) = subscription.layout.stamp_us(bytes) {
+            self.dated(subscription.id.into(), stamp_us, bytes, sink);
+        }
+    }
+
+    /// A message of a topic with its stamp.
+    fn dated(&mut self, slot: usize, stamp_us: u64, bytes: &[u8], sink: &mut dyn FnMut(Event<'_>)) {
         let Some(topic) = self.topics.get_mut(slot).and_then(Option::as_mut) else { return };
-        let Some(stamp_us) = subscription.layout.stamp_us(bytes) else { return };
+        let stamp_s = seconds_from_us(stamp_us as f64);
+        let waiting = || Waiting { slot, stamp_us, bytes: bytes.to_vec() };
+        if let Some(leap) = &mut self.leap {
+            if leap.wait(Some(stamp_s), waiting()) {
+                self.settle(sink);
+            }
+            return;
+        }
         match self.clock.place(stamp_us, topic.last_us) {
             Placed::At => topic.last_us = Some(stamp_us),
             Placed::Restarted => {
@@ -133,19 +174,46 @@ impl Decoder {
                 self.report.stale_stamps += 1;
                 return;
             }
+            Placed::Leaps => {
+                self.leap = Some(Leap::new(self.clock.last_s(), stamp_s, waiting()));
+                return;
+            }
         }
+        self.samples(slot, stamp_us, bytes, sink);
+    }
+
+    /// No message waits any longer: the log, or what its numbers mean, ends here.
+    pub(super) fn finish(&mut self, sink: &mut dyn FnMut(Event<'_>)) {
+        while self.leap.is_some() {
+            self.settle(sink);
+        }
+    }
+
+    fn settle(&mut self, sink: &mut dyn FnMut(Event<'_>)) {
+        let messages = match self.leap.take().map(Leap::settle) {
+            Some(Settled::Passed(messages)) => {
+                messages.first().into_iter().for_each(|first| self.clock.leap(first.stamp_us));
+                messages
+            }
+            Some(Settled::Damage(damaged, others)) => {
+                self.report.stale_stamps += damaged as u64;
+                others
+            }
+            None => Vec::new(),
+        };
+        for Waiting { slot, stamp_us, bytes } in messages {
+            self.dated(slot, stamp_us, &bytes, sink);
+        }
+    }
+
+    fn samples(&mut self, slot: usize, stamp_us: u64, bytes: &[u8], sink: &mut dyn FnMut(Event<'_>)) {
         let Some(topic) = self.topics.get_mut(slot).and_then(Option::as_mut) else { return };
         if topic.resets.jumped(bytes) {
             sink(Event::EstimatorReset { time_s: self.clock.seconds(stamp_us) });
         }
-        for bound in &topic.streams {
-            let Some((stamp_us, shift_s)) = bound.moment(bytes, stamp_us) else { continue };
+        for bound in &self.streams[slot] {
+            let Some(time_s) = time_s(&self.clock, bound, bytes, stamp_us) else { continue };
             let stream = bound.key();
-            let mut time_s = self.clock.seconds(stamp_us) + shift_s;
-            if is_state(stream.quantity) {
-                // the log begins with the state at its beginning, whenever that was entered
-                time_s = time_s.max(0.0);
-            }
             bound.sample(bytes, |values| sink(Event::Sample { stream, time_s, values }));
         }
     }
@@ -157,6 +225,15 @@ impl Decoder {
             topic.resets.forget();
         }
         let time_s = self.clock.seconds(stamp_us);
-        sink(Event::ClockReset { time_s, stamp_s: crate::units::seconds_from_us(stamp_us as f64) });
+        sink(Event::ClockReset { time_s, stamp_s: seconds_from_us(stamp_us as f64) });
     }
+}
+
+/// The time of a message's sample, s; `None` where it is not said.
+#[inline]
+pub(super) fn time_s(clock: &Clock, bound: &Bound, bytes: &[u8], stamp_us: u64) -> Option<f64> {
+    let (stamp_us, shift_s) = bound.moment(bytes, stamp_us)?;
+    let time_s = clock.seconds(stamp_us) + shift_s;
+    // the log begins with the state at its beginning, whenever that was entered
+    Some(if is_state(bound.key().quantity) { time_s.max(0.0) } else { time_s })
 }

@@ -6,6 +6,7 @@ use super::message::MAGIC;
 use super::reader::UlogReader;
 use super::report::{TopicCount, UlogReport};
 use super::topics::is_read;
+use super::whole::Whole;
 use crate::autopilot::Autopilot;
 use crate::log::error::LogError;
 use crate::log::format::{Certainty, Format, Place, Sink};
@@ -14,12 +15,18 @@ use crate::log::loss::Oddity;
 use crate::log::onboard::{OnboardReport, Topic};
 use crate::log::options::OpenOptions;
 use crate::log::report::{Details, ReadReport};
-use crate::recording::Event;
+use crate::recording::{Event, RecordingBuilder};
 use crate::units::seconds_from_us;
 
 /// PX4's own logs.
-pub(in crate::log) const FORMAT: Format =
-    Format { name: "PX4 log (.ulg)", takes_system: false, takes_columns: false, sniff, read };
+pub(in crate::log) const FORMAT: Format = Format {
+    name: "PX4 log (.ulg)",
+    takes_system: false,
+    takes_columns: false,
+    sniff,
+    read,
+    read_whole: Some(read_whole),
+};
 
 fn sniff(head: &[u8]) -> Option<Certainty> {
     head.starts_with(&MAGIC).then_some(Certainty::Certain)
@@ -40,7 +47,41 @@ fn read(input: &Input<'_>, _: &OpenOptions, sink: &mut Sink<'_>) -> Result<ReadR
             sink(place, event);
         });
     }
-    let report = reader.into_report();
+    let at_end = Place { offset: reader.report().bytes, arrival_us: None };
+    decoder.finish(&mut |event| sink(at_end, event));
+    Ok(told(reader.into_report(), &decoder, &craft, autopilot))
+}
+
+fn read_whole(
+    input: &Input<'_>,
+    _: &OpenOptions,
+    builder: &mut RecordingBuilder,
+) -> Result<ReadReport, LogError> {
+    // on a thread of the pool: it takes its part of every run
+    rayon::scope(|_| {
+        let mut reader = UlogReader::whole(input.open()?);
+        let mut decoder = Decoder::default();
+        let mut craft = Craft::default();
+        let mut autopilot = Autopilot::Unknown;
+        let mut whole = Whole::default();
+        loop {
+            whole.decode(&mut reader, &mut decoder, builder)?;
+            let Some(entry) = reader.next_message()? else { break };
+            craft.take(&entry.message);
+            decoder.decode(entry.message, &mut |event| {
+                if let Event::Autopilot(told) = event {
+                    autopilot = told;
+                }
+                builder.add(event);
+            });
+        }
+        decoder.finish(&mut |event| builder.add(event));
+        Ok(told(reader.into_report(), &decoder, &craft, autopilot))
+    })
+}
+
+/// What was met while reading.
+fn told(report: UlogReport, decoder: &Decoder, craft: &Craft, autopilot: Autopilot) -> ReadReport {
     let stale = decoder.report().stale_stamps;
     let (count, most_us) = decoder.report().ran_back;
     let mut oddities = report.oddities();
@@ -52,14 +93,14 @@ fn read(input: &Input<'_>, _: &OpenOptions, sink: &mut Sink<'_>) -> Result<ReadR
         firmware: craft.firmware(),
         topics: topics(&report),
     };
-    Ok(ReadReport {
+    ReadReport {
         format: FORMAT.name,
         vehicle: craft.vehicle(autopilot),
         losses: report.losses(stale),
         oddities,
         details: Details::Onboard(Box::new(onboard)),
         ..ReadReport::default()
-    })
+    }
 }
 
 /// Each topic that has messages, by name.

@@ -13,6 +13,7 @@ mod report;
 mod resets;
 mod schema;
 mod topics;
+mod whole;
 
 pub(super) use format::FORMAT;
 pub use message::Message;

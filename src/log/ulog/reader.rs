@@ -13,6 +13,8 @@ use crate::log::lookahead::LookAhead;
 
 /// In sight for every judgement: a message and the next, and as much of what follows as tells what it is.
 const LOOK_BYTES: usize = 2 * MOST_BYTES + HEADER_BYTES + 256;
+/// In sight at once of a log that is read whole.
+const WHOLE_CHUNK_BYTES: usize = 4 << 20;
 /// Messages of numbers that are not known, one behind the other, that speak for each other.
 const WITNESSES: usize = 3;
 /// Offsets of data that were appended after the file had been closed; a file has room for three.
@@ -65,8 +67,17 @@ enum Step {
 impl<R: Read> UlogReader<R> {
     /// Reads from the start of `from`; no buffering of its own is needed.
     pub fn new(from: R) -> Self {
+        Self::over(LookAhead::new(from))
+    }
+
+    /// The same, for a log that is read whole: more of it is in sight at once.
+    pub(super) fn whole(from: R) -> Self {
+        Self::over(LookAhead::with_chunk(from, WHOLE_CHUNK_BYTES))
+    }
+
+    fn over(bytes: LookAhead<R>) -> Self {
         Self {
-            bytes: LookAhead::new(from),
+            bytes,
             schema: Schema::default(),
             appended: Vec::new(),
             given: 0,
@@ -112,6 +123,39 @@ impl<R: Read> UlogReader<R> {
             }
         }
         Ok(self.given())
+    }
+
+    /// Gives `take` the data in sight that follow on each other from here on, as [`Self::next_message`] would give them one by
+    /// one: the number of the topic, the stamp, and the fields. It ends before the first one that `take` does not want.
+    ///
+    /// # Errors
+    /// The reader beneath fails.
+    pub(super) fn run(
+        &mut self,
+        take: &mut impl FnMut(u16, Option<u64>, &[u8]) -> bool,
+    ) -> Result<(), LogError> {
+        self.bytes.skip(std::mem::take(&mut self.given));
+        self.bytes.look(LOOK_BYTES)?;
+        let least = if self.bytes.is_all() { 0 } else { LOOK_BYTES };
+        let mut sight = self.bytes.sight();
+        while let Some(bytes) = self.following.filter(|_| sight.len() >= least) {
+            let next = sight.split_at_checked(bytes).and_then(|(message, rest)| {
+                let [_, _, _, low, high, body @ ..] = message else { return None };
+                let id = u16::from_le_bytes([*low, *high]);
+                let stamp_us = self.schema.subscription(id)?.layout.stamp_us(body);
+                Some((data_bytes(rest, &self.schema)?, id, stamp_us, body, rest))
+            });
+            let Some((following, id, stamp_us, body, rest)) = next else { break };
+            if !take(id, stamp_us, body) {
+                break;
+            }
+            self.report.messages += 1;
+            self.report.note_data(id, stamp_us);
+            self.following = Some(following);
+            self.given += bytes;
+            sight = rest;
+        }
+        Ok(())
     }
 
     /// What was met so far; complete once `next_message` has returned `None`.

@@ -2,6 +2,7 @@
 
 use crate::estimate::{Finding, LatencyKind, MethodResult, NAMES, theta_of};
 use crate::study::IdentifyStudy;
+use crate::text::with_error;
 use std::fmt::Write;
 
 use super::with_text::with_text;
@@ -41,9 +42,9 @@ fn body_text(study: &IdentifyStudy) -> String {
         );
     }
     if let Some(scale) = &study.scale {
-        let stated = "(identified)";
         if let Finding::Determined { value, std } = scale.value {
-            let _ = writeln!(page, "  {} {value:.4e} +- {std:.1e} {} {stated}", scale.name, scale.unit);
+            let _ =
+                writeln!(page, "  {} {} {} (identified)", scale.name, with_error(value, std), scale.unit);
         }
     } else {
         let _ = writeln!(

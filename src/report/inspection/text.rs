@@ -73,7 +73,8 @@ fn expectation(outlook: &Outlook) -> String {
 
 fn flight(page: &mut String, inspection: &Inspection) {
     let flight = &inspection.flight;
-    heading(page, &format!("flight (in the air by {})", flight.airborne_from));
+    let by = flight.airborne_from;
+    heading(page, &if by.is_empty() { "flight".to_owned() } else { format!("flight (in the air by {by})") });
     row(
         page,
         "in the air",

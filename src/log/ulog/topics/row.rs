@@ -1,12 +1,15 @@
 //! One stream of a topic: which fields become what.
 
 use super::turns::{MOST_CELLS, Turn};
-use crate::log::ulog::schema::{Cell, Layout};
+use crate::log::ulog::schema::{Cell, Layout, NumberType};
 use crate::recording::{Quantity, StreamKey};
 use crate::units::seconds_from_us;
 
 /// Elements of an array that are looked at: `control[*]`.
 const MOST_ELEMENTS: usize = 16;
+/// Numbers that most samples are made of, at most; a turn has room for so many.
+const FEW_CELLS: usize = 4;
+const FLOAT_BYTES: usize = 4;
 /// A sample that lies further from its message's stamp has no stamp of its own, microseconds.
 const SAMPLED_BEFORE_US: u64 = 1_000_000;
 
@@ -61,6 +64,8 @@ pub(super) enum Moment {
 pub(in crate::log::ulog) struct Bound {
     key: StreamKey,
     cells: Vec<Cell>,
+    /// where they begin, where they are single-precision numbers one behind the other
+    floats_at: Option<usize>,
     turn: Turn,
     when: Vec<(Cell, Option<f64>)>,
     sampled: Option<Cell>,
@@ -90,7 +95,8 @@ impl Row {
             Moment::LaterMeanOver { later, over } => (sampled(), layout.cell(later), layout.cell(over)),
         };
         let key = StreamKey { quantity: self.quantity, source, instance };
-        Some(Bound { key, cells, turn, when: when.collect(), sampled, later, over })
+        let floats_at = floats_at(&cells);
+        Some(Bound { key, cells, floats_at, turn, when: when.collect(), sampled, later, over })
     }
 }
 
@@ -112,6 +118,15 @@ fn cells(fields: &[&str], layout: &Layout) -> Option<Vec<Cell>> {
         }
     }
     (cells.len() <= MOST_CELLS).then_some(cells)
+}
+
+/// Where cells begin that are single-precision numbers one behind the other.
+fn floats_at(cells: &[Cell]) -> Option<usize> {
+    let first = cells.first()?.offset;
+    let follows = |(index, cell): (usize, &Cell)| {
+        cell.number == NumberType::F32 && cell.offset == first + index * FLOAT_BYTES
+    };
+    cells.iter().enumerate().all(follows).then_some(first)
 }
 
 impl Bound {
@@ -146,14 +161,36 @@ impl Bound {
         if !self.when.iter().all(holds) {
             return;
         }
-        let mut values = [0.0; MOST_CELLS];
-        for (value, cell) in values.iter_mut().zip(&self.cells) {
-            *value = cell.read(message);
+        // most have few, and room for many costs as much as the rest
+        if self.cells.len() <= FEW_CELLS {
+            self.turned(message, &mut [0.0; FEW_CELLS], take);
+        } else {
+            self.turned(message, &mut [0.0; MOST_CELLS], take);
         }
-        let given = (self.turn)(&mut values[..self.cells.len().max(4)], self.cells.len());
-        let sample = &values[..given.min(MOST_CELLS)];
+    }
+
+    #[inline]
+    fn turned<const N: usize>(&self, message: &[u8], values: &mut [f64; N], take: impl FnOnce(&[f64])) {
+        let count = self.cells.len().min(N);
+        self.read(message, &mut values[..count]);
+        let given = (self.turn)(&mut values[..count.max(FEW_CELLS)], count);
+        let sample = &values[..given.min(N)];
         if sample.iter().any(|value| value.is_finite()) {
             take(sample);
+        }
+    }
+
+    #[inline]
+    fn read(&self, message: &[u8], values: &mut [f64]) {
+        let floats = self.floats_at.and_then(|at| message.get(at..at + values.len() * FLOAT_BYTES));
+        if let Some(bytes) = floats {
+            for (value, bytes) in values.iter_mut().zip(bytes.as_chunks::<FLOAT_BYTES>().0) {
+                *value = f32::from_le_bytes(*bytes).into();
+            }
+            return;
+        }
+        for (value, cell) in values.iter_mut().zip(&self.cells) {
+            *value = cell.read(message);
         }
     }
 }

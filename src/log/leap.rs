@@ -1,0 +1,100 @@
+//! A stamp that leaps ahead: time that passed, or damage. Which of them, the stamps behind it tell; until they have, messages
+//! wait, so that neither a sound log loses one nor a damaged one makes the log longer.
+
+/// So many stamps from before the leap, behind it: it was damage.
+const BACK: usize = 2;
+/// So many at or after it, itself among them: time passed.
+const AHEAD: usize = 8;
+/// No more messages wait.
+const MOST: usize = 256;
+/// Messages of several threads run back by less, s.
+const THREADS_S: f64 = 10.0;
+/// The last stamp of a log leaps by no more, s: nothing behind it tells. A vehicle that rests writes something each half a minute.
+const LAST_S: f64 = 60.0;
+
+/// A leap, and the messages from it on.
+#[derive(Debug)]
+pub(super) struct Leap<T> {
+    before_s: f64,
+    leapt_s: f64,
+    ahead: usize,
+    back: usize,
+    waiting: Vec<(Side, T)>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Ahead,
+    Other,
+}
+
+/// What a leap was.
+#[derive(Debug)]
+pub(super) enum Settled<T> {
+    /// time that passed: the messages from it on, itself the first
+    Passed(Vec<T>),
+    /// damage: how many messages bore it, and the others since then
+    Damage(usize, Vec<T>),
+}
+
+impl<T> Leap<T> {
+    /// A message's stamp leaps, from `before_s` to `leapt_s`.
+    pub(super) fn new(before_s: f64, leapt_s: f64, message: T) -> Self {
+        Self { before_s, leapt_s, ahead: 1, back: 0, waiting: vec![(Side::Ahead, message)] }
+    }
+
+    /// Takes the message behind; `true` where it tells, or no more can wait.
+    pub(super) fn wait(&mut self, stamp_s: Option<f64>, message: T) -> bool {
+        let is_ahead = stamp_s.is_some_and(|stamp_s| stamp_s >= self.leapt_s - THREADS_S);
+        let is_back = !is_ahead && stamp_s.is_some_and(|stamp_s| stamp_s >= self.before_s - THREADS_S);
+        self.ahead += usize::from(is_ahead);
+        self.back += usize::from(is_back);
+        self.waiting.push((if is_ahead { Side::Ahead } else { Side::Other }, message));
+        self.ahead >= AHEAD || self.back >= BACK || self.waiting.len() >= MOST
+    }
+
+    /// What it was, as far as it has been told.
+    pub(super) fn settle(self) -> Settled<T> {
+        let messages = self.waiting.into_iter();
+        let is_last = self.ahead == 1 && self.leapt_s - self.before_s > LAST_S;
+        if self.back < BACK && self.ahead > self.back && !is_last {
+            return Settled::Passed(messages.map(|(_, message)| message).collect());
+        }
+        let others = messages.filter(|(side, _)| *side == Side::Other);
+        Settled::Damage(self.ahead, others.map(|(_, message)| message).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Leap, Settled};
+
+    /// What follows on a leap from 100 s; how many were damaged, and how many messages are left.
+    fn settled(leapt_s: f64, stamps_s: &[f64]) -> (usize, usize) {
+        let mut leap = Leap::new(100.0, leapt_s, leapt_s);
+        for stamp_s in stamps_s {
+            if leap.wait(Some(*stamp_s), *stamp_s) {
+                break;
+            }
+        }
+        match leap.settle() {
+            Settled::Passed(messages) => (0, messages.len()),
+            Settled::Damage(damaged, others) => (damaged, others.len()),
+        }
+    }
+
+    #[test]
+    fn what_follows_tells_a_pause_from_damage() {
+        let of = |stamps_s: &[f64]| settled(1100.0, stamps_s);
+        // stamps go on from it, near or far
+        assert_eq!((of(&[1100.1; 9]), of(&[1131.0, 1162.0, 1193.0])), ((0, 8), (0, 4)));
+        // taken back, after one and after three
+        assert_eq!((of(&[100.1, 100.2]), of(&[131.0, 162.0])), ((1, 2), (1, 2)));
+        assert_eq!(of(&[1100.0, 1100.1, 100.1, 100.2]), (3, 2));
+        // one of the old time that was late, and one that is damaged itself
+        assert_eq!(of(&[99.9, 1100.0, 9.0, 1100.1, 1100.2, 1100.2, 1100.2, 1100.3, 1100.3]), (0, 10));
+        // the log ends
+        assert_eq!((of(&[1100.1]), of(&[]), of(&[100.1])), ((0, 2), (1, 0), (1, 1)));
+        assert_eq!(settled(131.0, &[]), (0, 1));
+    }
+}
