@@ -266,7 +266,8 @@ impl Weighted {
         Some(normal_deviate(theta.dot(&covariance.cholesky()?.solve(&theta)), size))
     }
 
-    fn rms(&self, series: &[f64]) -> [f64; CHANNELS] {
+    /// Root mean square of a weighted series over the rows at which each channel is measured, N and N m.
+    pub(super) fn rms(&self, series: &[f64]) -> [f64; CHANNELS] {
         std::array::from_fn(|channel| {
             let part = &series[channel * self.rows..(channel + 1) * self.rows];
             let squares: f64 = part.iter().map(|value| value * value).sum();

@@ -32,7 +32,7 @@ pub(super) fn limits(last: &[Tested], fitted: &Fitted) -> Vec<DetectionLimit> {
         for part in parts {
             for &free in &part.free {
                 let material =
-                    units.next().map_or(0.0, |unit| Materiality::of_unit(unit, fitted).times_to_matter());
+                    units.next().map_or(0.0, |unit| Materiality::of_rms(unit, fitted).times_to_matter());
                 let Some(parameter) = part.parameter(free) else { continue };
                 let naming = &part.signature.naming;
                 // certainty alone is not enough for a name

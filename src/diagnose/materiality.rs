@@ -70,39 +70,24 @@ impl Materiality {
         let taken = normal.cholesky()?.solve(&(&gram * &coefficients).select_rows(&others));
         others.iter().zip(taken.iter()).for_each(|(&index, taken)| coefficients[index] = -taken);
         let own = all.nuisances.times(&coefficients);
-        let energy = own.norm_squared();
-        if energy.is_nan() || energy <= 0.0 {
-            return None;
-        }
-        let weight_n = fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2;
-        let rms = |channel: usize| {
-            let squares = own.rows(channel * all.rows, all.rows).norm_squared();
-            (squares / all.count_of(channel).max(1) as f64).sqrt() * all.sigma[channel]
-        };
-        let greatest = |of: &mut dyn Iterator<Item = f64>| of.fold(0.0, f64::max);
-        let of_torque = |axis: usize| rms(3 + axis) / fitted.rows.torque_rms[axis].max(f64::MIN_POSITIVE);
-        Some(Self {
-            force: greatest(&mut (0..3).chain(SECOND..CHANNELS).map(rms)) / weight_n,
-            torque: greatest(&mut (0..3).map(of_torque)),
-            misfit: energy / (energy + all.left.norm_squared()),
-        })
+        let own = Self::of_rms(&all.rms(own.as_slice()), fitted);
+        (own.misfit > 0.0).then_some(own)
     }
 
-    /// Of one unit of a candidate's coefficient beside a fit, by its test there.
-    pub(super) fn of_unit(unit: &[f64; CHANNELS], fitted: &Fitted) -> Self {
+    /// Of what has these root mean squares (N, N m) after the projection of all else: an effect, or one unit of a candidate.
+    pub(super) fn of_rms(rms: &[f64; CHANNELS], fitted: &Fitted) -> Self {
         let all = &fitted.weighted;
         let weight_n = fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2;
-        let force = (0..3).chain(SECOND..CHANNELS).map(|channel| unit[channel]).fold(0.0, f64::max);
-        let of_torque = |axis: usize| unit[3 + axis] / fitted.rows.torque_rms[axis].max(f64::MIN_POSITIVE);
-        let energy = |channel: usize| {
-            let sigma = all.sigma[channel];
-            if sigma > 0.0 { all.count_of(channel) as f64 * (unit[channel] / sigma).powi(2) } else { 0.0 }
-        };
-        let energy: f64 = (0..CHANNELS).map(energy).sum();
+        let force_n = (0..3).chain(SECOND..CHANNELS).map(|channel| rms[channel]).fold(0.0, f64::max);
+        let of_torque = |axis: usize| rms[3 + axis] / fitted.rows.torque_rms[axis].max(f64::MIN_POSITIVE);
+        let measured = (0..CHANNELS).filter(|&channel| all.sigma[channel] > 0.0);
+        let energy: f64 = measured
+            .map(|channel| all.count_of(channel) as f64 * (rms[channel] / all.sigma[channel]).powi(2))
+            .sum();
         Self {
-            force: force / weight_n,
+            force: force_n / weight_n,
             torque: (0..3).map(of_torque).fold(0.0, f64::max),
-            misfit: energy / (energy + all.energy),
+            misfit: energy / (energy + all.left.norm_squared()),
         }
     }
 

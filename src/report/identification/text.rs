@@ -43,8 +43,7 @@ fn body_text(study: &IdentifyStudy) -> String {
     }
     if let Some(scale) = &study.scale {
         if let Finding::Determined { value, std } = scale.value {
-            let _ =
-                writeln!(page, "  {} {} {} (identified)", scale.name, with_error(value, std), scale.unit);
+            let _ = writeln!(page, "  {} {} {} (identified)", scale.name, with_error(value, std), scale.unit);
         }
     } else {
         let _ = writeln!(
