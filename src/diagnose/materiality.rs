@@ -114,3 +114,31 @@ impl Materiality {
         (self.force / size.force).max(self.torque / size.torque).max(f64::MIN_POSITIVE)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_smaller_shows_less_and_matters_less() {
+        let of = |force: f64, torque: f64, misfit: f64| Materiality { force, torque, misfit }.matters();
+        assert!(of(0.011, 0.0, 0.001) && of(0.0, 0.21, 0.001) && of(0.0001, 0.0, 0.25));
+        assert!(of(0.006, 0.0, 0.05) && !of(0.006, 0.0, 0.03) && !of(0.004, 0.0, 0.1));
+        assert!(of(0.0, 0.05, 0.05) && !of(0.0, 0.15, 0.03) && !of(0.0, 0.03, 0.1));
+    }
+
+    #[test]
+    fn a_limit_is_the_size_from_which_on_it_matters() {
+        let times = |of: &Materiality, by: f64| {
+            let own = of.misfit / (1.0 - of.misfit) * by * by;
+            Materiality { force: by * of.force, torque: by * of.torque, misfit: own / (1.0 + own) }
+        };
+        for (force, torque, misfit) in
+            [(0.001, 0.0, 1e-4), (0.001, 0.0, 0.01), (0.001, 0.0, 0.15), (1e-5, 0.3, 1e-5), (0.2, 0.0, 0.001)]
+        {
+            let of = Materiality { force, torque, misfit };
+            let limit = of.times_to_matter();
+            assert!(times(&of, 1.001 * limit).matters() && !times(&of, 0.999 * limit).matters(), "{of:?}");
+        }
+    }
+}

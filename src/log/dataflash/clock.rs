@@ -153,10 +153,10 @@ mod tests {
     fn a_second_log_behind_the_first_begins_after_it() {
         let mut clock = Clock::default();
         clock.definitions_anew();
-        assert_eq!([clock.place(40.0), clock.place(60.0)], [Placed::At(0.0), Placed::At(20.0)]);
+        assert_eq!([clock.place(40.0), clock.place(48.0)], [Placed::At(0.0), Placed::At(8.0)]);
         clock.definitions_anew();
-        assert_eq!([clock.place(3.0), clock.place(4.0)], [Placed::Anew(21.0), Placed::At(22.0)]);
-        assert_eq!(clock.beside(4.1), Some(22.1));
+        assert_eq!([clock.place(3.0), clock.place(4.0)], [Placed::Anew(9.0), Placed::At(10.0)]);
+        assert_eq!(clock.beside(4.1), Some(10.1));
         assert_eq!(clock.beside(400.0), None);
     }
 }
