@@ -54,7 +54,7 @@ impl EffectTerm {
 
     /// Whether it changes what sensors show and nothing else: how much force that makes says nothing of its size.
     pub(super) fn is_of_sensors(&self) -> bool {
-        self.effect().hooks().iter().all(|hook| *hook == Hook::Sensors)
+        self.effect().hooks() == [Hook::Sensors]
     }
 
     /// Whether a parameter is the share of a force that acts at the rotors' hubs: it shows only in torques.

@@ -1,6 +1,5 @@
 //! The whole method: search, lack of fit, verdict.
 
-use super::base::Base;
 use super::channels::{AXES, CHANNELS};
 use super::confusable::confusable_with;
 use super::evidence::LEAST_ROWS;
@@ -11,18 +10,17 @@ use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
 use super::latency_name::latency_name;
 use super::limits::{limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
-use super::materiality::{Materiality, Slight};
 use super::named::{Confusable, Named, NamedParameter, Strength};
 use super::search::search;
 use super::settle::{fitted_strength, settle};
-use super::signature::{EffectTerm, Signature};
+use super::signature::Signature;
 use super::signatures::{ALL, GUST};
+use super::slight::{FoundEffect, Slight, named_and_slight};
 use super::tested::{Search, Step, Tested};
 use super::trace::{Trace, TraceError};
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
-use nalgebra::DVector;
 use std::ops::Range;
 
 /// Settings of an explanation.
@@ -70,10 +68,6 @@ const LACK_P: f64 = 1e-6;
 const LACK_FORCE_G: f64 = 0.002;
 /// Least torque that is left at the harmonics, as a share of the rms of the torque. Chosen; not measured by itself.
 const LACK_TORQUE: f64 = 0.1;
-/// Standard errors by which a size must be beyond what is ordinary: 97.5 % of one side.
-const BEYOND: f64 = 2.0;
-/// Air that moves by less is called still, m/s rms: a draught in a room. Chosen; not measured.
-const STILL_M_S: f64 = 0.15;
 /// Least share of the energy of the accepted effect that a rival must explain. Chosen; not measured.
 const RIVAL: f64 = 0.93;
 
@@ -190,7 +184,7 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
     let Beyond { lack, located_before, located_after, field, aperiodic } = beyond;
     let (mut named, mut slight) = names(traces, &found);
     named.extend(latency_name(traces, vehicle, &found));
-    match aperiodic.gust.as_ref().and_then(|gust| Some((gust_name(gust)?, gust.sigma_m_s < STILL_M_S))) {
+    match aperiodic.gust.as_ref().and_then(|gust| Some((gust_name(gust)?, gust.is_slight()))) {
         Some((effect, true)) => slight.push(Slight { effect, materiality: None }),
         Some((effect, false)) => named.push(effect),
         None => {}
@@ -270,7 +264,7 @@ fn explained_energy(found: &Search) -> f64 {
 fn names(traces: &[Trace], found: &Search) -> (Vec<Named>, Vec<Slight>) {
     let fitted = &found.after;
     let mut index = fitted.rows.nuisances.len();
-    let (mut named, mut slight) = (Vec::new(), Vec::new());
+    let mut found_effects = Vec::new();
     for (place, present) in fitted.base.present.iter().enumerate() {
         let mut parameters = Vec::new();
         let first = index;
@@ -302,36 +296,9 @@ fn names(traces: &[Trace], found: &Search) -> (Vec<Named>, Vec<Slight>) {
             strength: step.map_or_else(|| fitted_strength(fitted, present, first), strength),
             confusable_with: step.map_or_else(Vec::new, |step| confusable(traces, found, place, step)),
         };
-        let materiality = Materiality::of(fitted, present, first..index);
-        let matters = if present.is_of_sensors() {
-            is_beyond_ordinary(fitted, present, first)
-        } else {
-            materiality.is_none_or(|of| of.matters()) || is_part(present, &fitted.base)
-        };
-        if matters {
-            named.push(effect);
-        } else {
-            slight.push(Slight { effect, materiality });
-        }
+        found_effects.push(FoundEffect { effect, place, columns: first..index });
     }
-    (named, slight)
-}
-
-/// Whether its size is certainly beyond what is ordinary; its first free value has the column `first`.
-fn is_beyond_ordinary(fitted: &Fitted, term: &EffectTerm, first: usize) -> bool {
-    let Some(ordinary) = term.signature.naming.ordinary else { return true };
-    let size = term.size();
-    let along = |slot: usize| if term.is_amount(slot) { term.values[slot] / size } else { 0.0 };
-    let unit = DVector::from_iterator(term.free.len(), term.free.iter().map(|&slot| along(slot)));
-    let count = term.free.len();
-    let variance = unit.dot(&(fitted.covariance.view((first, first), (count, count)) * &unit));
-    size - BEYOND * variance.max(0.0).sqrt() > ordinary
-}
-
-/// Whether it is a part of another effect of the model: both are one to a reader.
-fn is_part(term: &EffectTerm, base: &Base) -> bool {
-    let whole = term.signature.role.axial_part_of;
-    whole.is_some_and(|whole| base.present.iter().any(|other| other.id() == whole.id()))
+    named_and_slight(fitted, found_effects)
 }
 
 fn strength(step: &Step) -> Strength {

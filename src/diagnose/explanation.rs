@@ -2,8 +2,8 @@
 
 use super::harmonics::LackOfFit;
 use super::locate::{Aperiodic, FieldTest, Localisation};
-use super::materiality::Slight;
 use super::named::{DetectionLimit, Named};
+use super::slight::Slight;
 use super::tested::Search;
 
 /// The answer in one word.

@@ -11,6 +11,7 @@ use super::materiality::Materiality;
 use super::named::DetectionLimit;
 use super::signature::EffectTerm;
 use super::signatures::signature_of;
+use super::slight::BEYOND;
 use super::tested::Tested;
 
 /// Standard errors by which an effect of its usual size must differ from zero: the z of [`Gates`](super::Gates).
@@ -39,15 +40,25 @@ pub(super) fn limits(last: &[Tested], fitted: &Fitted) -> Vec<DetectionLimit> {
                 let least = naming.ordinary.unwrap_or(naming.least);
                 let certain = Gates::default().deviate(part.signature);
                 // nor is a size that does not matter
-                let material = if part.is_of_sensors() || !part.is_amount(free) { 0.0 } else { material };
-                let limit = (certain * least_std(part, free, last)).max(least).max(material);
+                let std = least_std(part, free, last);
+                let certain = (certain * std).max(least);
+                let limit = if part.is_of_sensors() {
+                    certain.max(least + BEYOND * std)
+                } else if part.is_amount(free) {
+                    certain.max(material)
+                } else {
+                    certain
+                };
                 let same = out.iter_mut().find(|l| l.id == *id && l.parameter == parameter.name);
                 match same {
-                    Some(same) => same.limit = same.limit.max(limit),
+                    Some(same) => {
+                        same.limit = same.limit.max(limit);
+                        same.certain = same.certain.max(certain);
+                    }
                     None => {
                         let usual = (naming.usual)(parameter.name, vehicle);
                         let (parameter, unit) = (parameter.name, parameter.unit);
-                        out.push(DetectionLimit { id, parameter, limit, usual, unit });
+                        out.push(DetectionLimit { id, parameter, limit, certain, usual, unit });
                     }
                 }
             }
@@ -102,7 +113,7 @@ pub(super) fn too_little_excitation(after: &Fitted, limits: &[DetectionLimit]) -
     // a load is swung by the measured motion, in hover by its noise: that shows nothing
     let shown = |limit: &DetectionLimit| {
         let swings = signature_of(limit.id).is_some_and(|signature| signature.role.hangs_below);
-        !swings && limit.usual.is_some_and(|usual| limit.limit < usual)
+        !swings && limit.usual.is_some_and(|usual| limit.certain < usual)
     };
     !after.base.present.iter().any(moves) && !limits.iter().any(shown)
 }

@@ -6,7 +6,6 @@
 
 use super::channels::{CHANNELS, SECOND};
 use super::fit::Fitted;
-use super::named::Named;
 use super::signature::EffectTerm;
 use nalgebra::DVector;
 use std::ops::Range;
@@ -46,26 +45,22 @@ pub struct Materiality {
     pub misfit: f64,
 }
 
-/// An effect that is certain, and too small to matter: it is in the model and has no name.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Slight {
-    /// which, with its values
-    pub effect: Named,
-    /// how little it is; `None` of gusts, which have no part of their own in the model
-    pub materiality: Option<Materiality>,
-}
-
 impl Materiality {
-    /// Of the effect whose free values have these columns; `None` where it has no estimated amount, or no part of its own.
-    pub(super) fn of(fitted: &Fitted, term: &EffectTerm, columns: Range<usize>) -> Option<Self> {
+    /// Of effects together, each with the columns of its free values; `None` where they have no estimated amount, or no part of their
+    /// own.
+    pub(super) fn of(fitted: &Fitted, effects: &[(&EffectTerm, Range<usize>)]) -> Option<Self> {
         let all = &fitted.weighted;
         let gram = all.normal.as_ref()?.l_dirty().lower_triangle();
         let gram = &gram * gram.transpose();
         let mut coefficients = DVector::zeros(gram.nrows());
-        for (column, &slot) in columns.clone().zip(&term.free).filter(|(_, slot)| term.is_amount(**slot)) {
-            coefficients[column] = term.from_nothing(slot);
+        for (term, columns) in effects {
+            for (column, &slot) in columns.clone().zip(&term.free).filter(|(_, slot)| term.is_amount(**slot))
+            {
+                coefficients[column] = term.from_nothing(slot);
+            }
         }
-        let others: Vec<usize> = (0..gram.nrows()).filter(|index| !columns.contains(index)).collect();
+        let is_own = |index: &usize| effects.iter().any(|(_, columns)| columns.contains(index));
+        let others: Vec<usize> = (0..gram.nrows()).filter(|index| !is_own(index)).collect();
         let normal = gram.select_rows(&others).select_columns(&others);
         let taken = normal.cholesky()?.solve(&(&gram * &coefficients).select_rows(&others));
         others.iter().zip(taken.iter()).for_each(|(&index, taken)| coefficients[index] = -taken);
@@ -105,8 +100,12 @@ impl Materiality {
     /// Whether it is more than a trace.
     #[must_use]
     pub fn matters(&self) -> bool {
-        let shown = self.over(&SHOWN) >= 1.0 && self.misfit >= SHOWS;
-        shown || self.over(&PLAIN) >= 1.0 || self.misfit >= MISFIT
+        self.over(&SHOWN) >= 1.0 && self.shows() || self.over(&PLAIN) >= 1.0 || self.misfit >= MISFIT
+    }
+
+    /// Whether it shows in the misfit.
+    pub(super) fn shows(&self) -> bool {
+        self.misfit >= SHOWS
     }
 
     /// The greater of force and torque, over a size.

@@ -75,6 +75,8 @@ pub struct DetectionLimit {
     pub parameter: &'static str,
     /// in `unit`
     pub limit: f64,
+    /// in `unit`: from which on it is certain, whether it matters or not
+    pub certain: f64,
     /// size on ordinary vehicles, in `unit`, of an effect that appears only in motion
     pub usual: Option<f64>,
     /// SI

@@ -21,7 +21,7 @@ pub(super) struct Pair {
     pub(super) after: Base,
     /// with the flight's own centre of mass, where its beginning shows another one: what is predicted with
     pub(super) loaded: Option<LoadedPair>,
-    /// how the rates of the model after move in open loop
+    /// how the rates of both models move in open loop: it is no merit of the effects
     pub(super) rate_law: Option<RateLaw>,
     /// parameters that were not kept, as sentences
     pub(super) notes: Vec<String>,

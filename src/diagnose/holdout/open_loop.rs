@@ -74,7 +74,7 @@ fn models_of(ready: &Ready) -> Result<Models, PhysicsError> {
     let (before, after) = ready.pair.predicting();
     let after = predicting(after, ready.pair.rate_law)?;
     Ok(Models {
-        before: flown(before)?,
+        before: predicting(before, ready.pair.rate_law)?,
         after,
         noise: state_noise(ready.flight.signals),
         commands: command_noise(ready.flight.signals, &ready.pair.after.vehicle.propulsion),

@@ -41,7 +41,7 @@ pub struct Explained<'a> {
     pub explanation: &'a Explanation,
     /// a force beside the better model
     pub empirical: Option<&'a Empirical>,
-    /// how the rates of the better model move in open loop
+    /// how the rates of both models move in open loop: it is no merit of the effects
     pub rate_law: Option<RateLaw>,
 }
 

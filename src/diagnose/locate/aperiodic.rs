@@ -92,9 +92,9 @@ impl Aperiodic {
     #[must_use]
     pub fn is_lacking(&self) -> bool {
         let horizontal = |of: Quantity| matches!(of, Quantity::World(_));
-        let trend =
-            self.trend.is_some_and(|trend| trend.certain && !(self.gust.is_some() && horizontal(trend.of)));
-        let red = self.redness.iter().any(|red| red.certain && !(self.gust.is_some() && horizontal(red.of)));
+        let gust = self.gust.is_some_and(|gust| !gust.is_slight());
+        let trend = self.trend.is_some_and(|trend| trend.certain && !(gust && horizontal(trend.of)));
+        let red = self.redness.iter().any(|red| red.certain && !(gust && horizontal(red.of)));
         trend || red || self.state.is_some_and(|state| state.certain)
     }
 }
@@ -230,7 +230,11 @@ fn state_lack(view: &View, fitted: &Fitted, located: &Localisation) -> Option<St
     let tested: Vec<_> = located
         .follows
         .iter()
-        .filter(|follow| !follow.state.is_slow() && !follow.state.is_commanded())
+        .filter(|follow| {
+            // the commands' own noise is in the torques
+            let of_torque = (3..AXES).contains(&follow.channel);
+            !follow.state.is_slow() && !(of_torque && follow.state.is_commanded())
+        })
         .collect();
     let count = tested.len() as f64;
     let least = |channel: usize| {

@@ -1,7 +1,9 @@
 //! Gusts: a red horizontal force that corresponds to wind by a known drag.
 
 use super::lateral_drag::lateral_drag;
-use super::redness::{CONTRADICTED, Quantity, RED_STATISTIC, Redness, beside_harmonics, red_fit, red_shape};
+use super::redness::{
+    CONTRADICTED, LEAST_S, Quantity, RED_STATISTIC, Redness, beside_harmonics, red_fit, red_shape,
+};
 use super::spectrum::{Ordinate, noise_shapes};
 use super::view::View;
 use crate::diagnose::fit::Fitted;
@@ -26,8 +28,19 @@ pub struct GustFound {
     pub statistic: f64,
 }
 
+/// Least force of a gust, rms, as a share of the weight. Chosen; not measured.
+const LEAST_FORCE: f64 = 0.002;
+/// Air that moves by less is called still, m/s rms: a draught in a room. Chosen; not measured.
+const STILL_M_S: f64 = 0.15;
 /// Largest ratio of the strengths of a gust on the two horizontal axes. Chosen; not measured.
 const ALIKE: f64 = 3.0;
+
+impl GustFound {
+    /// Whether it is no more than the air of a room.
+    pub(in crate::diagnose) fn is_slight(&self) -> bool {
+        self.sigma_m_s < STILL_M_S
+    }
+}
 
 /// Gusts: both horizontal axes are equally red, and there is a drag through which they act.
 pub(super) fn gust(view: &View, fitted: &Fitted, redness: &[Redness]) -> Option<GustFound> {
@@ -37,8 +50,10 @@ pub(super) fn gust(view: &View, fitted: &Fitted, redness: &[Redness]) -> Option<
     let each = x.statistic.min(y.statistic) > 0.5 * RED_STATISTIC;
     // no wind where the velocity's error alone makes as much
     let each = each && axes.iter().all(|red| red.rms > CONTRADICTED * red.of_velocity_n);
-    // how much wind it is decides whether it matters, not how much force
-    let certain = x.statistic.max(y.statistic) > RED_STATISTIC;
+    let shows = |red: &Redness| {
+        red.statistic > RED_STATISTIC && red.relative > LEAST_FORCE && red.correlation_s >= LEAST_S
+    };
+    let certain = axes.iter().any(|red| shows(red));
     if !(alike && each && certain) {
         return None;
     }

@@ -165,7 +165,7 @@ const OF_JITTER: f64 = 2.0;
 
 /// A horizontal force whose correlation time is shorter comes from the sensors' filters and from the estimator: air moves more slowly, s.
 /// Chosen; not measured.
-const LEAST_S: f64 = 0.3;
+pub(super) const LEAST_S: f64 = 0.3;
 
 /// Correlation times that are tried, s: from the kernel's width to twenty seconds.
 const TIMES_S: [f64; 16] =

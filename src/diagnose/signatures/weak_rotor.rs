@@ -73,7 +73,7 @@ fn terms(rotors: usize) -> Vec<EffectTerm> {
 /// than another rotor is no second one.
 fn is_ordinary(term: &EffectTerm, all: &[EffectTerm]) -> bool {
     let every = || all.iter().filter(|other| other.is(&SIGNATURE)).map(|rotor| rotor.values[FACTOR]);
-    let greatest = every().map(|factor| (factor - 1.0).abs()).fold(0.0, f64::max);
+    let greatest = every().map(|factor| 1.0 - factor).fold(0.0, f64::max);
     let counts = |factor: &f64| (factor - 1.0).abs() >= BESIDE * greatest;
     let rotors = || every().filter(counts);
     let factor = term.values[FACTOR];

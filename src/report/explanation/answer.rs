@@ -163,9 +163,15 @@ fn nothing(study: &ExplainStudy) -> String {
         [] => would,
         unseen => format!("{would}, but not {} of usual size", list_or(unseen)),
     };
+    let traces: Vec<String> =
+        study.explanation.slight.iter().map(|of| called(of.effect.id).to_owned()).collect();
+    let traces = match traces.as_slice() {
+        [] => String::new(),
+        traces => format!(" Certain, but too small to matter: {}.", list(traces)),
+    };
     format!(
         "Nothing is missing that this flight could show: the rigid body with its rotors explains it down to the \
-         noise{would}.{other}"
+         noise{would}.{traces}{other}"
     )
 }
 

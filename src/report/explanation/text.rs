@@ -16,6 +16,7 @@ pub fn explanation_text(study: &ExplainStudy) -> String {
     for effect in study.effects.iter().chain(&study.closest) {
         effect_lines(&mut page, study, effect);
     }
+    trace_lines(&mut page, study);
     located_lines(&mut page, study);
     fit_lines(&mut page, study);
     body_lines(&mut page, study);
@@ -31,6 +32,19 @@ pub fn explanation_text(study: &ExplainStudy) -> String {
     }
     page.truncate(page.trim_end().len());
     page
+}
+
+fn trace_lines(page: &mut String, study: &ExplainStudy) {
+    let slight = &study.explanation.slight;
+    if slight.is_empty() {
+        return;
+    }
+    page.push_str("\n  certain, but too small to matter\n");
+    for Named { id, parameters, .. } in slight.iter().map(|of| &of.effect) {
+        let sizes =
+            parameters.iter().map(|p| format!("{} {} {}", p.name, with_error(p.value, p.std), p.unit));
+        let _ = writeln!(page, "    {id:<16} {}", sizes.collect::<Vec<_>>().join(", "));
+    }
 }
 
 fn effect_lines(page: &mut String, study: &ExplainStudy, effect: &Named) {

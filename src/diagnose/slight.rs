@@ -1,0 +1,97 @@
+//! Which of the effects found get a name, and which are traces.
+
+use super::fit::Fitted;
+use super::materiality::Materiality;
+use super::named::Named;
+use super::signature::EffectTerm;
+use nalgebra::DVector;
+use std::ops::Range;
+
+/// An effect that is certain, and too small to matter: it has no name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slight {
+    /// which, with its values
+    pub effect: Named,
+    /// how little it is; `None` of gusts, which have no part of their own in the model
+    pub materiality: Option<Materiality>,
+}
+
+/// An effect of a fit.
+pub(super) struct FoundEffect {
+    pub(super) effect: Named,
+    /// among the effects of the base
+    pub(super) place: usize,
+    /// of its free values
+    pub(super) columns: Range<usize>,
+}
+
+/// Standard errors by which a size must be beyond what is ordinary: 97.5 % of one side.
+pub(super) const BEYOND: f64 = 2.0;
+
+/// Those that matter, and the others. What is one effect to a reader is judged as one; and where what each of several can take over
+/// of the others matters together, the greatest of them is named.
+pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) -> (Vec<Named>, Vec<Slight>) {
+    let term = |of: &FoundEffect| &fitted.base.present[of.place];
+    let together = |those: &[&FoundEffect]| {
+        let each: Vec<_> = those.iter().map(|of| (term(of), of.columns.clone())).collect();
+        Materiality::of(fitted, &each)
+    };
+    let is_one = |a: &FoundEffect, b: &FoundEffect| {
+        let part = |part: &FoundEffect, whole: &FoundEffect| {
+            term(part).signature.role.axial_part_of.is_some_and(|of| of.id() == term(whole).id())
+        };
+        part(a, b) || part(b, a)
+    };
+    let alone: Vec<Option<Materiality>> = candidates
+        .iter()
+        .map(|of| {
+            let one: Vec<&FoundEffect> =
+                candidates.iter().filter(|other| other.place == of.place || is_one(of, other)).collect();
+            together(&one)
+        })
+        .collect();
+    let mut matters: Vec<bool> = candidates
+        .iter()
+        .zip(&alone)
+        .map(|(of, materiality)| {
+            if term(of).is_of_sensors() {
+                is_beyond_ordinary(fitted, term(of), of.columns.start)
+                    && materiality.is_none_or(|of| of.shows())
+            } else {
+                materiality.is_none_or(|of| of.matters())
+            }
+        })
+        .collect();
+    loop {
+        let left = |(index, of): &(usize, &FoundEffect)| !matters[*index] && !term(of).is_of_sensors();
+        let left: Vec<(usize, &FoundEffect)> = candidates.iter().enumerate().filter(left).collect();
+        let those: Vec<&FoundEffect> = left.iter().map(|(_, of)| *of).collect();
+        let misfit = |index: usize| alone[index].map_or(0.0, |of| of.misfit);
+        let greatest =
+            left.iter().max_by(|a, b| misfit(a.0).total_cmp(&misfit(b.0))).map(|(index, _)| *index);
+        match greatest.filter(|_| those.len() > 1 && together(&those).is_some_and(|of| of.matters())) {
+            Some(index) => matters[index] = true,
+            None => break,
+        }
+    }
+    let (mut named, mut slight) = (Vec::new(), Vec::new());
+    for ((of, materiality), matters) in candidates.into_iter().zip(alone).zip(matters) {
+        if matters {
+            named.push(of.effect);
+        } else {
+            slight.push(Slight { effect: of.effect, materiality });
+        }
+    }
+    (named, slight)
+}
+
+/// Whether its size is certainly beyond what is ordinary; its first free value has the column `first`.
+fn is_beyond_ordinary(fitted: &Fitted, term: &EffectTerm, first: usize) -> bool {
+    let Some(ordinary) = term.signature.naming.ordinary else { return true };
+    let size = term.size();
+    let along = |slot: usize| if term.is_amount(slot) { term.values[slot] / size } else { 0.0 };
+    let unit = DVector::from_iterator(term.free.len(), term.free.iter().map(|&slot| along(slot)));
+    let count = term.free.len();
+    let variance = unit.dot(&(fitted.covariance.view((first, first), (count, count)) * &unit));
+    size - BEYOND * variance.max(0.0).sqrt() > ordinary
+}
