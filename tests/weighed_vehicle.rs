@@ -30,7 +30,7 @@ fn weighed(vehicle: &Vehicle, share: f64) -> String {
     let mut vehicle = vehicle.clone();
     vehicle.anchor = Anchor::Mass;
     vehicle.propulsion = vehicle.propulsion.scaled(share);
-    let file = scratch(&format!("weighed_{share}.toml"));
+    let file = scratch(&format!("weighed_{}_{share}.toml", vehicle.name));
     std::fs::write(&file, vehicle_to_toml(&vehicle).unwrap()).unwrap();
     file.display().to_string()
 }
