@@ -233,7 +233,7 @@ fn state_lack(view: &View, fitted: &Fitted, located: &Localisation) -> Option<St
         .filter(|follow| {
             // the commands' own noise is in the torques
             let of_torque = (3..AXES).contains(&follow.channel);
-            !follow.state.is_slow() && !(of_torque && follow.state.is_commanded())
+            !(follow.state.is_slow() || of_torque && follow.state.is_commanded())
         })
         .collect();
     let count = tested.len() as f64;
