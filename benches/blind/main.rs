@@ -7,8 +7,9 @@
 //!
 //! With `--realistic` the controller flies on what an estimator believes, and the telemetry carries that belief. The
 //! flights are scored as practice flights are; `--cases` is the number of flights an effect, `--several` of those with
-//! two and four effects, `BLIND_KEEP=DIR` in the environment keeps the flights that are not answered right, `--out FILE` stores the figures, `--sanity N` tells how N estimators err, `--write DIR` puts N
-//! flights (`--flights N`) down as cases.
+//! two and four effects, `--out FILE` stores the figures, `--sanity N` tells how N estimators err, `--write DIR` puts N
+//! flights (`--flights N`) down as cases. `BLIND_KEEP=DIR` in the environment keeps the flights that are not answered
+//! right.
 //!
 //! Vehicle, conditions and noise are the seed's, whatever is concealed: what one seed's noise makes look like an
 //! effect may be named beside several entries, and is one event.

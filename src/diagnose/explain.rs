@@ -166,12 +166,10 @@ fn lacks(traces: &[Trace], fitted: &Fitted) -> Option<LackOfFit> {
 
 /// Whether the power at the harmonics of these axes is significant and large enough to matter.
 fn is_lacking(lack: &LackOfFit, fitted: &Fitted, mut axes: Range<usize>) -> bool {
-    let body = &fitted.base.vehicle;
-    let weight_n = body.body.mass_kg * body.gravity_m_s2;
     axes.any(|channel| {
         let size = lack.excess_rms[channel] * fitted.weighted.sigma[channel];
         let least = if channel < 3 {
-            LACK_FORCE_G * weight_n
+            LACK_FORCE_G * fitted.weight_n()
         } else {
             LACK_TORQUE * fitted.rows.torque_rms[channel - 3]
         };

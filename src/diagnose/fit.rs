@@ -69,6 +69,12 @@ impl Fitted {
         })
     }
 
+    /// The model's weight, N.
+    #[must_use]
+    pub fn weight_n(&self) -> f64 {
+        self.base.vehicle.body.mass_kg * self.base.vehicle.gravity_m_s2
+    }
+
     /// Standard error of `value m_w / m` at a mass m that is the weighed one m_w, by the chain rule: `value` is that of a
     /// column that follows the scale of force, and the mass is the first column.
     #[must_use]

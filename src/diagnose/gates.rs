@@ -56,7 +56,7 @@ const UBIQUITOUS_SHARE: f64 = 0.05;
 /// Whether a candidate is significant, distributed over the flight, physically possible, and large enough to matter.
 pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates: f64) -> bool {
     let evidence = &tested.evidence;
-    let weight_n = fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2;
+    let weight_n = fitted.weight_n();
     let force = |channel: usize| evidence.rms[channel] > gates.matters.0 * weight_n;
     let matters = (0..3).any(|axis| {
         force(axis)

@@ -72,7 +72,6 @@ impl Materiality {
     /// Of what has these root mean squares (N, N m) after the projection of all else: an effect, or one unit of a candidate.
     pub(super) fn of_rms(rms: &[f64; CHANNELS], fitted: &Fitted) -> Self {
         let all = &fitted.weighted;
-        let weight_n = fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2;
         let force_n = (0..3).chain(SECOND..CHANNELS).map(|channel| rms[channel]).fold(0.0, f64::max);
         let of_torque = |axis: usize| rms[3 + axis] / fitted.rows.torque_rms[axis].max(f64::MIN_POSITIVE);
         let measured = (0..CHANNELS).filter(|&channel| all.sigma[channel] > 0.0);
@@ -80,7 +79,7 @@ impl Materiality {
             .map(|channel| all.count_of(channel) as f64 * (rms[channel] / all.sigma[channel]).powi(2))
             .sum();
         Self {
-            force: force_n / weight_n,
+            force: force_n / fitted.weight_n(),
             torque: (0..3).map(of_torque).fold(0.0, f64::max),
             misfit: energy / (energy + all.left.norm_squared()),
         }

@@ -12,7 +12,7 @@ use super::channels::{
 };
 use super::nuisances::{momentum_rows, nuisances};
 use super::rotors::{OfRotors, RotorMotion};
-use super::sensors::{KnownMotion, is_of_sensors, true_motion, true_readings};
+use super::sensors::{KnownMotion, true_motion, true_readings};
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use super::velocity_error::velocity_error;
@@ -170,7 +170,7 @@ impl Rows {
             let mut moved = candidate.clone();
             let step = candidate.step_of(index, &base.size);
             moved.values[index] += step;
-            if is_of_sensors(candidate.effect()) {
+            if candidate.is_of_sensors() {
                 let mut with = base.clone();
                 with.present.push(moved);
                 columns.push(per_step(self.shown(flights, &with)?, &self.residual, step));
@@ -230,7 +230,7 @@ impl Rows {
                 let (present, value) = (&base.present[effect], base.present[effect].values[index]);
                 let below = present.possible(index, value - 0.5 * step, &base.size) - value;
                 let (up, down) = (moved(below + step), moved(below));
-                if is_of_sensors(base.present[effect].effect()) {
+                if base.present[effect].is_of_sensors() {
                     return Ok(per_step(self.shown(recorded, &up)?, &self.shown(recorded, &down)?, step));
                 }
                 let (up, down) = (up.model(&[])?, down.model(&[])?);

@@ -6,7 +6,7 @@
 use super::base::Base;
 use super::signature::EffectTerm;
 use super::trace::Trace;
-use crate::physics::{Effect, Hook, Measurement, State};
+use crate::physics::{Measurement, State};
 use crate::signals::{Series, central_difference};
 use nalgebra::Vector3;
 use std::borrow::Cow;
@@ -16,11 +16,6 @@ use std::sync::Arc;
 const PASSES: usize = 8;
 /// Largest difference from the measurement at which the motion counts as found, SI. Far below any sensor's noise.
 const FOUND: f64 = 1e-9;
-
-/// Whether an effect acts only on the measurements.
-pub(super) fn is_of_sensors(effect: &dyn Effect) -> bool {
-    effect.hooks() == [Hook::Sensors]
-}
 
 /// The flights' true motion, given the base's effects on the sensors.
 pub(super) fn true_motion<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [Trace]> {
@@ -97,7 +92,7 @@ pub(super) fn true_readings<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [T
 }
 
 fn faults(base: &Base) -> Vec<&EffectTerm> {
-    base.present.iter().filter(|present| is_of_sensors(present.effect())).collect()
+    base.present.iter().filter(|present| present.is_of_sensors()).collect()
 }
 
 /// One flight's states and, where it was recorded, specific force (m/s^2, body).

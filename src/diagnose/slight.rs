@@ -53,14 +53,7 @@ pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) ->
     let mut matters: Vec<bool> = candidates
         .iter()
         .zip(&alone)
-        .map(|(of, materiality)| {
-            if term(of).is_of_sensors() {
-                is_beyond_ordinary(fitted, term(of), of.columns.start)
-                    && materiality.is_none_or(|of| of.shows())
-            } else {
-                materiality.is_none_or(|of| of.matters())
-            }
-        })
+        .map(|(of, materiality)| is_material(fitted, of, *materiality))
         .collect();
     loop {
         let left = |(index, of): &(usize, &FoundEffect)| !matters[*index] && !term(of).is_of_sensors();
@@ -83,6 +76,16 @@ pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) ->
         }
     }
     (named, slight)
+}
+
+/// Whether an effect matters by itself. One whose own part is not known (`None`) does.
+fn is_material(fitted: &Fitted, of: &FoundEffect, own: Option<Materiality>) -> bool {
+    let term = &fitted.base.present[of.place];
+    if term.is_of_sensors() {
+        is_beyond_ordinary(fitted, term, of.columns.start) && own.is_none_or(|of| of.shows())
+    } else {
+        own.is_none_or(|of| of.matters())
+    }
 }
 
 /// Whether its size is certainly beyond what is ordinary; its first free value has the column `first`.

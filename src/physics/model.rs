@@ -47,7 +47,7 @@ impl Model {
         Self::assembled(self.body, self.airframe.clone(), effects)
     }
 
-    /// The same vehicle with one more effect, which acts after the others.
+    /// The same vehicle with one more effect, called after the others at each [`Hook`].
     ///
     /// # Errors
     /// If the vehicle's description lacks what the effect needs.

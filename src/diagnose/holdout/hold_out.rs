@@ -81,9 +81,7 @@ impl IdentificationFit {
     /// The number of quantities that a state that does not change predicts better over 0.5 s, and whether rates or attitude are among
     /// them.
     fn worse(&self) -> (usize, bool) {
-        let half = self.open_loop.iter().find(|of| (of.window_s - 0.5).abs() < 1e-9);
-        let quantities = half.map_or([None; 4], OpenLoop::quantities);
-        let worse = quantities.map(|of| of.is_some_and(|of| of.is_worse_than_unchanged()));
+        let worse = OpenLoop::half_second(&self.open_loop).map_or([false; 4], OpenLoop::worse_than_unchanged);
         (worse.iter().filter(|worse| **worse).count(), worse[2] || worse[3])
     }
 }

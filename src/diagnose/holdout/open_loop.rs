@@ -3,7 +3,7 @@
 use super::bootstrap::{AtEnd, Blocks, Compared, Interval, Squares};
 use super::error::HoldoutError;
 use super::floor::{command_noise, state_noise};
-use super::rate_law::{EmpiricalRates, Path, RateLaw, WINDOW_S as LAW_S};
+use super::rate_law::{EmpiricalRates, Path, RateLaw};
 use super::ready::{Ready, flown};
 use super::settings::HoldoutSettings;
 use crate::compare::{
@@ -19,7 +19,9 @@ use rayon::prelude::*;
 /// measured.
 const STRIDE_S: f64 = 0.17;
 /// Lengths of the windows, s.
-pub const WINDOWS_S: [f64; 3] = [0.1, 0.5, 1.0];
+pub const WINDOWS_S: [f64; 3] = [0.1, HALF_S, 1.0];
+/// Length of the windows that are told first, s.
+const HALF_S: f64 = 0.5;
 
 /// Errors over windows of one length; `None` for a quantity that the recording does not contain.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +41,22 @@ pub struct OpenLoop {
 }
 
 impl OpenLoop {
+    /// That over windows of 0.5 s.
+    #[must_use]
+    pub fn half_second(each: &[Self]) -> Option<&Self> {
+        each.iter().find(|of| of.is_half_second())
+    }
+
+    fn is_half_second(&self) -> bool {
+        (self.window_s - HALF_S).abs() < 1e-9
+    }
+
+    /// Whether a state that does not change predicts each quantity better, in the order of [`Self::quantities`].
+    #[must_use]
+    pub fn worse_than_unchanged(&self) -> [bool; 4] {
+        self.quantities().map(|of| of.is_some_and(|of| of.is_worse_than_unchanged()))
+    }
+
     /// Position, velocity, attitude, rates.
     #[must_use]
     pub fn quantities(&self) -> [Option<Compared>; 4] {
@@ -65,7 +83,7 @@ pub(super) fn open_loop(
         .par_iter()
         .map(|&window_s| one_length(window_s, (ready, &models), empirical, settings))
         .collect::<Result<_, _>>()?;
-    let half = parts.iter().find(|(of, ..)| (of.window_s - 0.5).abs() < 1e-9);
+    let half = parts.iter().find(|(of, ..)| of.is_half_second());
     let (improvement, blocks) = half.map_or((None, 0), |(_, improvement, blocks)| (*improvement, *blocks));
     Ok((parts.into_iter().map(|(of, ..)| of).collect(), improvement, blocks))
 }
@@ -91,7 +109,7 @@ fn predicting(base: &Base, rate_law: Option<RateLaw>) -> Result<Model, PhysicsEr
 fn path_of<'a>(ready: &'a Ready) -> Result<Path<'a>, HoldoutError> {
     let (_, base) = ready.pair.predicting();
     let (model, signals) = (flown(base)?, ready.flight.signals);
-    let torques_nm = torques_along((&model, &base.vehicle), signals, &playback_of(LAW_S))
+    let torques_nm = torques_along((&model, &base.vehicle), signals, &playback_of(HALF_S))
         .map_err(|source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source })?;
     Ok(Path { signals, torques_nm, inertia_kg_m2: model.body.inertia_kg_m2 })
 }
@@ -99,10 +117,10 @@ fn path_of<'a>(ready: &'a Ready) -> Result<Path<'a>, HoldoutError> {
 /// A law of the rates, fitted to flights.
 pub(super) fn rate_law(ready: &[Ready]) -> Result<Option<RateLaw>, HoldoutError> {
     let paths: Vec<Path> = ready.par_iter().map(path_of).collect::<Result<_, HoldoutError>>()?;
-    Ok(RateLaw::fit(&paths, STRIDE_S))
+    Ok(RateLaw::fit(&paths, (HALF_S, STRIDE_S)))
 }
 
-// grids are seldom faster than 4 ms: one step an instant
+/// Playback over windows of this length, s. Grids are seldom faster than 4 ms: one step an instant.
 fn playback_of(window_s: f64) -> PlaybackSettings {
     PlaybackSettings { window_s, stride_s: STRIDE_S, step_s: 0.004, ..PlaybackSettings::default() }
 }

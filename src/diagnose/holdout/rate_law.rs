@@ -19,8 +19,6 @@ pub struct RateLaw {
     pub offset_rad_s2: Vector3<f64>,
 }
 
-/// Length of the windows that the law is fitted to, s: that of the main table.
-pub(super) const WINDOW_S: f64 = 0.5;
 /// Fastest decay, 1/s: that of a rate loop. Chosen; not measured.
 const FASTEST_1_S: f64 = 50.0;
 /// Decay to start from, 1/s. Chosen; not measured.
@@ -38,10 +36,10 @@ pub(super) struct Path<'a> {
 }
 
 impl RateLaw {
-    /// Least squares over windows of 0.5 s from measured rates, with shares from 0 to 1 and no growth. `None` where there is no
-    /// window.
-    pub(super) fn fit(paths: &[Path], stride_s: f64) -> Option<Self> {
-        let [x, y, z] = [0, 1, 2].map(|axis| OneAxis::fit(paths, axis, stride_s));
+    /// Least squares over windows of a length (s), one each so many s, from measured rates, with shares from 0 to 1 and no growth.
+    /// `None` where there is no window.
+    pub(super) fn fit(paths: &[Path], windows: (f64, f64)) -> Option<Self> {
+        let [x, y, z] = [0, 1, 2].map(|axis| OneAxis::fit(paths, axis, windows));
         let [x, y, z] = [x?, y?, z?];
         let of = |part: fn(&OneAxis) -> f64| Vector3::new(part(&x), part(&y), part(&z));
         Some(Self {
@@ -75,8 +73,8 @@ struct Step {
 }
 
 impl OneAxis {
-    fn fit(paths: &[Path], axis: usize, stride_s: f64) -> Option<Self> {
-        gauss_newton(|values| sums(paths, (axis, stride_s), values)).map(Self)
+    fn fit(paths: &[Path], axis: usize, windows: (f64, f64)) -> Option<Self> {
+        gauss_newton(|values| sums((paths, axis), windows, values)).map(Self)
     }
 }
 
@@ -101,8 +99,8 @@ fn gauss_newton(
 
 /// Normal matrix and right-hand side of a Gauss-Newton step; `None` without a window.
 fn sums(
-    paths: &[Path],
-    (axis, stride_s): (usize, f64),
+    (paths, axis): (&[Path], usize),
+    (window_s, stride_s): (f64, f64),
     values: &Vector3<f64>,
 ) -> Option<(Matrix3<f64>, Vector3<f64>)> {
     let (mut normal, mut right, mut any) = (Matrix3::zeros(), Vector3::zeros(), false);
@@ -112,7 +110,7 @@ fn sums(
         let count = |time_s: f64| {
             (1..grid.count).take_while(|n| *n as f64 * grid.step_s <= time_s + 1e-9).count().max(1)
         };
-        let (window, stride) = (count(WINDOW_S), count(stride_s));
+        let (window, stride) = (count(window_s), count(stride_s));
         let step = |index: usize| {
             let rate = 0.5 * (rates[index] + rates[index + 1]);
             let gyroscopic = -rate.cross(&(path.inertia_kg_m2 * rate))[axis] / moment;

@@ -34,6 +34,6 @@ impl HoldoutFit {
     /// Open loop over windows of 0.5 s.
     #[must_use]
     pub fn half_second(&self) -> Option<&OpenLoop> {
-        self.open_loop.iter().find(|of| (of.window_s - 0.5).abs() < 1e-9)
+        OpenLoop::half_second(&self.open_loop)
     }
 }

@@ -7,9 +7,7 @@ use super::super::signature::EffectTerm;
 use super::super::trace::Trace;
 use super::gust::{GustFound, gust};
 use super::localisation::Localisation;
-use super::redness::{
-    Quantity, Redness, beside_harmonics, red_fit, red_quantities, redness, scale, weight_n,
-};
+use super::redness::{Quantity, Redness, beside_harmonics, red_fit, red_quantities, redness, scale};
 use super::view::{Followed, View};
 use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_TORQUE};
 use nalgebra::Vector3;
@@ -239,7 +237,7 @@ fn state_lack(view: &View, fitted: &Fitted, located: &Localisation) -> Option<St
     let count = tested.len() as f64;
     let least = |channel: usize| {
         if channel < 3 {
-            UNNAMED_FORCE * weight_n(fitted)
+            UNNAMED_FORCE * fitted.weight_n()
         } else {
             UNNAMED_TORQUE * fitted.rows.torque_rms[channel - 3]
         }

@@ -100,8 +100,7 @@ pub fn field_test(
     })?;
     let (where_m, extent_m, force_n) =
         bump(traces, after, (component, along), ranges[along]).unwrap_or((0.0, 0.0, 0.0));
-    let body = &after.base.vehicle;
-    let least_n = UNNAMED_FORCE * body.body.mass_kg * body.gravity_m_s2;
+    let least_n = UNNAMED_FORCE * after.weight_n();
     let certain = evidence.z > FIELD_Z
         && evidence.gain >= FIELD_GAIN
         && force_n.abs() >= least_n

@@ -141,12 +141,8 @@ pub(super) fn scale(fitted: &Fitted, of: Quantity) -> f64 {
     match of {
         Quantity::Lift => 1.0,
         Quantity::Torque(axis) => fitted.rows.torque_rms[axis],
-        Quantity::BodyZ | Quantity::World(_) => weight_n(fitted),
+        Quantity::BodyZ | Quantity::World(_) => fitted.weight_n(),
     }
-}
-
-pub(super) fn weight_n(fitted: &Fitted) -> f64 {
-    fitted.base.vehicle.body.mass_kg * fitted.base.vehicle.gravity_m_s2
 }
 
 /// Least likelihood ratio of a red spectrum against a white one. Chosen; not measured by itself.

@@ -130,8 +130,7 @@ pub(super) fn fit_values(study: &ExplainStudy) -> FitValues {
 
 fn pair(predicted: Option<&Predicted>) -> PairValue {
     let half = predicted.map(Predicted::half_second);
-    let windows = predicted
-        .and_then(|of| of.open_loop.iter().find(|of| (of.window_s - 0.5).abs() < 1e-9).map(|of| of.windows));
+    let windows = predicted.and_then(|of| OpenLoop::half_second(&of.open_loop).map(|of| of.windows));
     let each = |pick: &dyn Fn(&Compared) -> Option<f64>| {
         let [position_m, velocity_m_s, attitude_rad, rates_rad_s] =
             half?.map(|of| of.as_ref().and_then(pick));

@@ -144,7 +144,7 @@ fn traces(study: &ExplainStudy) -> Markup {
     let row = |of: &Slight| {
         let sizes = of.effect.parameters.iter().map(|p| {
             let size = with_error(p.value, p.std);
-            format!("{} {size} {}", p.name, spoken(p.unit))
+            format!("{} {size} {}", p.name, spoken(p.unit)).trim_end().to_owned()
         });
         let materiality = of.materiality.as_ref();
         vec![
@@ -158,11 +158,7 @@ fn traces(study: &ExplainStudy) -> Markup {
     };
     let rows: Vec<Vec<Cell>> = study.explanation.slight.iter().map(row).collect();
     let head = ["effect", "size", "z|", "% of the weight|", "% of the torque|", "% of the misfit|"];
-    table(
-        "Traces: certain, but too small to matter, and no names. Slow errors of sensors and estimators make as much",
-        &head,
-        &rows,
-    )
+    table("Traces: certain, but too small to matter. They have no name", &head, &rows)
 }
 
 fn empirical(term: &Empirical) -> Markup {

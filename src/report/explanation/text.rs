@@ -3,7 +3,7 @@
 use super::answer::answer;
 use crate::diagnose::{NO_LATENCY, Named, Verdict, called, clause};
 use crate::estimate::{Finding, ThrustScale};
-use crate::report::number::{chance, percent, significant, with_error};
+use crate::report::number::{chance, percent, significant, spoken, with_error};
 use crate::report::thrust_source::thrust_name;
 use crate::study::{AxisFit, BodyParameter, ExplainStudy, Predicted, QUANTITIES};
 use std::fmt::Write;
@@ -41,8 +41,10 @@ fn trace_lines(page: &mut String, study: &ExplainStudy) {
     }
     page.push_str("\n  certain, but too small to matter\n");
     for Named { id, parameters, .. } in slight.iter().map(|of| &of.effect) {
-        let sizes =
-            parameters.iter().map(|p| format!("{} {} {}", p.name, with_error(p.value, p.std), p.unit));
+        let sizes = parameters.iter().map(|p| {
+            let size = format!("{} {} {}", p.name, with_error(p.value, p.std), spoken(p.unit));
+            size.trim_end().to_owned()
+        });
         let _ = writeln!(page, "    {id:<16} {}", sizes.collect::<Vec<_>>().join(", "));
     }
 }

@@ -16,7 +16,8 @@ use crate::study::{Predicted, StudyError};
 const BY_RATE_LAW: &str = "over 0.5 s these flights' body rates or attitude are predicted better by no change at all than by the torques \
                            of the model: calm flight under a controller says little of them. Open-loop predictions use an \
                            empirical law of the rates instead (\"rate_law\"): it holds for this vehicle under this \
-                           controller, it is no property of the vehicle. model.toml does not hold it and alone predicts these worse than no change does";
+                           controller, it is no property of the vehicle. model.toml does not hold it and alone predicts these worse than no change does. \
+                           A trajectory that turns the vehicle more (`mavid plan`) makes the torques show";
 
 /// A flight that was used, or a part of it, shows nothing as a hold-out.
 pub(super) fn refuse_shared(flights: &Prepared, held: &Prepared) -> Result<(), StudyError> {

@@ -15,8 +15,7 @@ impl Predicted {
     /// Errors over windows of 0.5 s.
     #[must_use]
     pub fn half_second(&self) -> [Option<Compared>; 4] {
-        let half = self.open_loop.iter().find(|of| (of.window_s - 0.5).abs() < 1e-9);
-        half.map_or([None; 4], OpenLoop::quantities)
+        OpenLoop::half_second(&self.open_loop).map_or([None; 4], OpenLoop::quantities)
     }
 
     /// The quantity whose error falls most, and by how much, percent.
@@ -45,11 +44,8 @@ impl Predicted {
     /// What a state that does not change predicts better over 0.5 s: for that the model is none.
     #[must_use]
     pub fn worse_than_unchanged(&self) -> Vec<&'static str> {
-        let quantities = self.half_second().into_iter().zip(QUANTITIES);
-        quantities
-            .filter(|(of, _)| of.is_some_and(|of| of.is_worse_than_unchanged()))
-            .map(|(_, (name, _))| name)
-            .collect()
+        let worse = OpenLoop::half_second(&self.open_loop).map_or([false; 4], OpenLoop::worse_than_unchanged);
+        QUANTITIES.into_iter().zip(worse).filter(|(_, worse)| *worse).map(|((name, _), _)| name).collect()
     }
 
     /// Mean improvement over the quantities, percent.
