@@ -3,7 +3,8 @@
 use crate::text;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use serialport::{DataBits, FlowControl, Parity, StopBits};
 
@@ -14,6 +15,8 @@ use super::threads::{self, Port};
 
 /// A call that waits longer returns, so that its thread can see whether it is still wanted.
 const CALL: Duration = Duration::from_millis(50);
+/// How long a port that exists and cannot be opened is tried again.
+const LET_GO: Duration = Duration::from_millis(500);
 
 /// Opens a serial port, and opens it again.
 pub(in crate::link) struct Serial {
@@ -32,8 +35,19 @@ impl std::fmt::Debug for Serial {
 impl Serial {
     pub fn open(path: &Path, baud: u32, flow_control: bool) -> io::Result<Self> {
         let mut serial = Self { path: path.into(), baud, flow_control, first: None };
-        serial.first = Some(serial.port()?);
+        serial.first = Some(serial.port_once_let_go()?);
         Ok(serial)
+    }
+
+    /// The port, waited for while a link that has just ended still holds it: its threads notice after a [`CALL`].
+    fn port_once_let_go(&self) -> io::Result<Port> {
+        let asked = Instant::now();
+        loop {
+            match self.port() {
+                Err(_) if self.path.exists() && asked.elapsed() < LET_GO => thread::sleep(CALL),
+                port => return port,
+            }
+        }
     }
 
     pub async fn serve(&mut self, incoming: &mut Incoming, outgoing: &mut Outgoing) {
@@ -63,5 +77,27 @@ impl Serial {
             .open()?;
         let writer = reader.try_clone()?;
         Ok(Port { reader: Box::new(reader), writer: Box::new(writer) })
+    }
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+    use crate::link::transport::pty::Pty;
+
+    #[test]
+    fn a_port_is_opened_once_the_link_before_has_let_go_of_it() {
+        let folder = std::env::temp_dir().join(format!("mavid_serial_{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("tty");
+        let _other_end = Pty::open(&path).unwrap();
+        let before = Serial::open(&path, 57_600, false).unwrap();
+        let ends = thread::spawn(move || {
+            thread::sleep(CALL);
+            drop(before);
+        });
+        assert!(Serial::open(&path, 57_600, false).is_ok());
+        ends.join().unwrap();
+        assert!(Serial::open(&folder.join("none"), 57_600, false).is_err());
     }
 }
