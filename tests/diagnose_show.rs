@@ -92,7 +92,8 @@ fn drag_pays_on_a_flight_that_was_not_used_and_the_vehicle_is_the_same() {
     // the force rows fall to what the flight's own fit leaves
     let force = shown.weak[0].unwrap();
     assert!(force.after.value < 0.6 * force.before.value, "{force:?}");
-    assert!(force.after.value < 1.3 * force.floor.unwrap(), "{force:?}");
+    // the tilt of the thrust axis is what the other flight told, to a milliradian
+    assert!(force.after.value < 1.5 * force.floor.unwrap(), "{force:?}");
     let closed = shown.closed_loop.as_ref().unwrap();
     assert!(closed.signals[0].unwrap().after.value < closed.signals[0].unwrap().before.value);
     // no model takes the recording's own noise out

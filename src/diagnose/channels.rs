@@ -41,6 +41,8 @@ pub enum Nuisance {
     Latency,
     /// s, of the force beyond that of the torque
     ForceLatency,
+    /// s, of the kinematics along body z beyond that of the accelerometer
+    KinematicLatency,
     /// rad, thrust axis about body x, y
     Tilt(usize),
     /// share of the commands' jitter that the rotors do not follow, less one half

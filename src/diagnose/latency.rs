@@ -7,6 +7,7 @@
 use super::base::Base;
 use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing, per_step};
 use super::evidence::Weighted;
+use super::fed_back::{UNCONFIRMED_S, is_fed_back};
 use super::fit::{Fitted, Newton, evaluate, fit};
 use super::hausman::{contradict, differ};
 use super::rows::{Rows, residuals};
@@ -53,11 +54,6 @@ const LEAST_S: f64 = 0.010;
 /// Delay of the mean command, as a share of the log's period. A command is held until the next one, and the control
 /// loop runs faster than the log. Chosen; not measured.
 const HELD: f64 = 0.25;
-/// Noise of the gyroscopes above which the kind of the latency is not determined, rad/s. Chosen; not measured.
-const NOISY_RAD_S: f64 = 0.03;
-/// Standard error of a latency by least squares where the gyroscopes' noise is fed back and no instrument confirms it, s. On flights
-/// with an estimator in the loop it was wrong by 2 to 40 ms.
-const UNCONFIRMED_S: f64 = 0.02;
 /// Latency of sampling and a fast motor, s. A lag or delay is named if it is beyond it. Chosen; not measured.
 pub(super) const FAST_MOTOR_S: f64 = 0.004;
 /// A split into delay and lag is rejected if a lag alone has a larger log-likelihood by this much a row. Something else
@@ -111,6 +107,11 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         if !fed_back {
             finding = LatencyFinding { against_lag, against_delay, ..finding };
         }
+    } else if finding.is_determined() && latency.lag_s == 0.0 {
+        // its kind is not told: the lag that is stated
+        let lag_s = stated_lag_s(&fitted.base.vehicle).clamp(0.0, total_s.max(0.0));
+        latency =
+            ActuationLatency { delay_s: total_s - lag_s, lag_s, uneven: stated_uneven(&fitted.base.vehicle) };
     }
     let held = fit(flights, Base { latency, ..base }, Newton::Held)?;
     Ok((held, finding))
@@ -155,11 +156,6 @@ pub(super) fn with_any_latency(flights: &[Trace], base: Base) -> Result<(Fitted,
     let (fitted, LatencyFinding { std_s, .. }) = with_latency(flights, allowed, Newton::Free)?;
     let Base { vehicle, latency, .. } = fitted.base;
     Ok((evaluate(flights, Base { vehicle, latency, ..base })?, std_s))
-}
-
-/// Whether the gyroscopes' noise moves commands and motion together.
-pub(super) fn is_fed_back(flights: &[Trace]) -> bool {
-    flights.iter().any(|trace| trace.gyro_noise_rad_s > NOISY_RAD_S)
 }
 
 /// The split into delay and lag, or the lag alone if it explains the flight far better.

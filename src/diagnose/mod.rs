@@ -15,6 +15,7 @@ mod expected;
 pub mod experiment;
 mod explain;
 mod explanation;
+mod fed_back;
 mod felt;
 mod fit;
 mod floors;

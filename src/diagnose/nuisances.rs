@@ -2,6 +2,7 @@
 
 use super::base::Base;
 use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
+use super::fed_back::{UNCONFIRMED_S, is_fed_back};
 use super::rotors::RotorMotion;
 use super::trace::Trace;
 use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
@@ -11,6 +12,9 @@ use nalgebra::Vector3;
 /// Standard deviation of the prior of the latency of force against torque, s. Filters of accelerometer and gyroscopes
 /// differ by milliseconds. Chosen; not measured.
 const FORCE_LATENCY_STD_S: f64 = 0.004;
+/// Standard deviation of the prior of the latency of the estimated vertical velocity, s: estimators correct it by a barometer
+/// and a receiver that are late by tenths of a second. Chosen; not measured.
+const KINEMATIC_LATENCY_STD_S: f64 = 0.05;
 /// Standard deviation of the prior of the share of the jitter that acts: 1/sqrt(12), uniform between 0 and 1.
 const JITTER_STD: f64 = 0.288_675;
 /// Standard deviation of the prior of the attitude's level, rad: attitude estimates are level to about half a degree.
@@ -82,8 +86,15 @@ pub(super) fn nuisances(
     let both = channels(trace, [none(), none(), late.clone()], late_torque);
     let considered = spins_up.then_some(of_yaw);
     out.push(NuisanceColumn { considered, ..column(Nuisance::Latency, None, both) });
+    if trace.reads_force_twice() {
+        let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
+        values[SECOND + 2].clone_from(&late);
+        out.push(column(Nuisance::KinematicLatency, Some(KINEMATIC_LATENCY_STD_S), values));
+    }
     let late = force([none(), none(), late]);
-    out.push(column(Nuisance::ForceLatency, Some(FORCE_LATENCY_STD_S), late));
+    // where the gyroscopes' noise is fed back, the torques do not tell the latency as well as that
+    let unsure_s = if is_fed_back(std::slice::from_ref(trace)) { UNCONFIRMED_S } else { 0.0 };
+    out.push(column(Nuisance::ForceLatency, Some(FORCE_LATENCY_STD_S.hypot(unsure_s)), late));
     let thrust = trace.weak(0, &thrust);
     let negative: Vec<f64> = thrust.iter().map(|t| -t).collect();
     // no thrust axis is known to a tenth of a degree; one that leans much is an effect

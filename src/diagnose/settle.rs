@@ -1,10 +1,10 @@
 //! After the search: which effects stay in the model, and what has no noise of the autopilot's own tells their sizes.
 
 use super::base::Base;
+use super::fed_back::is_fed_back;
 use super::felt::Felt;
 use super::fit::{Fitted, Newton, fit};
 use super::floors::{FORM, add_floors};
-use super::latency::is_fed_back;
 use super::limits::is_beyond_showing;
 use super::named::Strength;
 use super::physical::make_physical;

@@ -14,6 +14,8 @@ const ROTOR: usize = 0;
 const FACTOR: usize = 1;
 /// Difference between rotors of one vehicle that is ordinary (-). Chosen; not measured.
 const SCATTER: f64 = 0.08;
+/// Difference of one rotor that is ordinary (-): no two motors and propellers are more alike. Chosen; not measured.
+const ALIKE: f64 = 0.005;
 /// Difference of a second rotor, as a share of that of the first, below which it is none. Chosen; not measured.
 const BESIDE: f64 = 0.33;
 /// Least standard error of a rotor's thrust factor (-). Rotors continue to move between samples at 100 Hz: flights of
@@ -69,15 +71,15 @@ fn terms(rotors: usize) -> Vec<EffectTerm> {
     (0..rotors).map(|rotor| SIGNATURE.term(&[rotor as f64, 1.0], &[FACTOR])).collect()
 }
 
-/// Whether it is ordinary: one rotor is stronger, or several differ, within the usual scatter of rotors. What differs by far less
-/// than another rotor is no second one.
+/// Whether it is ordinary: one rotor is stronger, or hardly weaker, or several differ, within the usual scatter of rotors. What
+/// differs by far less than another rotor is no second one.
 fn is_ordinary(term: &EffectTerm, all: &[EffectTerm]) -> bool {
     let every = || all.iter().filter(|other| other.is(&SIGNATURE)).map(|rotor| rotor.values[FACTOR]);
     let greatest = every().map(|factor| 1.0 - factor).fold(0.0, f64::max);
     let counts = |factor: &f64| (factor - 1.0).abs() >= BESIDE * greatest;
     let rotors = || every().filter(counts);
     let factor = term.values[FACTOR];
-    factor > 1.0
+    factor > 1.0 - ALIKE
         || !counts(&factor)
         || rotors().count() > 1 && rotors().all(|other| other > 1.0 - SCATTER)
         || rotors().any(|other| other > 1.0) && factor > 1.0 - SCATTER
