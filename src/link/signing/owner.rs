@@ -1,8 +1,9 @@
 //! Files that are for their owner alone.
 
-use std::fs::{File, OpenOptions};
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
+
+use tempfile::NamedTempFile;
 
 /// A warning where others than its owner may read or write a key's file; `None` where the system tells no such thing.
 pub(super) fn exposure(path: &Path) -> Option<String> {
@@ -43,41 +44,30 @@ fn open_to_others(_path: &Path) -> Option<(String, u32)> {
     None
 }
 
-/// A new file with this text, for its owner alone whatever the process's umask; what was there before is replaced.
-pub(super) fn write(path: &Path, text: &str) -> io::Result<()> {
-    match std::fs::remove_file(path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-        _ => {}
+/// A new file in this folder, for its owner alone whatever the process's umask. It is removed unless it is given a name.
+pub(super) fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+    let file = tempfile::Builder::new().prefix(".mavid-times-").tempfile_in(folder)?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        const OWNER: u32 = 0o600;
+        // never open to others, not even between two calls; a umask can only take from it, which is given back
+        file.as_file().set_permissions(std::fs::Permissions::from_mode(OWNER))?;
     }
-    create(path)?.write_all(text.as_bytes())
-}
-
-#[cfg(unix)]
-fn create(path: &Path) -> io::Result<File> {
-    use std::fs::Permissions;
-    use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
-    const OWNER: u32 = 0o600;
-    // never open to others, not even between two calls; a umask can only take from it, which is given back
-    let file = OpenOptions::new().write(true).create_new(true).mode(OWNER).open(path)?;
-    file.set_permissions(Permissions::from_mode(OWNER))?;
     Ok(file)
-}
-
-#[cfg(not(unix))]
-fn create(path: &Path) -> io::Result<File> {
-    OpenOptions::new().write(true).create_new(true).open(path)
 }
 
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;
     use std::fs;
+    use std::io::Write;
     use std::os::unix::fs::{MetadataExt, PermissionsExt};
 
     #[test]
     fn what_others_may_read_or_write_is_warned_of() {
         let path = std::env::temp_dir().join(format!("mavid-owner-{}", std::process::id()));
-        write(&path, "a key").unwrap();
+        fs::write(&path, "a key").unwrap();
         for (mode, said) in [
             (0o600, None),
             (0o400, None),
@@ -94,7 +84,9 @@ mod tests {
         }
         // a file that others could read is replaced by one that they cannot
         fs::set_permissions(&path, fs::Permissions::from_mode(0o666)).unwrap();
-        write(&path, "another").unwrap();
+        let mut file = temporary(&std::env::temp_dir()).unwrap();
+        file.write_all(b"another").unwrap();
+        file.persist(&path).unwrap();
         assert_eq!(fs::metadata(&path).unwrap().mode() & 0o777, 0o600);
         assert_eq!(fs::read_to_string(&path).unwrap(), "another");
         fs::remove_file(path).unwrap();

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::thread::JoinHandle;
@@ -100,12 +100,14 @@ impl Drop for TimesFile {
     }
 }
 
-/// The file is whole at every moment, either the old or the new, and for its owner alone.
+/// The file is whole at every moment, either the old or the new, and for its owner alone. Its new text has a name of its own until
+/// then: two processes that share a key do not write into each other's.
 fn replace(path: &Path, text: &str) -> io::Result<()> {
-    let mut name = path.as_os_str().to_owned();
-    name.push(".new");
-    owner::write(Path::new(&name), text)?;
-    fs::rename(&name, path)
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut file = owner::temporary(folder)?;
+    file.write_all(text.as_bytes())?;
+    file.persist(path)?;
+    Ok(())
 }
 
 impl Times {
