@@ -733,6 +733,17 @@ fn a_vehicle_that_answers_no_question_is_not_flown() {
     }
 }
 
+/// PX4 leaves the addressee of its answers uninitialised: the number of the question tells whose they are.
+#[test]
+fn an_answer_with_a_stray_addressee_is_an_answer() {
+    for kind in BOTH {
+        let mut flying = Flying::of(kind);
+        flying.misaddressed = true;
+        let outcome = flying.finish();
+        assert_eq!(outcome.ending, Ending::Landed, "{}", flying.story());
+    }
+}
+
 /// What the vehicle answered another station: by the time of day, or in nanoseconds since a start.
 fn answer_to_another(number: i64) -> MavMessage {
     MavMessage::TIMESYNC(TIMESYNC_DATA { tc1: 1, ts1: number, ..Default::default() })

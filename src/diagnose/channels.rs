@@ -43,6 +43,8 @@ pub enum Nuisance {
     ForceLatency,
     /// s, of the kinematics along body z beyond that of the accelerometer
     KinematicLatency,
+    /// s, of the velocity beyond that of the attitude, against the accelerometer's: the kinematics along body x and y
+    LateralLatency,
     /// rad, thrust axis about body x, y
     Tilt(usize),
     /// share of the commands' jitter that the rotors do not follow, less one half

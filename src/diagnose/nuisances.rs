@@ -15,6 +15,9 @@ const FORCE_LATENCY_STD_S: f64 = 0.004;
 /// Standard deviation of the prior of the latency of the estimated vertical velocity, s: estimators correct it by a barometer
 /// and a receiver that are late by tenths of a second. Chosen; not measured.
 const KINEMATIC_LATENCY_STD_S: f64 = 0.05;
+/// Standard deviation of the prior of the latency of the velocity beyond that of the attitude, s: what their stamps and the
+/// comparison with the inertial unit leave open. Chosen; not measured.
+const LATERAL_LATENCY_STD_S: f64 = 0.01;
 /// Standard deviation of the prior of the share of the jitter that acts: 1/sqrt(12), uniform between 0 and 1.
 const JITTER_STD: f64 = 0.288_675;
 /// Standard deviation of the prior of the attitude's level, rad: attitude estimates are level to about half a degree.
@@ -90,6 +93,7 @@ pub(super) fn nuisances(
         let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
         values[SECOND + 2].clone_from(&late);
         out.push(column(Nuisance::KinematicLatency, Some(KINEMATIC_LATENCY_STD_S), values));
+        out.push(lateral_latency(trace, &thrust));
     }
     let late = force([none(), none(), late]);
     // where the gyroscopes' noise is fed back, the torques do not tell the latency as well as that
@@ -110,6 +114,26 @@ pub(super) fn nuisances(
     }
     out.extend(sensor_nuisances(trace, mass_kg, base.stands_for(Nuisance::Level(0))));
     out
+}
+
+/// The kinematics along body x and y as they come late: the force in the world changes as the thrust, N, turns with the body. It
+/// goes with the velocity as a drag does, the faster the motion the more.
+fn lateral_latency(trace: &Trace, thrust_n: &[f64]) -> NuisanceColumn {
+    let turning = trace.states.iter().zip(thrust_n).map(|(state, thrust_n)| {
+        let rates = state.rates_rad_s;
+        (-thrust_n * rates.y, thrust_n * rates.x)
+    });
+    let (along_x, along_y): (Vec<f64>, Vec<f64>) = turning.unzip();
+    let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
+    values[SECOND] = trace.weak(0, &along_x);
+    values[SECOND + 1] = trace.weak(0, &along_y);
+    NuisanceColumn {
+        nuisance: Nuisance::LateralLatency,
+        values,
+        prior_std: Some(LATERAL_LATENCY_STD_S),
+        first_row: 0,
+        considered: None,
+    }
 }
 
 /// The accelerometer's bias, and the level of the attitude for the kinematics, unless the base has an effect for it.

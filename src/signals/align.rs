@@ -24,6 +24,8 @@ pub struct StreamOffset {
 const LARGEST_S: f64 = 0.1;
 /// Largest standard error of an offset that is corrected, s. Chosen; not measured.
 const LEAST_PRECISE_S: f64 = 0.005;
+/// Longest pause of the inertial unit's rates with which others are compared, s. Chosen; not measured.
+const LONGEST_PAUSE_S: f64 = 0.3;
 
 /// Attitudes on the grid from a quaternion stream shifted by `shift_s`; `None` with too few samples.
 #[must_use]
@@ -87,6 +89,27 @@ pub fn attitude_offset(
             });
             partial_out(&mut residual, &columns);
         }
+        Some(residual)
+    })
+}
+
+/// Offset of a stream of body rates against the inertial unit's own, for rates that another message brings: an autopilot's
+/// attitude has stamps and filters of its own.
+#[must_use]
+pub fn rate_offset(rate: &Stream, inertial: &Stream, frame: &AlignFrame<'_>) -> Option<StreamOffset> {
+    let pause = inertial.time_s.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    if pause > LONGEST_PAUSE_S {
+        return None;
+    }
+    let measured = vectors_onto(inertial, 0.0, frame.grid)?;
+    let none = vec![Vector3::zeros(); measured.len()];
+    estimate(frame.centers.len(), |shift_s| {
+        let rate = vectors_onto(rate, shift_s, frame.grid)?;
+        let apart: Vec<Vector3<f64>> = measured.iter().zip(&rate).map(|(a, b)| a - b).collect();
+        let mut residual = Vec::with_capacity(3 * frame.centers.len());
+        frame.difference(&none, &apart, &mut residual);
+        // a bias is no delay
+        frame.remove_means(&mut residual);
         Some(residual)
     })
 }

@@ -2,8 +2,8 @@
 
 use super::actuation::{Actuation, ThrustPreference};
 use super::align::{
-    AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, vectors_onto,
-    velocity_offset,
+    AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, rate_offset,
+    vectors_onto, velocity_offset,
 };
 use super::changed::{changes_in_the_air, resting_on_defaults};
 use super::flight::{AsRecorded, Quality, Reference, Series, Signals};
@@ -11,7 +11,7 @@ use super::height::is_height_by_pose;
 use super::lifts::too_little;
 use super::noise::gyro_noise_rad_s;
 use super::rotor_thrusts::ThrustSource;
-use super::select::{best, mean_rate_hz, median_period_s, too_short};
+use super::select::{best, best_of, mean_rate_hz, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
 use super::usable::{Evidence, Usable, airborne_spans, usable};
 use super::{Grid, SignalsError, WeakKernel, plausible, sufficient};
@@ -206,6 +206,8 @@ struct Chosen<'a> {
     world_acceleration: Option<(&'static str, &'a Stream)>,
     position: Option<(&'static str, &'a Stream)>,
     velocity: Option<(&'static str, &'a Stream)>,
+    /// body rates of the message that brings the specific force, where the chosen rates come by another
+    inertial_rate: Option<&'a Stream>,
 }
 
 impl<'a> Chosen<'a> {
@@ -213,10 +215,16 @@ impl<'a> Chosen<'a> {
         let pick = |quantity, width| {
             best(recording, quantity, |s: &Stream| s.width == width).map(|(key, stream)| (key.source, stream))
         };
+        let (rate, specific_force) = (pick(Quantity::AngularRate, 3), pick(Quantity::SpecificForce, 3));
+        let by_another = rate.zip(specific_force).filter(|((of_rate, _), (of_force, _))| of_rate != of_force);
+        let inertial_rate = by_another.and_then(|(_, (of_force, _))| {
+            best_of(recording, Quantity::AngularRate, |key, s| s.width == 3 && key.source == of_force)
+        });
         Self {
             attitude: pick(Quantity::Attitude, 4),
-            rate: pick(Quantity::AngularRate, 3),
-            specific_force: pick(Quantity::SpecificForce, 3),
+            rate,
+            inertial_rate: inertial_rate.map(|(_, stream)| stream),
+            specific_force,
             world_acceleration: pick(Quantity::WorldAcceleration, 3),
             position: pick(Quantity::Position, 3),
             velocity: pick(Quantity::Velocity, 3),
@@ -318,6 +326,15 @@ impl Motion {
         let grid = frame.grid;
         let plain = |s: Option<(&'static str, &Stream)>| s.and_then(|(_, s)| vectors_onto(s, 0.0, grid));
         let mut offsets = Vec::new();
+        let mut rate = rate;
+        if let Some(((_, stream), inertial)) = chosen.rate.zip(chosen.inertial_rate)
+            && let Some(offset) = rate_offset(stream, inertial, frame)
+        {
+            offsets.push((Quantity::AngularRate, offset));
+            if offset.repaired {
+                rate = vectors_onto(stream, offset.late_s, grid);
+            }
+        }
         let mut note = |quantity, offset: Option<StreamOffset>| {
             offset.map_or(0.0, |offset| {
                 offsets.push((quantity, offset));

@@ -18,7 +18,7 @@ use mavid::sitl::{Firmware, LinkId, LinkRole, Settings as VehicleSettings, Vehic
 use mavid::trajectory::{FourierAxis, FourierTrajectory};
 use mavid::vehicle::Limits;
 use mavid::wire::{Frame, Nonce};
-use mavlink::dialects::ardupilotmega::MavMessage;
+use mavlink::dialects::ardupilotmega::{MavMessage, TIMESYNC_DATA};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -91,6 +91,8 @@ pub struct Flying {
     pub down: Way,
     /// frames of these messages get lost on their way down
     pub swallowed: Vec<u32>,
+    /// answers to TIMESYNC name a stranger as their addressee
+    pub misaddressed: bool,
     /// what the stream has to tell the flight
     stalled: Option<Duration>,
     streamer: Streamer,
@@ -100,6 +102,24 @@ pub struct Flying {
     pub heard_sequence: u8,
     /// MAV_STATE of its last HEARTBEAT
     pub system_status: u8,
+}
+
+const TIMESYNC: u32 = 111;
+
+/// The same TIMESYNC with the addressee 5, 2.
+fn to_a_stranger(bytes: &[u8]) -> Vec<u8> {
+    let frame = Frame::at_start(bytes).unwrap();
+    let (head, payload) = (frame.header(), frame.payload());
+    let message = MavMessage::TIMESYNC(TIMESYNC_DATA {
+        tc1: payload.u64(0).cast_signed(),
+        ts1: payload.u64(8).cast_signed(),
+        target_system: 5,
+        target_component: 2,
+    });
+    let header = MavHeader { system_id: bytes[5], component_id: bytes[6], sequence: head.sequence };
+    let mut raw = MAVLinkV2MessageRaw::new();
+    raw.serialize_message(header, &message);
+    raw.raw_bytes().to_vec()
 }
 
 /// A lively trajectory of a few seconds.
@@ -168,6 +188,7 @@ impl Flying {
             up: Way::new(1),
             down: Way::new(2),
             swallowed: Vec::new(),
+            misaddressed: false,
             stalled: None,
             link,
             sequence: 0,
@@ -227,7 +248,9 @@ impl Flying {
         for outgoing in self.vehicle.advance(self.now) {
             let id = Frame::at_start(&outgoing.bytes).unwrap().header().message_id;
             if outgoing.link == self.link && !self.swallowed.contains(&id) {
-                self.down.give(outgoing.time, outgoing.bytes);
+                let is_answer = self.misaddressed && id == TIMESYNC;
+                let bytes = if is_answer { to_a_stranger(&outgoing.bytes) } else { outgoing.bytes };
+                self.down.give(outgoing.time, bytes);
             }
         }
         if alive {

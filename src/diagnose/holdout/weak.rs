@@ -94,9 +94,10 @@ fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
         let share = match column.nuisance {
             // a model without drag has no column for the velocity's error: neither model is given one
             Nuisance::Mass | Nuisance::Inertia(_) | Nuisance::Latency | Nuisance::VelocityError => continue,
-            Nuisance::AccelerometerBias(_) | Nuisance::Level(_) | Nuisance::KinematicLatency => {
-                own.coefficients[index]
-            }
+            Nuisance::AccelerometerBias(_)
+            | Nuisance::Level(_)
+            | Nuisance::KinematicLatency
+            | Nuisance::LateralLatency => own.coefficients[index],
             Nuisance::ForceLatency | Nuisance::Tilt(_) | Nuisance::Jitter => {
                 let columns = &identified.rows.nuisances;
                 let place = columns.iter().position(|known| known.nuisance == column.nuisance);

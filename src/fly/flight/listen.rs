@@ -8,7 +8,7 @@ use crate::autopilot::Mode;
 use crate::fly::news::Novelty;
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::safety::Doubted;
-use crate::wire::{Check, Frame, Payload};
+use crate::wire::{Check, Frame};
 
 /// Time for a vehicle to follow our setpoints after its takeoff, and to report it.
 const TAKEN_OVER: Duration = Duration::from_millis(1500);
@@ -52,8 +52,9 @@ impl Flight {
                     self.answered(now, &answer);
                 }
             }
-            // TIMESYNC: what asks has zero in front
-            111 if frame.payload().u64(0) != 0 && self.is_to_us(frame.payload(), 16) => {
+            // TIMESYNC: what asks has zero in front. The number tells whose answer it is; the addressee does not: PX4's
+            // TIMESYNC module leaves these two bytes as they were in its memory
+            111 if frame.payload().u64(0) != 0 => {
                 self.known.answered(frame.payload().u64(8).cast_signed(), place);
             }
             148 => self.version(now, frame.payload()),
@@ -63,13 +64,6 @@ impl Flight {
             self.learn(now, novelty);
         }
         self.check_motion(now);
-    }
-
-    /// Whether the addressee at this offset is us or nobody in particular: it is an extension that may be zero.
-    fn is_to_us(&self, payload: Payload<'_>, offset: usize) -> bool {
-        let (system, component) = self.sortie.settings.station;
-        let is = |byte: u8, id: u32| byte == 0 || u32::from(byte) == id;
-        is(payload.u8(offset), system.0) && is(payload.u8(offset + 1), component.0.into())
     }
 
     /// Whether it has been heard without a pause for long enough to follow our setpoints.
