@@ -1,6 +1,7 @@
 //! What the verbs that talk to vehicles share.
 
 use std::future::Future;
+use std::time::Duration;
 
 #[cfg(unix)]
 use mavid::fly::HangUp;
@@ -8,13 +9,17 @@ use mavid::link::{Address, AddressError, Ends, Link, LinkError, LinkOptions};
 
 use super::CommandError;
 
+/// How long the end of a verb waits for what it has left running.
+const LET_GO: Duration = Duration::from_millis(500);
+
 /// Runs a verb on the runtime.
 pub fn block_on<T>(verb: impl Future<Output = Result<T, CommandError>>) -> Result<T, CommandError> {
     let runtime = tokio::runtime::Runtime::new()
         .map_err(|error| CommandError::Failure(format!("cannot start the runtime: {error}")))?;
     let outcome = runtime.block_on(verb);
-    // a thread that a serial driver holds is not waited for
-    runtime.shutdown_background();
+    // until the tasks of links have let go of their sockets: the next step may want the same port. A thread that a serial
+    // driver holds is not waited for longer
+    runtime.shutdown_timeout(LET_GO);
     outcome
 }
 

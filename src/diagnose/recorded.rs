@@ -15,6 +15,8 @@ pub enum Need {
     Accelerometer,
     /// accelerometer, velocity and attitude: the force is measured twice
     ForceTwice,
+    /// accelerometer, velocity and attitude, and a position that is not by satellites
+    Frame,
     /// battery voltage
     Voltage,
     /// commands and body rates fast enough to compare torques, in one of the flights
@@ -34,6 +36,10 @@ impl Need {
             Self::ForceTwice => (
                 "accelerometer, velocity and attitude",
                 "it shows in the difference between the inertial unit and the position reference",
+            ),
+            Self::Frame => (
+                "accelerometer, velocity, attitude and a position reference with axes of its own",
+                "a satellite receiver has none that could be askew",
             ),
             Self::Voltage => ("battery voltage", "thrust falls with it; record BATTERY_STATUS or SYS_STATUS"),
             Self::Torques => (
@@ -96,6 +102,7 @@ impl<'a> Recorded<'a> {
             Need::Position => self.all(|trace| trace.known.position && trace.known.attitude),
             Need::Accelerometer => self.all(Trace::has_accelerometer),
             Need::ForceTwice => self.all(Trace::reads_force_twice),
+            Need::Frame => self.all(|trace| trace.reads_force_twice() && trace.height_by_pose != Some(false)),
             Need::Voltage => self.full_voltage().is_some(),
             Need::Torques => self.compares_torques(),
             Need::OneFlight => self.flights.len() == 1,

@@ -77,7 +77,7 @@ pub(in super::super) fn turning_on_the_spot() -> Signals {
             usable: Usable::default(),
             torques: true,
             gyro_noise_rad_s: None,
-            height_by_pose: false,
+            height_by_pose: None,
             notes: Vec::new(),
         },
     }

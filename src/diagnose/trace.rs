@@ -64,8 +64,8 @@ pub struct Trace {
     pub(super) felt_m_s2: Series<Vector3<f64>>,
     /// m/s^2
     pub gravity_m_s2: f64,
-    /// motion capture or a camera gives the height
-    pub height_by_pose: bool,
+    /// whether motion capture or a camera gives the height; `None` where it is not known
+    pub height_by_pose: Option<bool>,
     /// of the torques, if the commanded trajectory was recorded
     pub(super) instruments: Option<Arc<Instruments>>,
 }

@@ -51,7 +51,7 @@ pub(super) fn velocity_error(
     }
     let slope = slope(trace, model, commanded, by_commands_n);
     let knots = Knots::of((trace.grid.time_s(*first), trace.grid.time_s(*last)), trace.grid.step_s, flights);
-    let rms_m_s = if trace.height_by_pose { RMS_BY_POSE_M_S } else { RMS_M_S };
+    let rms_m_s = if trace.height_by_pose == Some(true) { RMS_BY_POSE_M_S } else { RMS_M_S };
     let mass_kg = base.vehicle.body.mass_kg;
     (0..=knots.count)
         .map(|knot| NuisanceColumn {

@@ -76,7 +76,7 @@ fn the_error_has_the_stated_root_mean_square() {
     assert!((between - BETWEEN_KNOTS).abs() < 1e-6);
     for (height_by_pose, rms_m_s) in [(false, RMS_M_S), (true, RMS_BY_POSE_M_S)] {
         let mut signals = turning_on_the_spot();
-        signals.quality.height_by_pose = height_by_pose;
+        signals.quality.height_by_pose = Some(height_by_pose);
         let rows = rows(signals, |_| 0.0);
         let of_knot = rows.nuisances.iter().find(|column| column.nuisance == Nuisance::VelocityError);
         let std_m_s = of_knot.and_then(|column| column.prior_std).unwrap();

@@ -123,8 +123,8 @@ pub struct Quality {
     pub usable: Usable,
     /// commands and body rates are fast enough to compare torques with the motion; otherwise only forces are compared
     pub torques: bool,
-    /// motion capture or a camera gives the height; otherwise it is not known, or by satellites or air pressure
-    pub height_by_pose: bool,
+    /// whether motion capture or a camera gives the height, or else satellites and air pressure; `None` where it is not known
+    pub height_by_pose: Option<bool>,
     /// notes for the user
     pub notes: Vec<Note>,
 }
@@ -159,7 +159,7 @@ mod tests {
                 airborne_s: Vec::new(),
                 usable: Usable::default(),
                 torques: true,
-                height_by_pose: false,
+                height_by_pose: None,
                 notes: Vec::new(),
             },
         };

@@ -7,17 +7,18 @@ const POSES: [&str; 4] =
     ["vehicle_mocap_odometry", "vehicle_visual_odometry", "att_pos_mocap", "vehicle_vision_position"];
 
 /// Whether motion capture or a camera gives the height: the autopilot's parameters say so; where they are not known, poses
-/// are logged and no satellite receiver's velocity.
-pub(super) fn is_height_by_pose(recording: &Recording) -> bool {
+/// are logged and no satellite receiver's velocity. `None` where nothing tells.
+pub(super) fn is_height_by_pose(recording: &Recording) -> Option<bool> {
     let parameter = |name: &str| recording.parameters.get(name).copied();
     let stated = recording.autopilot.stack().and_then(|stack| stack.has_height_by_pose(parameter));
     let logs = |what: fn(Quantity, &str) -> bool| {
         let mut streams = recording.streams.iter();
         streams.any(|(key, stream)| what(key.quantity, key.source) && !stream.is_empty())
     };
-    stated.unwrap_or_else(|| {
-        logs(|quantity, source| quantity == Quantity::Position && POSES.contains(&source))
-            && !logs(|quantity, _| quantity == Quantity::GpsVelocity)
+    stated.or_else(|| {
+        let by_pose = logs(|quantity, source| quantity == Quantity::Position && POSES.contains(&source));
+        let by_receiver = logs(|quantity, _| quantity == Quantity::GpsVelocity);
+        (by_pose || by_receiver).then_some(!by_receiver)
     })
 }
 
@@ -50,15 +51,16 @@ mod tests {
         let pose = (Quantity::Position, "vehicle_mocap_odometry");
         let receiver = (Quantity::GpsVelocity, "sensor_gps");
         let cases = [
-            (with(&[estimate], &[], Autopilot::Px4), false),
-            (with(&[estimate, pose], &[], Autopilot::Px4), true),
-            (with(&[estimate, pose, receiver], &[], Autopilot::Px4), false),
-            (with(&[estimate, pose, receiver], &[("EKF2_HGT_REF", 3.0)], Autopilot::Px4), true),
-            (with(&[estimate, pose], &[("EKF2_HGT_REF", 1.0)], Autopilot::Px4), false),
-            (with(&[estimate], &[("EKF2_HGT_MODE", 3.0)], Autopilot::Px4), true),
-            (with(&[estimate], &[("EK3_SRC1_POSZ", 6.0)], Autopilot::ArduPilot), true),
-            (with(&[estimate], &[("EK3_SRC1_POSZ", 1.0)], Autopilot::ArduPilot), false),
-            (with(&[], &[], Autopilot::default()), false),
+            (with(&[estimate], &[], Autopilot::Px4), None),
+            (with(&[estimate, receiver], &[], Autopilot::Px4), Some(false)),
+            (with(&[estimate, pose], &[], Autopilot::Px4), Some(true)),
+            (with(&[estimate, pose, receiver], &[], Autopilot::Px4), Some(false)),
+            (with(&[estimate, pose, receiver], &[("EKF2_HGT_REF", 3.0)], Autopilot::Px4), Some(true)),
+            (with(&[estimate, pose], &[("EKF2_HGT_REF", 1.0)], Autopilot::Px4), Some(false)),
+            (with(&[estimate], &[("EKF2_HGT_MODE", 3.0)], Autopilot::Px4), Some(true)),
+            (with(&[estimate], &[("EK3_SRC1_POSZ", 6.0)], Autopilot::ArduPilot), Some(true)),
+            (with(&[estimate], &[("EK3_SRC1_POSZ", 1.0)], Autopilot::ArduPilot), Some(false)),
+            (with(&[], &[], Autopilot::default()), None),
         ];
         for (recording, expected) in cases {
             assert_eq!(is_height_by_pose(&recording), expected, "{:?}", recording.parameters);

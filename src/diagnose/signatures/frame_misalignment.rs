@@ -13,7 +13,7 @@ const WITH_ATTITUDE: usize = 3;
 
 /// A position reference that is not level or not aligned, with or without the attitude.
 pub static SIGNATURE: Signature = Signature {
-    needs: &[Need::ForceTwice],
+    needs: &[Need::Frame],
     forms: |_: &Recorded| {
         vec![
             // turned with the attitude: about the vertical nothing changes

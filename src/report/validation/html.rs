@@ -173,7 +173,7 @@ mod tests {
             usable: Usable::default(),
             torques: true,
             gyro_noise_rad_s: None,
-            height_by_pose: false,
+            height_by_pose: None,
             notes: Vec::new(),
         };
         let flight = ValidatedFlight {

@@ -12,6 +12,7 @@ impl Source {
             Self::Heartbeat => status::heartbeat(payload, samples),
             Self::SysStatus => status::sys_status(payload, samples),
             Self::SystemTime | Self::ParamValue | Self::Statustext => nothing(payload, samples),
+            Self::GpsRawInt => motion::gps_raw_int(payload, samples),
             Self::ScaledImu | Self::ScaledImu2 | Self::ScaledImu3 => imu::scaled_imu(payload, samples),
             Self::RawImu => imu::raw_imu(payload, samples),
             Self::Attitude => motion::attitude(payload, samples),

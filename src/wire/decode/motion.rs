@@ -44,6 +44,20 @@ pub(super) fn local_position_ned(payload: Payload<'_>, samples: &mut Samples<'_>
     samples.give(Quantity::Velocity, 0, &xyz(world_from_ned(payload.f32s(16)).0));
 }
 
+/// Fix in three dimensions, GPS_FIX_TYPE.
+const FIX_3D: u8 = 3;
+
+/// Speed over ground and course; without a fix, or where the receiver tells none, nothing. The vertical velocity is not in it.
+pub(super) fn gps_raw_int(payload: Payload<'_>, samples: &mut Samples<'_>) {
+    let (speed_cm_s, course_cdeg, fix) = (payload.u16(24), payload.u16(26), payload.u8(28));
+    if fix < FIX_3D || speed_cm_s == u16::MAX || course_cdeg == u16::MAX {
+        return samples.nothing_told();
+    }
+    let (sin, cos) = (f64::from(course_cdeg) / 100.0).to_radians().sin_cos();
+    let speed_m_s = f64::from(speed_cm_s) / 100.0;
+    samples.give(Quantity::GpsVelocity, 0, &[speed_m_s * cos, -speed_m_s * sin, f64::NAN]);
+}
+
 /// Only with the pose in NED; velocity in NED or in the body, as `child_frame_id` says.
 pub(super) fn odometry(payload: Payload<'_>, samples: &mut Samples<'_>) {
     let (frame, child_frame) = (payload.u8(ODOMETRY_FRAME_ID), payload.u8(ODOMETRY_FRAME_ID + 1));

@@ -25,6 +25,11 @@ impl Samples<'_> {
         }
     }
 
+    /// The message is whole, and says that nothing was measured.
+    pub fn nothing_told(&mut self) {
+        self.given = true;
+    }
+
     /// The message cannot be used as it is.
     pub fn unusable(&mut self) {
         self.given = true;

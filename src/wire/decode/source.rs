@@ -55,6 +55,8 @@ sources! {
     SysStatus = 1, "SYS_STATUS", Absent;
     SystemTime = 2, "SYSTEM_TIME", BootMsAt8;
     ParamValue = 22, "PARAM_VALUE", Absent;
+    // its stamp counts from the boot or from 1970: it stands where it arrived
+    GpsRawInt = 24, "GPS_RAW_INT", Absent;
     ScaledImu = 26, "SCALED_IMU", BootMs;
     RawImu = 27, "RAW_IMU", Us;
     Attitude = 30, "ATTITUDE", BootMs;
