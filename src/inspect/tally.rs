@@ -13,7 +13,7 @@ use super::quantities::{Outcome, quantities};
 use super::reading::{reading_of, vehicle_of};
 use super::streams::{StreamTallies, is_disordered, summary_of};
 use super::timeline::TimelineTally;
-use super::verdict::verdict;
+use super::verdict::{unflown, verdict};
 use super::window::{WindowRecorder, windows_of};
 use crate::autopilot::{Autopilot, VehicleKind};
 use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport};
@@ -357,10 +357,12 @@ impl Found {
             foreseen: foreseen.as_ref(),
             at_most: assessment.flight.usable_s > MOSTLY * most_s,
         });
+        let unflown = unflown(&evidence);
         let (verdict, mut advice) = verdict(&evidence, &identifiability, &self.vehicle);
         advice.extend(tally.parameters.notes(self.autopilot, &flown_s).iter().map(ToString::to_string));
         Inspection {
             verdict,
+            unflown,
             advice,
             vehicle: self.vehicle,
             clock,
