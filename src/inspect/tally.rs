@@ -173,13 +173,9 @@ impl Pass {
             send(recorder.close(), &tally.parameters);
             drop(finished);
             let assessment = worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            Ok(Self {
-                tally,
-                assessment,
-                report: read?,
-                parameters_late,
-                numbers_held_max: recorder.numbers_max(),
-            })
+            let mut report = read?;
+            report.losses.extend(recorder.impossible());
+            Ok(Self { tally, assessment, report, parameters_late, numbers_held_max: recorder.numbers_max() })
         })
     }
 

@@ -54,6 +54,13 @@ pub enum Details {
 }
 
 impl ReadReport {
+    /// Takes what putting the samples into streams took.
+    pub(super) fn repaired(&mut self, streams: BTreeMap<StreamKey, StreamRepair>) {
+        let count = streams.values().map(|repair| repair.impossible).sum();
+        self.losses.extend((count > 0).then_some(Loss::Impossible { count }));
+        self.streams = streams;
+    }
+
     /// Frames, stamps and senders, where it is a telemetry log.
     #[must_use]
     pub fn telemetry(&self) -> Option<&TlogReport> {
