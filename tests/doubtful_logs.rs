@@ -330,3 +330,46 @@ fn losses_of_order_are_no_losses_of_bytes() {
     assert!(!opened.report.losses.iter().any(|loss| matches!(loss, Loss::StrayStamps { .. })));
     assert_eq!((opened.report.out_of_order(), opened.report.damage()), (None, None));
 }
+
+/// Values within messages that were damaged, as nothing but their size tells: no checksum is of them.
+#[test]
+fn values_that_no_vehicle_has_take_nothing_from_a_log() {
+    let whole = std::fs::read(fixture("px4_flight.ulg")).unwrap();
+    let vehicle = load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml")).unwrap();
+    let found = |bytes: &[u8]| {
+        let input = Input::Bytes { name: "bytes", bytes };
+        inspect(input, &OpenOptions::default(), Some(&vehicle), &mut |_| ()).unwrap()
+    };
+    let mut damaged = whole.clone();
+    // 16 bytes in the midst of each twentieth message of data that is long enough, of numbers of about 1e38
+    let (mut at, mut count) = (HEADER, 0_usize);
+    while at + 3 < whole.len() {
+        let length = usize::from(u16::from_le_bytes([whole[at], whole[at + 1]]));
+        let end = at + 3 + length;
+        if whole[at + 2] == DATA && length > 40 && end <= whole.len() {
+            count += 1;
+            if count.is_multiple_of(20) {
+                damaged[at + 3 + 18..at + 3 + 34].fill(0x7e);
+            }
+        }
+        at = end;
+    }
+    let (sound, told) = (found(&whole), found(&damaged));
+    assert!(
+        told.losses.iter().any(|loss| loss.contains("with a value that no vehicle has")),
+        "{:?}",
+        told.losses
+    );
+    let mass = |of: &Inspection| of.identifiability[0].std_relative;
+    let [sound, told] = [mass(&sound), mass(&told)].map(|std| std.unwrap_or(f64::INFINITY));
+    assert!(told < 3.0 * sound, "{told} instead of {sound}");
+}
+
+#[test]
+fn a_log_that_was_cut_off_in_its_head_is_told_so() {
+    let whole = std::fs::read(fixture("px4_flight.ulg")).unwrap();
+    for bytes in [16, 1000, 3000] {
+        let verdict = inspected(&whole[..bytes]).verdict;
+        assert!(verdict.contains("it ends before its first sample. It was cut off"), "{bytes}: {verdict}");
+    }
+}

@@ -89,6 +89,11 @@ fn a_file_of_no_known_format_is_named_with_what_to_do() {
         (b"\xef\xbb\xbf\n<!DOCTYPE html><html>", "a web page (HTML)", "download the log itself"),
         (b"version https://git-lfs.github.com/spec/v1\n", "the pointer to a file in Git LFS", "git lfs pull"),
         (b"# Onboard parameters for Vehicle 1\n", "a file of parameters", "the log of a flight"),
+        (
+            b"#NOTE: today\nACRO_YAW_P,4.5\nANGLE_MAX 3000\nFS_THR_VALUE,-1e3\nATC_RA",
+            "a file of parameters",
+            "the log of a flight",
+        ),
         (b"%PDF-1.4\n1 0 obj", "a PDF document", "the log itself"),
         (b"{\"a\": 1, \"b\": 2}", "JSON", "table"),
         (

@@ -536,6 +536,8 @@ fn is_read_whole(name: &str, bytes: &[u8]) {
     let mut builder = RecordingBuilder::new();
     let mut report = log::stream(input, &OpenOptions::default(), &mut |_, event| builder.add(event)).unwrap();
     let (recording, repairs) = builder.finish();
+    let count = repairs.values().map(|repair| repair.impossible).sum();
+    report.losses.extend((count > 0).then_some(Loss::Impossible { count }));
     report.streams = repairs;
     assert_eq!(bits(&opened.recording, &opened.report), bits(&recording, &report), "{name}");
 }

@@ -79,8 +79,18 @@ pub struct DetectionLimit {
     pub certain: f64,
     /// size on ordinary vehicles, in `unit`, of an effect that appears only in motion
     pub usual: Option<f64>,
+    /// greatest size that is searched, in `unit`: no vehicle has more
+    pub most: f64,
     /// SI
     pub unit: &'static str,
+}
+
+impl DetectionLimit {
+    /// Whether an effect of that size is possible. If not, this flight says nothing of it.
+    #[must_use]
+    pub fn is_possible(&self) -> bool {
+        self.limit <= self.most
+    }
 }
 
 impl Named {

@@ -161,9 +161,11 @@ pub(super) fn layout(
 }
 
 fn rotors(layout: &Layout, scale: f64) -> Vec<Rotor> {
+    // a cosine of a right angle is not quite nothing
+    let place = |share: f64| if share.abs() < 1e-9 { 0.0 } else { rounded(share * scale) };
     let rotor = |(index, rotor): (usize, &crate::autopilot::RotorPlace)| Rotor {
         name: format!("motor_{}", index + 1),
-        position_m: Vector3::from(rotor.place).map(|place| rounded(place * scale)),
+        position_m: Vector3::from(rotor.place).map(place),
         spin: if rotor.ccw { Spin::Ccw } else { Spin::Cw },
     };
     layout.rotors.iter().enumerate().map(rotor).collect()

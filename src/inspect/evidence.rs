@@ -121,6 +121,17 @@ impl Evidence<'_> {
         }
     }
 
+    /// Nothing was flown, or no stream shows it: no vehicle file mends that.
+    pub(super) fn is_unflown(&self) -> bool {
+        let flown = self.assessment.flight.airborne_s >= LEAST_USABLE_S;
+        let quantities = [Quantity::RotorSpeed, Quantity::ActuatorCommand, Quantity::Wrench];
+        let has_actuators = self.streams.iter().any(|(key, ..)| quantities.contains(&key.quantity));
+        // of outputs that are there and do not move, the conditioning has more to say
+        let is_still = has_actuators && self.actuator_hz().is_none();
+        let unflown = self.grounded().is_some() || !has_actuators || !(flown || is_still);
+        self.steps_back.is_none() && (self.streams.is_empty() || (self.holds_streams() && unflown))
+    }
+
     /// Why nothing at all can be identified.
     pub(super) fn nothing(&self) -> Option<String> {
         if let Some(kind) = self.kind.filter(|kind| *kind != VehicleKind::Multirotor) {

@@ -12,6 +12,9 @@ use super::quantity::QuantitySummary;
 pub struct Inspection {
     /// one or two sentences: what the log is good for and what to do next
     pub verdict: String,
+    /// why nothing can be identified whatever the vehicle is, and what to do: nothing was flown, or no stream shows it
+    #[serde(skip)]
+    pub unflown: Option<String>,
     /// what to change about the next recording, the most important first
     pub advice: Vec<String>,
     /// whose log it is

@@ -13,7 +13,7 @@ use super::quantities::{Outcome, quantities};
 use super::reading::{reading_of, vehicle_of};
 use super::streams::{StreamTallies, is_disordered, summary_of};
 use super::timeline::TimelineTally;
-use super::verdict::verdict;
+use super::verdict::{unflown, verdict};
 use super::window::{WindowRecorder, windows_of};
 use crate::autopilot::{Autopilot, VehicleKind};
 use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport};
@@ -173,13 +173,9 @@ impl Pass {
             send(recorder.close(), &tally.parameters);
             drop(finished);
             let assessment = worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            Ok(Self {
-                tally,
-                assessment,
-                report: read?,
-                parameters_late,
-                numbers_held_max: recorder.numbers_max(),
-            })
+            let mut report = read?;
+            report.losses.extend(recorder.impossible());
+            Ok(Self { tally, assessment, report, parameters_late, numbers_held_max: recorder.numbers_max() })
         })
     }
 
@@ -357,10 +353,12 @@ impl Found {
             foreseen: foreseen.as_ref(),
             at_most: assessment.flight.usable_s > MOSTLY * most_s,
         });
+        let unflown = unflown(&evidence);
         let (verdict, mut advice) = verdict(&evidence, &identifiability, &self.vehicle);
         advice.extend(tally.parameters.notes(self.autopilot, &flown_s).iter().map(ToString::to_string));
         Inspection {
             verdict,
+            unflown,
             advice,
             vehicle: self.vehicle,
             clock,

@@ -31,6 +31,18 @@ pub(super) fn verdict(
     (sentence(evidence, outlook), advice)
 }
 
+/// Why nothing can be identified whatever the vehicle is, and what to do.
+pub(super) fn unflown(evidence: &Evidence<'_>) -> Option<String> {
+    let nothing = evidence.nothing().filter(|_| evidence.is_unflown())?;
+    // a list is for `inspect` alone
+    let next = if evidence.streams.is_empty() {
+        "`mavid inspect` lists what it holds.".to_owned()
+    } else {
+        instead_of_nothing(evidence)
+    };
+    Some(format!("{nothing}. {next}"))
+}
+
 fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
     if evidence.has_other_actuators() {
         return "Nothing can be identified with this vehicle: its actuators are not those of the log. See the advice.".into();

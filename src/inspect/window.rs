@@ -1,6 +1,7 @@
 //! Recordings of bounded length, one after the other, so that memory does not grow with the log.
 
 use crate::autopilot::Autopilot;
+use crate::log::Loss;
 use crate::recording::{Event, Quantity, Recording, RecordingBuilder, Stream, StreamKey};
 
 /// s of the vehicle's clock in one window.
@@ -15,6 +16,7 @@ pub(super) struct WindowRecorder {
     builder: RecordingBuilder,
     start_s: Option<f64>,
     numbers_max: usize,
+    impossible: u64,
     /// last word on armed and landed: the next window begins with it
     states: Vec<(StreamKey, Vec<f64>)>,
 }
@@ -68,7 +70,14 @@ impl WindowRecorder {
         self.start_s.take()?;
         let mut builder = std::mem::take(&mut self.builder);
         builder.add(Event::Autopilot(self.autopilot));
-        Some(builder.finish().0)
+        let (window, repairs) = builder.finish();
+        self.impossible += repairs.values().map(|repair| repair.impossible).sum::<u64>();
+        Some(window)
+    }
+
+    /// Samples with a value that no vehicle has, left out of the windows.
+    pub(super) fn impossible(&self) -> Option<Loss> {
+        (self.impossible > 0).then_some(Loss::Impossible { count: self.impossible })
     }
 
     /// Most numbers that were held at once.

@@ -63,7 +63,7 @@ const KNOWN: &[Foreign] = &[
         "the pointer to a file in Git LFS",
         "fetch the file itself: git lfs pull",
     ),
-    begins(b"# Onboard parameters", "a file of parameters", "give the log of a flight"),
+    begins(b"# Onboard parameters", PARAMETERS.what, PARAMETERS.advice),
     begins(b"\x89PNG", "an image (PNG)", NO_LOG),
     begins(b"\xff\xd8\xff", "an image (JPEG)", NO_LOG),
     begins(b"%PDF", "a PDF document", NO_LOG),
@@ -73,6 +73,37 @@ const KNOWN: &[Foreign] = &[
 
 /// Bytes that are told of what nobody knows.
 const TOLD_BYTES: usize = 8;
+
+/// An autopilot's parameters, as ground stations save them. Those of ArduPilot have no signature.
+const PARAMETERS: Foreign = begins(b"", "a file of parameters", "give the log of a flight");
+
+/// Lines by which a file of parameters is told.
+const LEAST_PARAMETERS: usize = 3;
+
+/// Lines of a name in capitals and a number: ArduPilot's.
+fn is_parameters(head: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(head);
+    let is_comment = |line: &&str| line.is_empty() || line.starts_with('#');
+    let lines: Vec<&str> = text.lines().map(str::trim).filter(|line| !is_comment(line)).collect();
+    // the head's end may cut the last
+    let whole = lines.split_last().map_or(&[][..], |(_, whole)| whole);
+    whole.len() >= LEAST_PARAMETERS && whole.iter().all(|line| is_parameter(line))
+}
+
+fn is_parameter(line: &str) -> bool {
+    let separates = |letter: char| letter == ',' || letter.is_whitespace();
+    let mut cells = line.split(separates).filter(|cell| !cell.is_empty());
+    let is_name = |name: &str| {
+        name.starts_with(|letter: char| letter.is_ascii_uppercase())
+            && name.contains('_')
+            && name
+                .chars()
+                .all(|letter| letter.is_ascii_uppercase() || letter.is_ascii_digit() || letter == '_')
+    };
+    cells.next().is_some_and(is_name)
+        && cells.next().is_some_and(|value| value.parse::<f64>().is_ok())
+        && cells.next().is_none()
+}
 
 /// A vehicle file or a model of this program, which has no signature.
 const VEHICLE: Foreign = begins(
@@ -96,7 +127,8 @@ pub(super) fn foreign(head: &[u8]) -> Option<&'static Foreign> {
         let bytes = if kind.signature.is_ascii() && kind.at == 0 { plain } else { head };
         bytes.get(kind.at..).is_some_and(|bytes| bytes.starts_with(kind.signature))
     };
-    KNOWN.iter().find(is).or_else(|| is_vehicle_file(head).then_some(&VEHICLE))
+    let by_lines = || is_parameters(head).then_some(&PARAMETERS);
+    KNOWN.iter().find(is).or_else(|| is_vehicle_file(head).then_some(&VEHICLE)).or_else(by_lines)
 }
 
 /// What a file of no known signature is, by its first bytes, and what to do with it.

@@ -76,6 +76,11 @@ pub enum Loss {
         /// how many
         count: u64,
     },
+    /// samples with a value that no vehicle has, left out
+    Impossible {
+        /// how many
+        count: u64,
+    },
     /// the log holds more flight than is kept in memory
     NotHeld {
         /// time in the air that is left out, s
@@ -115,7 +120,7 @@ impl Loss {
             Self::RepeatedTimes { first_line, .. } | Self::NoRotations { first_line, .. } => {
                 Some(Position::Line(*first_line))
             }
-            Self::StrayStamps { .. } | Self::NotHeld { .. } => None,
+            Self::StrayStamps { .. } | Self::Impossible { .. } | Self::NotHeld { .. } => None,
         }
     }
 }
@@ -151,6 +156,9 @@ impl fmt::Display for Loss {
             }
             Self::StrayStamps { count } => {
                 write!(f, "{count} messages with a time that fits no clock were left out")
+            }
+            Self::Impossible { count } => {
+                write!(f, "{count} samples with a value that no vehicle has were left out")
             }
             Self::NotHeld { seconds } => write!(
                 f,

@@ -53,7 +53,7 @@ pub fn open<'a>(log: impl Into<Input<'a>>, options: &OpenOptions) -> Result<Open
         Ok((report, builder))
     })?;
     let (recording, repairs) = builder.finish();
-    report.streams = repairs;
+    report.repaired(repairs);
     Ok(Opened { recording, report })
 }
 
@@ -103,7 +103,7 @@ pub fn open_flights<'a>(
         }
     };
     let (recording, repairs) = builder.finish();
-    report.streams = repairs;
+    report.repaired(repairs);
     let flights = Flights::by_plan(recording, plan.as_ref());
     if flights.left_out_s > 0.0 {
         report.losses.push(Loss::NotHeld { seconds: flights.left_out_s });

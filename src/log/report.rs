@@ -15,6 +15,8 @@ use crate::wire::{SystemId, Vehicle};
 const DAMAGED: f64 = 0.1;
 /// See [`DAMAGED`].
 const MOSTLY: f64 = 0.5;
+/// Bytes of the longest message of a log that a vehicle writes: a ULog's, with its head.
+const LONGEST_MESSAGE: u64 = 65_538;
 /// Steps back of a log's stamps that nothing but another order explains. Chosen; not measured.
 const OUT_OF_ORDER: u64 = 5;
 /// One message of so many that the vehicle wrote may run back by a damaged stamp. Chosen; not measured.
@@ -54,6 +56,13 @@ pub enum Details {
 }
 
 impl ReadReport {
+    /// Takes what putting the samples into streams took.
+    pub(super) fn repaired(&mut self, streams: BTreeMap<StreamKey, StreamRepair>) {
+        let count = streams.values().map(|repair| repair.impossible).sum();
+        self.losses.extend((count > 0).then_some(Loss::Impossible { count }));
+        self.streams = streams;
+    }
+
     /// Frames, stamps and senders, where it is a telemetry log.
     #[must_use]
     pub fn telemetry(&self) -> Option<&TlogReport> {
@@ -111,7 +120,9 @@ impl ReadReport {
     /// Share of a log that the vehicle wrote which is no message, 0 to 1.
     fn passed_share(&self) -> f64 {
         let passed = |loss: &Loss| match loss {
-            Loss::Skipped { bytes, .. } | Loss::CutOff { bytes, .. } => *bytes,
+            Loss::Skipped { bytes, .. } => *bytes,
+            // less is an end that was cut off within a message
+            Loss::CutOff { bytes, .. } if *bytes > LONGEST_MESSAGE => *bytes,
             _ => 0,
         };
         self.share_of(passed)

@@ -1,5 +1,6 @@
 //! A stream while samples come to it.
 
+use super::possible::most;
 use super::stream::{Stream, StreamKey};
 
 /// What putting a stream's samples in order took.
@@ -9,6 +10,8 @@ pub struct StreamRepair {
     pub duplicates: u64,
     /// samples that came after a later one, sorted in
     pub out_of_order: u64,
+    /// samples with a value that no vehicle has, left out
+    pub impossible: u64,
 }
 
 /// A stream while samples come to it.
@@ -17,11 +20,14 @@ pub struct Growing {
     key: StreamKey,
     stream: Stream,
     repair: StreamRepair,
+    /// a larger value is damage
+    most: f64,
 }
 
 impl Growing {
     pub(super) fn new(key: StreamKey) -> Self {
-        Self { key, stream: Stream::default(), repair: StreamRepair::default() }
+        let most = most(key.quantity);
+        Self { key, stream: Stream::default(), repair: StreamRepair::default(), most }
     }
 
     pub(super) fn key(&self) -> &StreamKey {
@@ -36,6 +42,10 @@ impl Growing {
     /// Adds a sample at `time_s`, s of the recording's clock. Values that are missing at the end are zero.
     #[inline]
     pub fn push(&mut self, time_s: f64, values: &[f64]) {
+        if values.iter().any(|value| value.abs() > self.most) {
+            self.repair.impossible += 1;
+            return;
+        }
         if let Some(&last_s) = self.stream.time_s.last() {
             if time_s == last_s {
                 self.repair.duplicates += 1;
@@ -89,5 +99,27 @@ impl Growing {
         let time_s = order.iter().map(|&index| stream.time_s[index]).collect();
         let values = order.iter().flat_map(|&index| stream.sample(index).iter().copied()).collect();
         *stream = Stream { time_s, width: stream.width, values };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::Quantity;
+
+    #[test]
+    fn what_no_vehicle_has_is_left_out_and_counted() {
+        let of = |quantity, values: &[f64]| {
+            let mut growing = Growing::new(StreamKey { quantity, source: "IMU", instance: 0 });
+            growing.push(0.0, &[1.0, 2.0, 3.0]);
+            growing.push(0.1, values);
+            let (_, stream, repair) = growing.finish();
+            (stream.len(), repair.impossible)
+        };
+        assert_eq!(of(Quantity::SpecificForce, &[0.1, f64::NEG_INFINITY, 9.8]), (1, 1));
+        assert_eq!(of(Quantity::SpecificForce, &[0.1, -1e30, 9.8]), (1, 1));
+        // full scale of a sensor, a value that is not known, and where any value may be meant
+        assert_eq!(of(Quantity::SpecificForce, &[320.0, f64::NAN, 9.8]), (2, 0));
+        assert_eq!(of(Quantity::PositionSetpoint, &[1e30, 0.0, 0.0]), (2, 0));
     }
 }

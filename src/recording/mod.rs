@@ -9,6 +9,7 @@ mod event;
 mod flight;
 mod growing;
 mod overlap;
+mod possible;
 mod quantity;
 mod statistics;
 mod stream;

@@ -18,6 +18,7 @@ mod input;
 mod plan;
 mod progress;
 mod prove;
+mod unflown;
 mod validate;
 mod vehicle;
 mod vehicle_given;

@@ -95,11 +95,12 @@ const LAYERS: &[(&str, &[&str])] = &[
             "diagnose",
         ],
     ),
-    // a whole piece of work: opens files, calls the stages, collects what they say
+    // a whole piece of work: opens files, calls the stages, collects what they say. `inspect` tells it of logs without a flight
     (
         "study",
         &[
             "note",
+            "inspect",
             "autopilot",
             "units",
             "text",

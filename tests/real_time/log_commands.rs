@@ -1,10 +1,11 @@
 //! `mavid log` as a program, against `mavid sitl`: what it lists, fetches, sets and puts back.
 
-use std::io::{BufRead, BufReader};
-use std::net::TcpListener;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
+use mavid::wire::Splitter;
 use serde_json::Value;
 
 use crate::processes::{config, folder, planned};
@@ -236,4 +237,52 @@ fn a_vehicle_without_a_file_is_checked_by_its_own_parameters() {
     // it was checked as one of a file is
     let events = std::fs::read_to_string(flight.join("events.jsonl")).unwrap();
     assert!(events.contains("hover thrust: expected the vehicle file's weight, 20.25"), "{events}\n{said}");
+}
+
+/// Passes on between a station and a vehicle, but for what the vehicle answers for one parameter.
+fn without_answers_for(parameter: &'static str, vehicle: &str) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    let vehicle = vehicle.trim_start_matches("tcpout:").to_owned();
+    std::thread::spawn(move || {
+        let (station, _) = listener.accept().unwrap();
+        let down = TcpStream::connect(vehicle).unwrap();
+        let (mut from, mut to) = (station.try_clone().unwrap(), down.try_clone().unwrap());
+        std::thread::spawn(move || std::io::copy(&mut from, &mut to));
+        pass_down(down, station, parameter);
+    });
+    format!("tcpout:{address}")
+}
+
+fn pass_down(mut vehicle: TcpStream, mut station: TcpStream, parameter: &str) {
+    const PARAM_VALUE: u32 = 22;
+    let (mut splitter, mut bytes) = (Splitter::new(), [0; 4096]);
+    while let Ok(read @ 1..) = vehicle.read(&mut bytes) {
+        splitter.feed(&bytes[..read]);
+        while let Some(frame) = splitter.next_frame() {
+            let is_silent =
+                frame.header().message_id == PARAM_VALUE && frame.payload().text(8, 16) == parameter;
+            // the station has ended
+            if !is_silent && station.write_all(frame.bytes()).is_err() {
+                return;
+            }
+        }
+    }
+}
+
+/// The vehicle says nothing of the parameter that sets the rates of its log: nothing else is taken for it.
+#[test]
+fn logging_is_not_set_where_the_vehicle_does_not_answer_for_it() {
+    for (autopilot, parameter) in [("px4", "SDLOG_PROFILE"), ("ardupilot", "LOG_BITMASK")] {
+        let state = folder(&format!("silent_{autopilot}"));
+        let mut sitl = Sitl::start(autopilot, &[]);
+        sitl.1 = without_answers_for(parameter, &sitl.1);
+        let (status, said, told) = sitl.log_ends(&state, &["prepare", "--set-logging"]);
+        assert_eq!((status, &said["unknown"][0]), (Some(1), &parameter.into()), "{told}");
+        assert!(
+            told.contains(&format!("expected an answer for {parameter}, which sets the rates")),
+            "{told}"
+        );
+        assert!(!state.exists() || std::fs::read_dir(&state).unwrap().next().is_none(), "something was set");
+    }
 }

@@ -9,7 +9,8 @@ use crate::signals::Signals;
 use crate::vehicle::Vehicle;
 
 /// Root mean square over all instants of all windows of the size of the vector error. `None` where the
-/// recording does not hold the quantity.
+/// recording does not hold the quantity, and of the rotation also where it is too slow to compare torques: then the body turns as it
+/// was measured.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Fit {
     /// m

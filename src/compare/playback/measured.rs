@@ -23,6 +23,18 @@ impl<'a> MeasuredStates<'a> {
         Ok(Self { signals })
     }
 
+    /// Whether a model's torques can be compared with the motion. Where they cannot, the body turns as it was measured, and its
+    /// rotation is no prediction.
+    pub fn is_turned_by_torques(&self) -> bool {
+        self.signals.quality.torques
+    }
+
+    /// A predicted state with the rotation that was measured at an instant.
+    pub fn turned(&self, predicted: State, index: usize) -> State {
+        let State { attitude, rates_rad_s, .. } = self.at(index);
+        State { attitude, rates_rad_s, ..predicted }
+    }
+
     /// What is not recorded is zero.
     pub fn at(&self, index: usize) -> State {
         let vector = |series: &Option<Series<Vector3<f64>>>| {
@@ -45,7 +57,9 @@ impl<'a> MeasuredStates<'a> {
         if self.signals.velocity.is_some() {
             velocity.add((simulated.velocity_m_s - measured.velocity_m_s).norm_squared());
         }
-        attitude.add(simulated.attitude.angle_to(&measured.attitude).powi(2));
-        rates.add((simulated.rates_rad_s - measured.rates_rad_s).norm_squared());
+        if self.is_turned_by_torques() {
+            attitude.add(simulated.attitude.angle_to(&measured.attitude).powi(2));
+            rates.add((simulated.rates_rad_s - measured.rates_rad_s).norm_squared());
+        }
     }
 }

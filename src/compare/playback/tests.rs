@@ -126,6 +126,28 @@ fn a_lag_of_a_fraction_of_a_step_stays_finite() {
     assert!(fit.quantities().iter().all(|error| error.is_some_and(|error| error < 10.0)), "{fit:?}");
 }
 
+/// A log that is too slow to compare torques says nothing of inertia, and what a model makes of its rotation is no prediction.
+#[test]
+fn without_torques_the_body_turns_as_measured() {
+    let (vehicle, mut signals) = flown(vec![drag()], 0.1, ThrustPreference::Commands);
+    signals.quality.torques = false;
+    let mut heavy = vehicle.clone();
+    heavy.body.inertia_kg_m2 *= 3.0;
+    let settings = PlaybackSettings::default();
+    let played = |vehicle: &Vehicle, effects| {
+        let model = Model::new(vehicle, effects).unwrap();
+        playback((&model, vehicle), &signals, &settings).unwrap()
+    };
+    let (one, other) = (played(&vehicle, vec![drag()]), played(&heavy, vec![drag()]));
+    assert_eq!((one.attitude_rad, one.rates_rad_s), (None, None));
+    let [one, other, without] = [one, other, played(&vehicle, vec![])]
+        .map(|fit| (fit.position_m.unwrap(), fit.velocity_m_s.unwrap()));
+    assert!((one.1 - other.1).abs() < 1e-3 * one.1, "{one:?} {other:?}");
+    assert!(one.1 < 0.7 * without.1, "{one:?} {without:?}");
+    let unchanged = super::unchanged_windows(&signals, &settings).unwrap();
+    assert!(unchanged.iter().all(|window| window.counts[0] > 0 && window.counts[2..] == [0, 0]));
+}
+
 #[test]
 fn what_does_not_change_errs_by_the_motion_itself() {
     let (_, signals) = flown(vec![], 0.1, ThrustPreference::Commands);

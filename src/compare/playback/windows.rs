@@ -57,7 +57,7 @@ pub struct WindowErrors {
     pub start_s: f64,
     /// sums of squares: m^2, (m/s)^2, rad^2, (rad/s)^2
     pub squares: [f64; 4],
-    /// instants in each sum; 0 where the recording does not hold the quantity
+    /// instants in each sum; 0 where the recording does not hold the quantity, or no torque is predicted that would turn the body
     pub counts: [usize; 4],
     /// sizes of the errors at the end of the window: m, m/s, rad, rad/s; 0 where the recording does not hold the quantity
     pub at_end: [f64; 4],
@@ -187,6 +187,9 @@ impl<'a> Played<'a> {
             }
             self.step(&mut plant, index);
             if index >= start {
+                if !states.is_turned_by_torques() {
+                    plant.set_state(&states.turned(plant.state(), index + 1));
+                }
                 out.push(plant.state());
             }
         }

@@ -27,6 +27,9 @@ pub(super) fn flown_again(
     if empirical.is_some() {
         return Err("an empirical term is not simulated in closed loop".to_owned());
     }
+    if ready.iter().any(|ready| !ready.trace.torques) {
+        return Err("torques are not compared in flights that are logged so slowly".to_owned());
+    }
     let mut blocks = Blocks::new(SIGNALS.len(), settings.block_s);
     let mut floors = [0.0; SIGNALS.len()];
     for (index, ready) in ready.iter().enumerate() {

@@ -311,8 +311,11 @@ impl Walk<'_, '_> {
             (Quantity::LandedState, IN_AIR) if change => Some((ON_GROUND, self.armed_s.or(self.began_s))),
             _ => None,
         };
+        // a log that begins with its states says nothing of before
+        let since_s = |since_s: Option<f64>| since_s.filter(|since_s| *since_s < time_s);
+        let before = before.and_then(|(contrary, since)| Some((contrary, since_s(since)?)));
         if let Some((contrary, since_s)) = before.filter(|_| is_first) {
-            self.out.sample(quantity, STATES, 0, since_s.unwrap_or(time_s).min(time_s), &[contrary]);
+            self.out.sample(quantity, STATES, 0, since_s, &[contrary]);
         }
         if quantity == Quantity::Armed && value > 0.5 {
             self.armed_s.get_or_insert(time_s);

@@ -9,6 +9,8 @@ use std::fmt::Write;
 
 /// Largest number of effects that are listed with their sizes.
 const SIZED: usize = 4;
+/// An error that falls by less does not fall, percent: it would read as nothing.
+const FALLS_PERCENT: f64 = 0.5;
 /// An error that increases by more than this is mentioned, percent. Chosen; not measured.
 const WORSE_PERCENT: f64 = 2.0;
 /// A state that explains less of the misfit is not mentioned, percent. Chosen; not measured.
@@ -114,7 +116,7 @@ fn gain(study: &ExplainStudy) -> String {
         }
         _ => String::new(),
     };
-    if percent >= 0.5 {
+    if percent >= FALLS_PERCENT {
         format!("; with {with} the 0.5 s {name} error on {shown} falls by {percent:.0} %{worse}")
     } else {
         format!("; with {with} the 0.5 s errors on {shown} do not fall{worse}")
@@ -183,10 +185,13 @@ fn unexplained(study: &ExplainStudy) -> String {
         format!("; {} comes closest but does not explain it", closest.join(" with "))
     };
     let term = study.empirical.as_ref().map_or_else(String::new, |term| {
-        let gain =
-            study.holdout.as_ref().and_then(Predicted::most).map_or_else(String::new, |(name, percent)| {
+        let most = study.holdout.as_ref().and_then(Predicted::most);
+        let gain = most.filter(|(_, percent)| *percent >= FALLS_PERCENT).map_or_else(
+            String::new,
+            |(name, percent)| {
                 format!(" and lowers the 0.5 s {name} error on {} by {percent:.0} %", study.shown_on.words())
-            });
+            },
+        );
         format!(
             "; an empirical force that depends on {}, without a mechanism, replaces it{gain}",
             spoken_along(term.along)

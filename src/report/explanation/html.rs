@@ -3,7 +3,7 @@
 use super::answer::answer;
 use super::figures;
 use super::hold_out::hold_out;
-use super::text::{after, scale};
+use super::text::{after, scale, unseen};
 use crate::diagnose::holdout::RateLaw;
 use crate::diagnose::{Empirical, NO_LATENCY, Named, Slight, Verdict, called, clause};
 use crate::report::chart::inline;
@@ -290,6 +290,7 @@ fn limits(study: &ExplainStudy) -> Markup {
         .explanation
         .limits
         .iter()
+        .filter(|limit| limit.is_possible())
         .map(|limit| {
             vec![
                 text(called(limit.id)),
@@ -305,6 +306,10 @@ fn limits(study: &ExplainStudy) -> Markup {
         &["effect", "identifier", "parameter", "from|", "unit"],
         &rows,
     );
+    let content = html! {
+        (content)
+        @if let Some(unseen) = unseen(study) { (note(&unseen)) }
+    };
     section("What would have been named", &content)
 }
 

@@ -223,7 +223,7 @@ fn limit_lines(page: &mut String, study: &ExplainStudy) {
         return;
     }
     let _ = writeln!(page, "\n  what would have been named in this flight");
-    for limit in &study.explanation.limits {
+    for limit in study.explanation.limits.iter().filter(|limit| limit.is_possible()) {
         let _ = writeln!(
             page,
             "    {:<20}{:<14} from {:>9} {}",
@@ -233,6 +233,16 @@ fn limit_lines(page: &mut String, study: &ExplainStudy) {
             limit.unit
         );
     }
+    if let Some(unseen) = unseen(study) {
+        let _ = writeln!(page, "    {unseen}");
+    }
+}
+
+/// What this flight would not have shown even at the greatest size that is searched.
+pub(super) fn unseen(study: &ExplainStudy) -> Option<String> {
+    let unseen = study.explanation.limits.iter().filter(|limit| !limit.is_possible());
+    let each: Vec<String> = unseen.map(|limit| format!("{} {}", limit.id, limit.parameter)).collect();
+    (!each.is_empty()).then(|| format!("not at any possible size: {}", each.join(", ")))
 }
 
 fn quality_lines(page: &mut String, study: &ExplainStudy) {

@@ -192,7 +192,16 @@ impl DataflashWriter {
             let ([vn, ve, vd], [latitude, longitude, height_m]) = (at.velocity_m_s, at.on_earth);
             let course = ve.atan2(vn).to_degrees().rem_euclid(360.0);
             let speed = vn.hypot(ve);
-            numbers(into, &GPS, [time_us, 0.0, 3.0, 14.0, latitude, longitude, height_m, speed, course, vd]);
+            let [week, of_week_ms] = at.gps_time;
+            let (fix, count) = (3.0, 14.0);
+            numbers(
+                into,
+                &GPS,
+                [
+                    time_us, 0.0, fix, of_week_ms, week, count, latitude, longitude, height_m, speed, course,
+                    vd,
+                ],
+            );
             numbers(into, &BARO, [time_us, 0.0, height_m]);
         }
         if rates.targets.is_due(now, period) && at.armed {

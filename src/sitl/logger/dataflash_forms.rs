@@ -52,7 +52,7 @@ pub(super) const RCOU: Form = form(
 pub(super) const XKF1: Form =
     form(141, "XKF1", "QBccCfffffff", "TimeUS,C,Roll,Pitch,Yaw,VN,VE,VD,dPD,PN,PE,PD", "s#dddnnnnmmm");
 pub(super) const GPS: Form =
-    form(142, "GPS", "QBBBLLefff", "TimeUS,I,Status,NSats,Lat,Lng,Alt,Spd,GCrs,VZ", "s#-SDUmnhn");
+    form(142, "GPS", "QBBIHBLLefff", "TimeUS,I,Status,GMS,GWk,NSats,Lat,Lng,Alt,Spd,GCrs,VZ", "s#---SDUmnhn");
 pub(super) const BARO: Form = form(143, "BARO", "QBf", "TimeUS,I,Alt", "s#m");
 pub(super) const BAT: Form = form(144, "BAT", "QBf", "TimeUS,Inst,Volt", "s#v");
 pub(super) const PSCN: Form = form(145, "PSCN", "Qffffff", "TimeUS,DPN,PN,DVN,VN,DAN,AN", "smmnnoo");

@@ -25,9 +25,26 @@ pub(super) fn date(unix_s: u64) -> [u64; 6] {
     [year, month, days + 1, rest / 3600, rest / 60 % 60, rest % 60]
 }
 
+/// The week, and the milliseconds of it, of a time in microseconds since 1970, as GPS counts: from 1980-01-06 on, without leap
+/// seconds. There have been 18 since 2017.
+pub(super) fn gps_time(unix_us: u64) -> [f64; 2] {
+    const BEGAN_S: u64 = 315_964_800;
+    const LEAP_S: u64 = 18;
+    const WEEK_MS: u64 = 7 * DAY_S * 1000;
+    let since_ms = (unix_us / 1000).saturating_sub(1000 * (BEGAN_S - LEAP_S));
+    [(since_ms / WEEK_MS) as f64, (since_ms % WEEK_MS) as f64]
+}
+
 #[cfg(test)]
 mod tests {
-    use super::date;
+    use super::{date, gps_time};
+
+    #[test]
+    fn weeks_are_those_of_gps() {
+        // 2023-11-14 22:13:20 UTC is a Tuesday
+        let of_week_s = (2 * 24 + 22) * 3600 + 13 * 60 + 20 + 18;
+        assert_eq!(gps_time(1_700_000_000_000_000), [2288.0, 1e3 * f64::from(of_week_s)]);
+    }
 
     #[test]
     fn dates_are_those_of_the_calendar() {

@@ -6,6 +6,7 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
 use super::dataflash::DataflashWriter;
+use super::date::gps_time;
 use super::moment::{Moment, Seen};
 use super::schedule::{Schedule, When};
 use super::store::LogStore;
@@ -88,6 +89,14 @@ pub(in crate::sitl) struct Now<'a> {
     pub(in crate::sitl) boot_unix_us: u64,
 }
 
+impl Now<'_> {
+    /// Microseconds since 1970.
+    fn unix_us(&self) -> u64 {
+        let since_boot = u64::try_from(self.snapshot.now.as_micros()).unwrap_or(u64::MAX);
+        self.boot_unix_us.saturating_add(since_boot)
+    }
+}
+
 /// Keeps the vehicle's log.
 #[derive(Debug)]
 pub(in crate::sitl) struct Keeper {
@@ -157,6 +166,7 @@ impl Keeper {
         let time_us = now.snapshot.now.as_micros() as f64;
         let period = self.firmware.loop_period();
         let mut moment = Moment::of(now.autopilot, &seen, time_us, &self.origin);
+        moment.gps_time = gps_time(now.unix_us());
         moment.has_origin = now.autopilot.estimator.is_warm(now.snapshot.now);
         moment.rotor_speed_rad_s = now.snapshot.shown.rotor_speed_rad_s.filter(|_| self.esc_telemetry);
         moment.rotor_count = self.airframe.leverage.len();
@@ -207,8 +217,7 @@ impl Keeper {
     }
 
     fn begin(&mut self, now: &Now<'_>) {
-        let since_boot = u64::try_from(now.snapshot.now.as_micros()).unwrap_or(u64::MAX);
-        self.store.begin(now.boot_unix_us.saturating_add(since_boot) / MICROSECONDS_A_SECOND);
+        self.store.begin(now.unix_us() / MICROSECONDS_A_SECOND);
         let Some(into) = self.store.open() else { return };
         let time_us = now.snapshot.now.as_micros() as f64;
         let release = self.firmware.release();

@@ -12,6 +12,8 @@ use crate::sitl::{Mode, Origin};
 pub(super) struct Moment {
     /// microseconds since boot
     pub(super) time_us: f64,
+    /// week and milliseconds of it, as satellites count
+    pub(super) gps_time: [f64; 2],
     /// of the mean of both sensors, microseconds
     pub(super) period_us: f64,
     pub(super) armed: bool,
@@ -67,6 +69,7 @@ impl Moment {
         let [rates_rad_s, force_m_s2] = [turned(&seen.state.rates_rad_s), turned(&seen.force_m_s2)];
         Self {
             time_us,
+            gps_time: [0.0; 2],
             period_us: 0.0,
             armed: autopilot.is_armed(),
             landed: autopilot.is_landed(),

@@ -2,7 +2,7 @@
 
 use super::result::ExplainStudy;
 use crate::diagnose::locate::{Bin, Follow};
-use crate::diagnose::{AXES, CHANNEL_NAMES, Fitted, Line, Trace, Verdict, lack_of_fit};
+use crate::diagnose::{CHANNEL_NAMES, Fitted, Line, Trace, Verdict, lack_of_fit};
 use std::ops::Range;
 
 /// s of a cell of the heat map.
@@ -234,7 +234,7 @@ impl ExplainStudy {
             let after = search.after.weighted.sigma[axis] * share(axis);
             AxisResidual { axis: CHANNEL_NAMES[axis], before: search.before.weighted.sigma[axis] / after }
         };
-        (0..AXES).map(residual).collect()
+        self.compared_axes().map(residual).collect()
     }
 
     fn heat(&self, rows: &Range<usize>) -> Option<Heat> {
@@ -257,8 +257,9 @@ impl ExplainStudy {
             };
             time_s.iter().map(cell).collect()
         };
-        let before = (0..AXES).map(|axis| cells(axis, self.left_before(axis))).collect();
-        let after = (0..AXES).map(|axis| cells(axis, self.left_after(axis))).collect();
+        // torques come last, so that the rows left are the first ones
+        let before = self.compared_axes().map(|axis| cells(axis, self.left_before(axis))).collect();
+        let after = self.compared_axes().map(|axis| cells(axis, self.left_after(axis))).collect();
         Some(Heat { before, after, time_s })
     }
 

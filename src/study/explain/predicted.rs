@@ -1,5 +1,6 @@
 //! The errors of open-loop prediction.
 
+use crate::compare::improvement_percent;
 use crate::diagnose::holdout::{Compared, HoldoutFit, Interval, OpenLoop};
 
 /// Open-loop errors on one set of flights.
@@ -30,13 +31,17 @@ impl Predicted {
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// The quantity whose error falls least, or rises, and by how much, percent.
+    /// The quantity whose error the effects lower least, or raise, and by how much of the rigid body's, percent. That a state which does
+    /// not change predicts better is no work of theirs.
     #[must_use]
     pub fn least(&self) -> Option<(&'static str, f64)> {
         self.half_second()
             .into_iter()
             .zip(QUANTITIES)
-            .filter_map(|(compared, (name, _))| Some((name, compared?.improvement_percent.value)))
+            .filter_map(|(compared, (name, _))| {
+                let Compared { before, after, .. } = compared?;
+                Some((name, improvement_percent(before.value, after.value)))
+            })
             .filter(|(_, percent)| percent.is_finite())
             .min_by(|a, b| a.1.total_cmp(&b.1))
     }

@@ -252,18 +252,23 @@ impl ExplainStudy {
         &self.explanation.search.latency
     }
 
-    /// What is left of each axis.
+    /// Forces and torques that are compared, of all axes.
+    pub(super) fn compared_axes(&self) -> impl Iterator<Item = usize> {
+        (0..AXES).filter(|&axis| self.explanation.search.before.rows.count_of(axis) > 0)
+    }
+
+    /// What is left of each axis that is compared.
     #[must_use]
     pub fn residual(&self) -> Vec<AxisFit> {
         let search = &self.explanation.search;
         let (before, after) = (search.before.weighted.sigma, search.after.weighted.sigma);
-        let axis = |(index, name): (usize, &'static str)| AxisFit {
-            name,
-            unit: unit_of(name),
+        let axis = |index: usize| AxisFit {
+            name: CHANNEL_NAMES[index],
+            unit: unit_of(CHANNEL_NAMES[index]),
             before: before[index],
             after: after[index],
         };
-        CHANNEL_NAMES.into_iter().take(AXES).enumerate().map(axis).collect()
+        self.compared_axes().map(axis).collect()
     }
 
     /// How the errors of the final model's parameters go together.

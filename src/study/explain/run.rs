@@ -12,6 +12,7 @@ use crate::estimate::{Contradiction, inertia_by_wider_window, moved_by_guessed_c
 use crate::note::{About, Note};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, names, prepare, refuse_twins};
+use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{Progress, Stage, StudyError, effects_of};
 use crate::text;
@@ -39,7 +40,8 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let known = request.vehicle.of_file()?;
     progress.stage(Stage::Reading);
     let logs = load_all(&request.logs, &request.read, &EXPLAINED)?;
-    let known = request.vehicle.of_flights(known, &logs)?;
+    let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
+    let known = request.vehicle.of_flights(known, &logs).map_err(or_unflown)?;
     let mut notes = of_vehicle(&known)?;
     let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft } = known;
     let of_holdout = |why| StudyError::Setting {
@@ -54,7 +56,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
         thrust: ThrustPreference::BestSampled,
         ..ConditionSettings::default()
     };
-    let mut flights = prepare(logs, (&vehicle, &origin), &settings)?;
+    let mut flights = prepare(logs, (&vehicle, &origin), &settings).map_err(or_unflown)?;
     let held = prepare(held, (&vehicle, &origin), &settings).map_err(of_holdout)?;
     refuse_shared(&flights, &held)?;
     let whole = flights.signals.last().cloned();

@@ -9,6 +9,7 @@ use crate::recording::Recording;
 use crate::signals::other_settings;
 use crate::study::flight::Flight;
 use crate::study::flights::{IDENTIFIED, Prepared, load_all, names, prepare, refuse_twins};
+use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{InputFile, Progress, Stage, StudyError, effects_of};
 use crate::text;
@@ -24,13 +25,16 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     progress.stage(Stage::Reading);
     let logs = load_all(&request.logs, &request.read, &IDENTIFIED)?;
     refuse_twins(logs.iter())?;
-    let known = request.vehicle.of_flights(known, &logs)?;
+    let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
+    let known = request.vehicle.of_flights(known, &logs).map_err(or_unflown)?;
     let mut notes = known.notes();
     notes.iter().for_each(|note| progress.note(note));
     progress.stage(Stage::Identifying);
-    let with = wanted.map(|wanted| with_effects(request, (&logs, &known), &wanted)).transpose()?;
+    let with = wanted.map(|wanted| with_effects(request, (&logs, &known), &wanted));
+    let with = with.transpose().map_err(or_unflown)?;
     let vehicle = (&known.loaded.vehicle, known.origin.as_path());
-    let Prepared { recordings, signals, inputs } = prepare(logs, vehicle, &request.conditioning())?;
+    let Prepared { recordings, signals, inputs } =
+        prepare(logs, vehicle, &request.conditioning()).map_err(or_unflown)?;
     let apart = settings_apart(&recordings);
     apart.iter().for_each(|note| progress.note(note));
     notes.extend(apart);

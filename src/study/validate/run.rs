@@ -6,6 +6,7 @@ use super::request::ValidateRequest;
 use super::result::{ValidateStudy, ValidatedFlight};
 use crate::study::flight::Flight;
 use crate::study::flights::{IDENTIFIED, load_all, ready, refuse_twins};
+use crate::study::unflown::unflown_first;
 use crate::study::{Progress, Stage, StudyError};
 use rayon::prelude::*;
 
@@ -20,7 +21,8 @@ pub fn validate(request: &ValidateRequest, progress: &dyn Progress) -> Result<Va
     progress.stage(Stage::Reading);
     let logs = load_all(&request.logs, &request.read, &IDENTIFIED)?;
     if let Some(given) = request.drafted {
-        let (drafted, of_draft) = drafted(given, &logs)?;
+        let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
+        let (drafted, of_draft) = drafted(given, &logs).map_err(or_unflown)?;
         of_draft.iter().for_each(|note| progress.note(note));
         notes.splice(0..0, of_draft);
         models.insert(0, drafted);

@@ -1,0 +1,35 @@
+//! What values a quantity can have. Logs that vehicles write have no checksums: a damaged message may hold any number, and one of
+//! 1e30 outweighs all others in every sum.
+
+use super::quantity::Quantity;
+
+/// A larger value, in SI, is damage and no measurement, whatever the unit of its log; infinite where any value may be meant.
+pub(super) const fn most(quantity: Quantity) -> f64 {
+    match quantity {
+        Quantity::Attitude => 1e2,
+        Quantity::AngularRate => 1e4,
+        Quantity::SpecificForce
+        | Quantity::WorldAcceleration
+        | Quantity::Velocity
+        | Quantity::GpsVelocity => 1e5,
+        Quantity::ActuatorCommand | Quantity::ActuatorDemand | Quantity::RotorSpeed => 1e6,
+        Quantity::Position | Quantity::BarometricHeight => 1e8,
+        Quantity::RollYaw
+        | Quantity::Wrench
+        | Quantity::BatteryVoltage
+        | Quantity::BatteryCurrent
+        | Quantity::PositionSetpoint
+        | Quantity::VelocitySetpoint
+        | Quantity::AccelerationSetpoint
+        | Quantity::YawSetpoint
+        | Quantity::YawRateSetpoint
+        | Quantity::AttitudeSetpoint
+        | Quantity::AngularRateSetpoint
+        | Quantity::ThrustSetpoint
+        | Quantity::TorqueSetpoint
+        | Quantity::ThrustVectorSetpoint
+        | Quantity::LandedState
+        | Quantity::Armed
+        | Quantity::Mode => f64::INFINITY,
+    }
+}
