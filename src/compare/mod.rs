@@ -10,6 +10,6 @@ pub use closed_loop::{SIGNALS, TenSignals, autopilot_flight, recorded_tracking_m
 pub use error::CompareError;
 pub use improvement::improvement_percent;
 pub use playback::{
-    CommandNoise, Fit, PlaybackSettings, StateNoise, WindowErrors, playback, playback_floor,
-    playback_windows, torques_along, unchanged_windows,
+    CommandNoise, Fit, FloorNoise, LengthErrors, PlaybackSettings, StateNoise, WindowErrors, playback,
+    playback_lengths, playback_windows, torques_along, unchanged_windows,
 };

@@ -2,11 +2,12 @@
 
 use super::base::Base;
 use super::candidates::Candidate;
-use super::channels::CHANNELS;
+use super::channels::{CHANNELS, Channels};
 use super::evidence::Weighted;
 use super::fit::Fitted;
 use super::named::Confusable;
 use super::rows::Rows;
+use super::score::at_once;
 use super::tested::Tested;
 use super::trace::Trace;
 use nalgebra::{DMatrix, DVector};
@@ -31,7 +32,13 @@ pub fn confusable_with(
     let Some(signal) = Signal::new(&fitted.rows, &fitted.base, place, None) else { return out };
     let inflation = fitted.weighted.long_run_deviation();
     let beyond = |candidate: &Candidate| signal.beyond(flights, &fitted.rows, &fitted.base, candidate);
-    let left: Vec<Option<f64>> = others.par_iter().map(|other| beyond(&other.candidate)).collect();
+    let left: Vec<Option<f64>> = others
+        .par_chunks(at_once(fitted))
+        .flat_map_iter(|some| {
+            let candidates: Vec<&Candidate> = some.iter().map(|other| &other.candidate).collect();
+            signal.beyond_each(flights, &fitted.rows, &fitted.base, &candidates)
+        })
+        .collect();
     for (other, left) in others.iter().zip(left) {
         let Some(left) = left else { continue };
         let (id, distance) = (other.candidate.id, left / inflation);
@@ -119,7 +126,32 @@ impl Signal {
             };
             columns.extend(found.into_iter().flatten());
         }
-        let (_, basis) = self.weighted.partialled(&columns)?;
+        self.beyond_columns(&columns)
+    }
+
+    /// The same of several candidates.
+    fn beyond_each(
+        &self,
+        flights: &[Trace],
+        rows: &Rows,
+        base: &Base,
+        candidates: &[&Candidate],
+    ) -> Vec<Option<f64>> {
+        let is_plain = |candidate: &&&Candidate| {
+            candidate.id != self.id && candidate.through.is_none() && candidate.parts.len() == 1
+        };
+        let parts: Vec<_> =
+            candidates.iter().filter(is_plain).flat_map(|candidate| &candidate.parts).collect();
+        let mut plain = rows.columns_of_each(flights, base, &parts).into_iter();
+        let of = |candidate: &&Candidate| match Some(candidate).filter(is_plain).and_then(|_| plain.next()) {
+            Some(columns) => self.beyond_columns(&columns.unwrap_or_default()),
+            None => self.beyond(flights, rows, base, candidate),
+        };
+        candidates.iter().map(of).collect()
+    }
+
+    fn beyond_columns(&self, columns: &[Channels]) -> Option<f64> {
+        let (_, basis) = self.weighted.partialled(columns)?;
         Some(left_over(&self.sum, &basis))
     }
 }

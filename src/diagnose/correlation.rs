@@ -4,6 +4,7 @@ use super::channels::CHANNELS;
 use super::columns::Columns;
 use super::evidence::Weighted;
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// Number of neighbouring rows whose kernels overlap: the kernel is 0.4 s wide and rows are 0.05 s apart.
 const OVERLAP: usize = 8;
@@ -12,36 +13,50 @@ const MOST_LAGS: usize = 120;
 /// Least width of the Bartlett window of the scores, rows (1 s). Chosen; not measured.
 const SCORE_LAGS: usize = 20;
 
+/// Lags whose sums run side by side: one alone waits for every addition.
+const SIDE_BY_SIDE: usize = 4;
+
+/// Autocovariance of a series at some lags from `first` on, over runs without a break.
+fn autocovariances<const N: usize>(series: &[f64], runs: &[Range<usize>], first: usize) -> [f64; N] {
+    let (mut sums, mut counts) = ([0.0; N], [0usize; N]);
+    for run in runs {
+        let series = &series[run.clone()];
+        let pairs = |lag: usize| series.len().saturating_sub(first + lag);
+        let all = pairs(N - 1);
+        for (value, later) in series.iter().zip(series[first.min(series.len())..].windows(N)) {
+            sums.iter_mut().zip(later).for_each(|(sum, later)| *sum += value * later);
+        }
+        for (lag, (sum, count)) in sums.iter_mut().zip(&mut counts).enumerate() {
+            for t in all..pairs(lag) {
+                *sum += series[t] * series[t + first + lag];
+            }
+            *count += pairs(lag);
+        }
+    }
+    std::array::from_fn(|lag| if counts[lag] == 0 { 0.0 } else { sums[lag] / counts[lag] as f64 })
+}
+
 impl Weighted {
     /// Autocovariance of each channel up to the lag at which it has decayed, at least the kernels' overlap. Noise of an
     /// estimator or of a poor accelerometer is correlated for seconds.
     pub(super) fn gammas(&self, residual: &DVector<f64>) -> Vec<Vec<f64>> {
-        (0..CHANNELS)
-            .map(|channel| {
-                let zero = self.autocovariance(residual, channel, 0);
-                let mut gamma = vec![zero];
-                for lag in 1..MOST_LAGS {
-                    let at = self.autocovariance(residual, channel, lag);
-                    gamma.push(at);
-                    if lag >= OVERLAP && at < 0.05 * zero {
-                        break;
-                    }
-                }
-                gamma
-            })
-            .collect()
+        (0..CHANNELS).map(|channel| self.gamma(residual, channel)).collect()
     }
 
-    fn autocovariance(&self, residual: &DVector<f64>, channel: usize, lag: usize) -> f64 {
-        let series = residual.rows(channel * self.rows, self.rows);
-        let (mut sum, mut count) = (0.0, 0usize);
-        for run in &self.measured[channel] {
-            for t in run.start..run.end.saturating_sub(lag) {
-                sum += series[t] * series[t + lag];
-                count += 1;
+    fn gamma(&self, residual: &DVector<f64>, channel: usize) -> Vec<f64> {
+        let series = &residual.as_slice()[channel * self.rows..(channel + 1) * self.rows];
+        let [zero] = autocovariances(series, &self.measured[channel], 0);
+        let mut gamma = vec![zero];
+        for first in (1..MOST_LAGS).step_by(SIDE_BY_SIDE) {
+            let some: [f64; SIDE_BY_SIDE] = autocovariances(series, &self.measured[channel], first);
+            for (lag, at) in (first..MOST_LAGS).zip(some) {
+                gamma.push(at);
+                if lag >= OVERLAP && at < 0.05 * zero {
+                    return gamma;
+                }
             }
         }
-        if count == 0 { 0.0 } else { sum / count as f64 }
+        gamma
     }
 
     /// `sum_c sum_|l|<=L gamma_c(l) sum_t x_c(t) x_c(t+l)'`.

@@ -1,8 +1,9 @@
 //! Refinement of candidates' values between the points of a grid: the time of a mass change, the length of a cord.
 
 use super::candidates::Candidate;
+use super::channels::Channels;
 use super::fit::Fitted;
-use super::score::columns_of;
+use super::score::{at_once, columns_of_each};
 use super::signature::GridScale;
 use super::tested::Tested;
 use super::trace::Trace;
@@ -30,11 +31,14 @@ const NEIGHBOURS: i32 = 6;
 pub(super) fn refined(flights: &[Trace], fitted: &Fitted, tested: Tested) -> Tested {
     let scale = tested.candidate.signature().and_then(|signature| signature.refinement.grid);
     let Some(scale) = scale else { return tested };
-    let at = |from: &Tested, by: f64| {
-        let candidate = moved(&from.candidate, scale, by, &fitted.base.size);
-        let columns = columns_of(flights, fitted, &candidate)?;
-        let evidence = fitted.weighted.test(&columns)?;
-        Some(Tested { candidate, evidence })
+    let each = |from: &Tested, by: &[f64]| -> Vec<Option<Tested>> {
+        let moved = |by: &f64| moved(&from.candidate, scale, *by, &fitted.base.size);
+        let candidates: Vec<Candidate> = by.iter().map(moved).collect();
+        let columns = columns_of_each(flights, fitted, &candidates.iter().collect::<Vec<_>>());
+        let tested = |(candidate, columns): (Candidate, Option<Vec<Channels>>)| {
+            Some(Tested { candidate, evidence: fitted.weighted.test(&columns?)? })
+        };
+        candidates.into_iter().zip(columns).map(tested).collect()
     };
     let better = |a: Tested, b: Option<Tested>| match b {
         Some(b) if b.evidence.energy > a.evidence.energy => b,
@@ -43,13 +47,14 @@ pub(super) fn refined(flights: &[Trace], fitted: &Fitted, tested: Tested) -> Tes
     let (mut step, least) = match scale {
         GridScale::Even { step, least, .. } | GridScale::Relative { step, least, .. } => (step, least),
     };
+    let steps: Vec<f64> = (-NEIGHBOURS..=NEIGHBOURS).map(|k| f64::from(k) * step).collect();
+    let some = steps.len().min(at_once(fitted));
     let around: Vec<Option<Tested>> =
-        (-NEIGHBOURS..=NEIGHBOURS).into_par_iter().map(|k| at(&tested, f64::from(k) * step)).collect();
+        steps.par_chunks(some).flat_map_iter(|steps| each(&tested, steps)).collect();
     let mut best = around.into_iter().fold(tested.clone(), better);
     while step > least {
         step *= 0.5;
-        let sides = rayon::join(|| at(&best, step), || at(&best, -step));
-        best = [sides.0, sides.1].into_iter().fold(best, better);
+        best = each(&best, &[step, -step]).into_iter().fold(best, better);
     }
     best
 }

@@ -68,8 +68,8 @@ pub(super) fn nuisances(
     // more mass than assumed: more force than assumed was there, in proportion to it
     let forces: Vec<Vector3<f64>> = by_commands_n.iter().map(|force_n| force_n / -mass_kg).collect();
     out.push(column(Nuisance::Mass, None, force(trace.weak_vector(0, &forces))));
-    for (entry, axes) in momentum_rows(trace).into_iter().enumerate() {
-        let values = axes.map(|values| values.into_iter().map(|v| -v).collect::<Vec<f64>>());
+    for (entry, axes) in trace.momentum().iter().enumerate() {
+        let values = axes.each_ref().map(|values| values.iter().map(|v| -v).collect::<Vec<f64>>());
         out.push(column(Nuisance::Inertia(entry), None, torque(values)));
     }
     // by the commands for the force, by the motion for the torques

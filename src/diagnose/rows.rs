@@ -5,12 +5,13 @@
 //! by the kinematics: what acts on the vehicle shows in both, a fault of a sensor in one of them. A parameter's column is built from the signals that are not
 //! on the left of its row: rotor thrusts by the commands for forces, by the measured motion for torques.
 
-use super::along::{moved_by, wrench_along};
+use super::along::{PartAlong, each_along, moved_by, wrench_along};
 use super::base::Base;
 use super::channels::{
-    AXES, CHANNELS, Channels, Nuisance, NuisanceColumn, SECOND, append, channels, joined, measures, per_step,
+    AXES, CHANNELS, Channels, Nuisance, NuisanceColumn, SECOND, append, channels, joined, measures, nothing,
+    per_step,
 };
-use super::nuisances::{momentum_rows, nuisances};
+use super::nuisances::nuisances;
 use super::rotors::{OfRotors, RotorMotion};
 use super::sensors::{KnownMotion, true_motion, true_readings};
 use super::signature::EffectTerm;
@@ -164,22 +165,53 @@ impl Rows {
         base: &Base,
         candidate: &EffectTerm,
     ) -> Result<Vec<Channels>, PhysicsError> {
+        self.columns_of_each(flights, base, &[candidate]).into_iter().next().unwrap_or_else(|| Ok(Vec::new()))
+    }
+
+    /// The same of several effects, each by itself.
+    pub(super) fn columns_of_each(
+        &self,
+        flights: &[Trace],
+        base: &Base,
+        candidates: &[&EffectTerm],
+    ) -> Vec<Result<Vec<Channels>, PhysicsError>> {
         let motion = KnownMotion::or_found(self.known_motion.as_ref(), flights, base);
-        let mut columns = Vec::with_capacity(candidate.free.len());
-        for &index in &candidate.free {
+        let mut models: Vec<Moved> = Vec::new();
+        let mut places: Vec<Result<Range<usize>, PhysicsError>> = Vec::new();
+        for candidate in candidates.iter().filter(|candidate| !candidate.is_of_sensors()) {
+            let first = models.len();
+            let found = moved_models(base, candidate).map(|moved| models.extend(moved));
+            places.push(found.map(|()| first..models.len()));
+        }
+        let without = base.model(&[]);
+        let columns = without.map(|without| self.differences(&motion, &without, &models));
+        let mut places = places.into_iter();
+        let of = |candidate: &&EffectTerm| {
+            if candidate.is_of_sensors() {
+                return self.shown_columns(flights, base, candidate);
+            }
+            let place = places.next().unwrap_or(Ok(0..0))?;
+            Ok(columns.as_ref().map_err(Clone::clone)?[place].to_vec())
+        };
+        candidates.iter().map(of).collect()
+    }
+
+    /// The same of an effect that changes what sensors show.
+    fn shown_columns(
+        &self,
+        flights: &[Trace],
+        base: &Base,
+        candidate: &EffectTerm,
+    ) -> Result<Vec<Channels>, PhysicsError> {
+        let one = |&index: &usize| {
             let mut moved = candidate.clone();
             let step = candidate.step_of(index, &base.size);
             moved.values[index] += step;
-            if candidate.is_of_sensors() {
-                let mut with = base.clone();
-                with.present.push(moved);
-                columns.push(per_step(self.shown(flights, &with)?, &self.residual, step));
-                continue;
-            }
-            let model = base.model(std::slice::from_ref(&moved))?;
-            columns.push(self.difference(&motion, &model, None, step));
-        }
-        Ok(columns)
+            let mut with = base.clone();
+            with.present.push(moved);
+            Ok(per_step(self.shown(flights, &with)?, &self.residual, step))
+        };
+        candidate.free.iter().map(one).collect()
     }
 
     /// The same for an effect that acts through others that only `base` has, not the rows' own base.
@@ -194,15 +226,9 @@ impl Rows {
     ) -> Result<Vec<Channels>, PhysicsError> {
         let without = base.model(&[])?;
         let motion = KnownMotion::or_found(self.known_motion.as_ref(), flights, base);
-        let mut columns = Vec::with_capacity(candidate.free.len());
-        for &index in &candidate.free {
-            let mut moved = candidate.clone();
-            let step = candidate.step_of(index, &base.size);
-            moved.values[index] += step;
-            let model = base.model(std::slice::from_ref(&moved))?;
-            columns.push(self.difference(&motion, &model, Some(&without), step));
-        }
-        Ok(columns)
+        let through = |moved: Moved| Moved { down: Some(without.clone()), ..moved };
+        let models: Vec<Moved> = moved_models(base, candidate)?.into_iter().map(through).collect();
+        Ok(self.differences(&motion, &without, &models))
     }
 
     /// Columns of the free parameters of the base's effects. `flights` have the true motion of the recorded ones.
@@ -217,26 +243,30 @@ impl Rows {
             .enumerate()
             .flat_map(|(effect, present)| present.free.iter().map(move |&index| (effect, index)))
             .collect();
-        places
-            .into_par_iter()
-            .map(|(effect, index)| {
-                let step = base.present[effect].step_of(index, &base.size);
-                let moved = |by: f64| {
-                    let mut moved = base.clone();
-                    moved.present[effect].values[index] += by;
-                    moved
-                };
-                // not beyond what is possible: a load has no negative mass
-                let (present, value) = (&base.present[effect], base.present[effect].values[index]);
-                let below = present.possible(index, value - 0.5 * step, &base.size) - value;
-                let (up, down) = (moved(below + step), moved(below));
-                if base.present[effect].is_of_sensors() {
-                    return Ok(per_step(self.shown(recorded, &up)?, &self.shown(recorded, &down)?, step));
-                }
-                let (up, down) = (up.model(&[])?, down.model(&[])?);
-                Ok(self.difference(flights, &up, Some(&down), step))
-            })
-            .collect()
+        let mut models: Vec<Moved> = Vec::new();
+        let mut of_sensors: Vec<(usize, Channels)> = Vec::new();
+        for (column, &(effect, index)) in places.iter().enumerate() {
+            let present = &base.present[effect];
+            let step = present.step_of(index, &base.size);
+            let moved = |by: f64| {
+                let mut moved = base.clone();
+                moved.present[effect].values[index] += by;
+                moved
+            };
+            // not beyond what is possible: a load has no negative mass
+            let value = present.values[index];
+            let below = present.possible(index, value - 0.5 * step, &base.size) - value;
+            let (up, down) = (moved(below + step), moved(below));
+            if present.is_of_sensors() {
+                let shown = per_step(self.shown(recorded, &up)?, &self.shown(recorded, &down)?, step);
+                of_sensors.push((column, shown));
+            } else {
+                models.push(Moved { up: up.model(&[])?, down: Some(down.model(&[])?), step });
+            }
+        }
+        let mut columns = self.differences(flights, &base.model(&[])?, &models);
+        of_sensors.into_iter().for_each(|(column, shown)| columns.insert(column, shown));
+        Ok(columns)
     }
 
     /// The residual with other effects on the sensors. Effects on the vehicle keep their values, an approximation that
@@ -250,28 +280,86 @@ impl Rows {
         Ok(out)
     }
 
-    /// `K` of the change of force and torque per `step`, relative to the base or to `down`.
-    fn difference(&self, flights: &[Trace], up: &Model, down: Option<&Model>, step: f64) -> Channels {
-        let mut out = Channels::default();
+    /// `K` of the change of force and torque per step of each, relative to the rows' own base where there is no model below.
+    fn differences(&self, flights: &[Trace], base: &Model, moved: &[Moved]) -> Vec<Channels> {
+        let instants = flights.iter().map(|trace| trace.grid.count).max().unwrap_or_default();
+        let some = (AT_ONCE / instants.max(1)).clamp(4, 32);
+        let parts: Vec<Vec<Channels>> =
+            moved.par_chunks(some).map(|moved| self.differences_of(flights, base, moved)).collect();
+        parts.into_iter().flatten().collect()
+    }
+
+    fn differences_of(&self, flights: &[Trace], base: &Model, moved: &[Moved]) -> Vec<Channels> {
+        let mut out = vec![Channels::default(); moved.len()];
         for (trace, along) in flights.iter().zip(&self.flights) {
-            let of = |model: &Model| {
-                rayon::join(
-                    || forces_n(&wrench_along(model, trace, &along.commanded)),
-                    || torques_nm(&wrench_along(model, trace, &along.motion)),
-                )
-            };
-            let ((mut forces, mut torques), below) = (of(up), down.map(of));
-            let (force_0, torque_0) =
-                below.as_ref().map_or((&along.force_n, &along.torque_nm), |(f, t)| (f, t));
-            let per_step = |of: &mut [Vector3<f64>], from: &[Vector3<f64>]| {
-                of.iter_mut().zip(from).for_each(|(a, b)| *a = (*a - b) / step);
-            };
-            per_step(&mut forces, force_0);
-            per_step(&mut torques, torque_0);
-            append(&mut out, &weak_wrench(trace, &forces, &torques));
+            let forces = pairs_along(base, moved, (trace, &along.commanded), |wrench| wrench.force_n);
+            // what has no torque by the commands has none by the motion
+            let turning = moved
+                .iter()
+                .zip(&forces)
+                .filter(|(_, (up, down))| up.turns || down.as_ref().is_some_and(|down| down.turns));
+            let turns: Vec<&Moved> = turning.map(|(moved, _)| moved).collect();
+            let torques =
+                pairs_along(base, turns.iter().copied(), (trace, &along.motion), |wrench| wrench.torque_nm);
+            let mut torques = turns.iter().zip(torques).peekable();
+            for ((of, force), out) in moved.iter().zip(forces).zip(&mut out) {
+                let torque =
+                    torques.next_if(|(turns, _)| std::ptr::eq(**turns, of)).map(|(_, torque)| torque);
+                let weak = |pair: Option<(PartAlong, Option<PartAlong>)>, base: &[Vector3<f64>]| {
+                    let change = pair.and_then(|(up, down)| {
+                        per_step_of(up.series, down.as_ref().map_or(base, |down| &down.series), of.step)
+                    });
+                    change.map_or_else(|| nothing(trace), |series| trace.weak_vector(0, &series))
+                };
+                let (force, torque) = (weak(Some(force), &along.force_n), weak(torque, &along.torque_nm));
+                append(out, &channels(trace, force, torque));
+            }
         }
         out
     }
+}
+
+/// Force or torque along a flight of each model, and of the one below it where it has one.
+fn pairs_along<'a>(
+    base: &Model,
+    moved: impl IntoIterator<Item = &'a Moved> + Clone,
+    along: (&Trace, &RotorMotion),
+    part: fn(&Wrench) -> Vector3<f64>,
+) -> Vec<(PartAlong, Option<PartAlong>)> {
+    let models = moved.clone().into_iter().flat_map(|of| [Some(&of.up), of.down.as_ref()]).flatten();
+    let mut each = each_along(base, &models.collect::<Vec<_>>(), along, part).into_iter();
+    let pair = |of: &Moved| Some((each.next()?, of.down.as_ref().and_then(|_| each.next())));
+    moved.into_iter().map_while(pair).collect()
+}
+
+/// Change of a series per step; `None` where there is none.
+fn per_step_of(mut up: Vec<Vector3<f64>>, from: &[Vector3<f64>], step: f64) -> Option<Vec<Vector3<f64>>> {
+    if up == from {
+        return None;
+    }
+    up.iter_mut().zip(from).for_each(|(a, b)| *a = (*a - b) / step);
+    Some(up)
+}
+
+/// Instants times columns that are computed together: what they take in memory is bounded, and they share what they have in common.
+const AT_ONCE: usize = 1 << 19;
+
+/// A model whose effects are a step of one parameter further, and the one below where it is not the rows' own base.
+struct Moved {
+    up: Model,
+    down: Option<Model>,
+    step: f64,
+}
+
+/// The base with an effect that it does not have, a step of each free parameter away.
+fn moved_models(base: &Base, candidate: &EffectTerm) -> Result<Vec<Moved>, PhysicsError> {
+    let one = |&index: &usize| {
+        let mut moved = candidate.clone();
+        let step = candidate.step_of(index, &base.size);
+        moved.values[index] += step;
+        Ok(Moved { up: base.model(std::slice::from_ref(&moved))?, down: None, step })
+    };
+    candidate.free.iter().map(one).collect()
 }
 
 /// The residual for the true motion of the flights.
@@ -343,7 +431,7 @@ fn residual(trace: &Trace, base: &Base, model: &Model, along: &Along) -> Channel
     }
     let acting = weak_wrench(trace, &forces, &torques);
     let readings = trace.weak_specific_force();
-    let momentum = momentum_rows(trace);
+    let momentum = trace.momentum();
     let j = &base.vehicle.body.inertia_kg_m2;
     let six = [j[(0, 0)], j[(0, 1)], j[(0, 2)], j[(1, 1)], j[(1, 2)], j[(2, 2)]];
     let mut out = acting;

@@ -30,11 +30,10 @@ pub(super) fn test_all(
         })
         .map(|(_, candidate)| *candidate)
         .collect();
-    // columns of a long flight take much memory: each candidate's are gone before the next one's
-    let tested_of = |(place, wide): (usize, &&Candidate)| -> Vec<(usize, Tested)> {
+    let tested_of = |(place, columns): (usize, Option<Vec<Channels>>)| -> Vec<(usize, Tested)> {
+        let (wide, Some(columns)) = (widest[place], columns) else { return Vec::new() };
         let is_of =
             |candidate: &Candidate| widest.iter().position(|wide| covers(wide, candidate)) == Some(place);
-        let Some(columns) = columns_of(flights, fitted, wide) else { return Vec::new() };
         let covered = open.iter().enumerate().filter(|(_, candidate)| is_of(candidate));
         let tested = covered.filter_map(|(index, candidate)| {
             let evidence = fitted.weighted.test(&chosen(&columns, wide, candidate))?;
@@ -42,7 +41,16 @@ pub(super) fn test_all(
         });
         tested.collect()
     };
-    let mut tested: Vec<(usize, Tested)> = widest.par_iter().enumerate().flat_map_iter(tested_of).collect();
+    // columns of a long flight take much memory: those of some candidates are gone before the next ones'
+    let some = at_once(fitted);
+    let mut tested: Vec<(usize, Tested)> = widest
+        .par_chunks(some)
+        .enumerate()
+        .flat_map_iter(|(chunk, wide)| {
+            let columns = columns_of_each(flights, fitted, wide);
+            (chunk * some..).zip(columns).flat_map(tested_of).collect::<Vec<_>>()
+        })
+        .collect();
     tested.sort_by_key(|(index, _)| *index);
     let mut out: Vec<Tested> = tested.into_iter().map(|(_, tested)| tested).collect();
     out.extend(test_winds(flights, fitted, signatures));
@@ -75,13 +83,33 @@ fn chosen(columns: &[Channels], wide: &Candidate, candidate: &Candidate) -> Vec<
     out
 }
 
+/// Candidates of which the columns are computed together.
+pub(super) fn at_once(fitted: &Fitted) -> usize {
+    (ROWS_AT_ONCE / fitted.rows.len().max(1)).clamp(1, 16)
+}
+
+/// Rows times candidates that are held at a time.
+const ROWS_AT_ONCE: usize = 1 << 15;
+
 /// Columns of a candidate's free parameters; `None` if the vehicle file lacks a value that it needs.
 pub(super) fn columns_of(flights: &[Trace], fitted: &Fitted, candidate: &Candidate) -> Option<Vec<Channels>> {
-    let mut columns = Vec::new();
-    for part in &candidate.parts {
-        columns.extend(fitted.rows.columns_of(flights, &fitted.base, part).ok()?);
-    }
-    Some(columns)
+    columns_of_each(flights, fitted, &[candidate]).pop()?
+}
+
+/// The same of several candidates.
+pub(super) fn columns_of_each(
+    flights: &[Trace],
+    fitted: &Fitted,
+    candidates: &[&Candidate],
+) -> Vec<Option<Vec<Channels>>> {
+    let parts: Vec<&EffectTerm> = candidates.iter().flat_map(|candidate| &candidate.parts).collect();
+    let mut columns = fitted.rows.columns_of_each(flights, &fitted.base, &parts).into_iter();
+    let of = |candidate: &&Candidate| {
+        let own: Vec<_> = columns.by_ref().take(candidate.parts.len()).collect();
+        let own: Vec<Vec<Channels>> = own.into_iter().collect::<Result<_, _>>().ok()?;
+        Some(own.into_iter().flatten().collect())
+    };
+    candidates.iter().map(of).collect()
 }
 
 /// The same effect, for rotors the same rotor.

@@ -2,6 +2,7 @@
 //! motion.
 
 use super::instruments::{Instruments, instruments};
+use super::nuisances::momentum_rows;
 use super::rotors::{OfRotors, RotorMotion, felt, filtered};
 use super::timing::{command_period_s, inertial_late};
 use crate::physics::{ActuationLatency, Airframe, State};
@@ -11,7 +12,7 @@ use crate::signals::{
 use crate::vehicle::{Propulsion, Vehicle};
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Cut-off of the zero-phase low-pass of the regressors' signals, Hz. Chosen; not measured.
 const SMOOTH_HZ: f64 = 6.0;
@@ -68,6 +69,17 @@ pub struct Trace {
     pub height_by_pose: Option<bool>,
     /// of the torques, if the commanded trajectory was recorded
     pub(super) instruments: Option<Arc<Instruments>>,
+    /// what every model of this motion is compared with, once it was asked for
+    weak_motion: Arc<OnceLock<WeakMotion>>,
+}
+
+/// Measurements of force and momentum in weak form.
+#[derive(Debug)]
+struct WeakMotion {
+    /// m/s^2, body, for each available measurement, the accelerometer's first
+    specific_force: Vec<[Vec<f64>; 3]>,
+    /// for each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2
+    momentum: [[Vec<f64>; 3]; 6],
 }
 
 /// Which parts of the state are measured.
@@ -153,6 +165,7 @@ impl Trace {
             gravity_m_s2: vehicle.gravity_m_s2,
             height_by_pose: signals.quality.height_by_pose,
             instruments: None,
+            weak_motion: Arc::default(),
         };
         trace.smooth()?;
         let reference = signals.reference.as_ref().filter(|_| trace.torques);
@@ -179,7 +192,7 @@ impl Trace {
         states: Vec<State>,
         specific_force_m_s2: Option<Series<Vector3<f64>>>,
     ) -> Self {
-        Self { states: states.into(), specific_force_m_s2, ..self.clone() }
+        Self { states: states.into(), specific_force_m_s2, weak_motion: Arc::default(), ..self.clone() }
     }
 
     /// Measured specific force, m/s^2, body; `None` without an accelerometer.
@@ -240,9 +253,21 @@ impl Trace {
 
     /// `K` of the specific force, m/s^2, body, for each available measurement, the accelerometer's first.
     #[must_use]
-    pub fn weak_specific_force(&self) -> Vec<[Vec<f64>; 3]> {
-        let measured = self.specific_force_m_s2.as_ref().map(|force| self.weak_vector(0, force));
-        measured.into_iter().chain(self.weak_kinematic()).collect()
+    pub fn weak_specific_force(&self) -> &[[Vec<f64>; 3]] {
+        &self.weak_motion().specific_force
+    }
+
+    /// For each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2.
+    pub(super) fn momentum(&self) -> &[[Vec<f64>; 3]; 6] {
+        &self.weak_motion().momentum
+    }
+
+    fn weak_motion(&self) -> &WeakMotion {
+        self.weak_motion.get_or_init(|| {
+            let measured = self.specific_force_m_s2.as_ref().map(|force| self.weak_vector(0, force));
+            let specific_force = measured.into_iter().chain(self.weak_kinematic()).collect();
+            WeakMotion { specific_force, momentum: momentum_rows(self) }
+        })
     }
 
     fn smooth(&mut self) -> Result<(), TraceError> {

@@ -302,15 +302,21 @@ type Visit<'a> = dyn FnMut(&dyn Effect, &mut Own) + 'a;
 fn in_order(each: &mut dyn FnMut(&mut Visit), at: &Condition, rotors: &Rotors) -> Wrench {
     let mut moved_m = Vector3::zeros();
     each(&mut |effect, own| moved_m += effect.center_of_mass_m(own));
-    let at = at.with_center_of_mass(at.center_of_mass_m + moved_m);
+    let elsewhere;
+    let at = if moved_m == Vector3::zeros() {
+        at
+    } else {
+        elsewhere = at.with_center_of_mass(at.center_of_mass_m + moved_m);
+        &elsewhere
+    };
     let mut changed = *rotors;
-    each(&mut |effect, own| effect.rotor_speed(&at, own, &mut changed));
+    each(&mut |effect, own| effect.rotor_speed(at, own, &mut changed));
     if changed.speed != rotors.speed {
         changed.thrust_from_speed(at.airframe);
     }
-    each(&mut |effect, own| effect.rotor_thrust(&at, own, &mut changed));
+    each(&mut |effect, own| effect.rotor_thrust(at, own, &mut changed));
     let mut sum = at.thrust_wrench(&changed.thrust_n);
-    each(&mut |effect, own| effect.wrench(&at, &changed, own, &mut sum));
-    each(&mut |effect, own| effect.reaction(&at, own, &mut sum));
+    each(&mut |effect, own| effect.wrench(at, &changed, own, &mut sum));
+    each(&mut |effect, own| effect.reaction(at, own, &mut sum));
     sum
 }

@@ -6,6 +6,7 @@
 mod active_effect;
 mod actuator;
 mod airframe;
+mod beyond;
 mod capacity;
 mod effect;
 pub mod effects;
@@ -21,6 +22,7 @@ mod state;
 pub use active_effect::ActiveEffect;
 pub use actuator::{ActuationLatency, RotorLag, RotorStep, delayed_thrusts_n, delayed_wrench};
 pub use airframe::Airframe;
+pub(crate) use beyond::Beyond;
 pub use capacity::MAX_ROTORS;
 pub use effect::{Condition, Effect, Hook, Own, Rotors, effect_wrench, effects_wrench};
 pub use error::PhysicsError;

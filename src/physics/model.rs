@@ -19,7 +19,7 @@ pub struct Model {
     pub airframe: Airframe,
     effects: Vec<ActiveEffect>,
     /// each effect's part of the own states
-    slots: Vec<Range<usize>>,
+    pub(super) slots: Vec<Range<usize>>,
     own_state_count: usize,
     by_hook: ByHook,
 }
@@ -115,20 +115,89 @@ impl Model {
         mut states: OwnStates,
         rotors: &mut Rotors,
     ) -> Wrench {
+        let at = self.condition(state, input, &mut states);
+        self.turned(&at, &mut states, rotors);
+        self.lifted(&at, &mut states, rotors);
+        let sum = self.pushed(&at, rotors, &mut states, at.thrust_wrench(&rotors.thrust_n));
+        self.answered(&at, &mut states, sum)
+    }
+
+    /// Rates of the own states alone, where [`Self::own_states_are_of_rotors`]; they must come as zero.
+    #[inline(always)]
+    pub(crate) fn rotor_rates(&self, state: &State, input: &Input, mut states: OwnStates) {
+        let at = self.condition(state, input, &mut states);
+        self.turned(&at, &mut states, &mut Rotors::still());
+    }
+
+    /// Whether all own states are of effects between command and rotor speed, which do not ask how the body moves.
+    #[must_use]
+    pub fn own_states_are_of_rotors(&self) -> bool {
+        let mut each = self.effects.iter().zip(&self.slots);
+        each.all(|(active, slot)| slot.is_empty() || active.effect.hooks() == [Hook::RotorSpeed])
+    }
+
+    /// What the effects of the air and of the centre of mass make of the instant.
+    #[inline(always)]
+    pub(super) fn condition<'a>(
+        &'a self,
+        state: &'a State,
+        input: &'a Input,
+        states: &mut OwnStates,
+    ) -> Condition<'a> {
         let hooks = &self.by_hook;
         let (mut wind_m_s, mut center_m) = (input.wind_m_s, Vector3::zeros());
-        each(&hooks.air, &mut states, |effect, own| wind_m_s += effect.wind_m_s(input, own));
-        each(&hooks.center_of_mass, &mut states, |effect, own| center_m += effect.center_of_mass_m(own));
-        let at = Condition::about((&self.airframe, center_m), state, input, wind_m_s);
-        rotors.speed = input.speed_command;
-        rotors.acceleration_1_s = input.speed_rate_1_s;
-        each(&hooks.rotor_speed, &mut states, |effect, own| effect.rotor_speed(&at, own, rotors));
+        each(&hooks.air, states, |effect, own| wind_m_s += effect.wind_m_s(input, own));
+        each(&hooks.center_of_mass, states, |effect, own| center_m += effect.center_of_mass_m(own));
+        Condition::about((&self.airframe, center_m), state, input, wind_m_s)
+    }
+
+    /// Speeds, and the thrusts that belong to them.
+    #[inline(always)]
+    pub(super) fn turned(&self, at: &Condition, states: &mut OwnStates, rotors: &mut Rotors) {
+        rotors.speed = at.input.speed_command;
+        rotors.acceleration_1_s = at.input.speed_rate_1_s;
+        each(&self.by_hook.rotor_speed, states, |effect, own| effect.rotor_speed(at, own, rotors));
         rotors.thrust_from_speed(&self.airframe);
-        each(&hooks.rotor_thrust, &mut states, |effect, own| effect.rotor_thrust(&at, own, rotors));
-        let mut wrench = at.thrust_wrench(&rotors.thrust_n);
-        each(&hooks.wrench, &mut states, |effect, own| effect.wrench(&at, rotors, own, &mut wrench));
-        each(&hooks.reaction, &mut states, |effect, own| effect.reaction(&at, own, &mut wrench));
-        wrench
+    }
+
+    /// What the effects on thrusts make of them.
+    #[inline(always)]
+    pub(super) fn lifted(&self, at: &Condition, states: &mut OwnStates, rotors: &mut Rotors) {
+        each(&self.by_hook.rotor_thrust, states, |effect, own| effect.rotor_thrust(at, own, rotors));
+    }
+
+    /// Force and torque of the thrusts and of all effects, but for what hangs on the vehicle.
+    #[inline(always)]
+    pub(super) fn pushed(
+        &self,
+        at: &Condition,
+        rotors: &Rotors,
+        states: &mut OwnStates,
+        thrust: Wrench,
+    ) -> Wrench {
+        let mut sum = thrust;
+        each(&self.by_hook.wrench, states, |effect, own| effect.wrench(at, rotors, own, &mut sum));
+        sum
+    }
+
+    /// Beyond [`Self::pushed`] what the last effect pushes.
+    #[inline(always)]
+    pub(super) fn pushed_by_last(
+        &self,
+        at: &Condition,
+        rotors: &Rotors,
+        states: &mut OwnStates,
+        sum: &mut Wrench,
+    ) {
+        let last = self.by_hook.wrench.len().saturating_sub(1);
+        each(&self.by_hook.wrench[last..], states, |effect, own| effect.wrench(at, rotors, own, sum));
+    }
+
+    /// With what hangs on the vehicle.
+    #[inline(always)]
+    pub(super) fn answered(&self, at: &Condition, states: &mut OwnStates, mut sum: Wrench) -> Wrench {
+        each(&self.by_hook.reaction, states, |effect, own| effect.reaction(at, own, &mut sum));
+        sum
     }
 
     /// Rates of the own states of what hangs on the vehicle, where the force on the vehicle was measured: `felt_n`, with

@@ -3,7 +3,7 @@
 //! The normal matrix of the states is block tridiagonal and is factorised block by block. The parameters come by its Schur
 //! complement. Memory and time grow with the number of states, not with its square.
 
-use nalgebra::{DMatrix, DVector, SVector};
+use nalgebra::{DMatrix, DVector, Matrix3, SVector};
 use rayon::prelude::*;
 
 use super::blocks::{Block, Columns, Pair, STATE, State, WIDTH};
@@ -24,12 +24,18 @@ pub struct Rows {
     pub by_parameters: Vec<Columns<WIDTH>>,
 }
 
-/// The normal equations of all groups.
-pub struct Normal {
+/// The normal matrix of the states.
+#[derive(Debug, Clone)]
+pub struct Chain {
     /// of each state with itself
     diagonal: Vec<Block>,
     /// of each state with the next
     coupling: Vec<Block>,
+}
+
+/// The normal equations of all groups.
+pub struct Normal {
+    chain: Chain,
     /// of each state with the parameters
     cross: Vec<Columns<STATE>>,
     /// gradient by the states
@@ -55,8 +61,6 @@ pub struct Reduced {
     pub information: DMatrix<f64>,
     /// gradient by the parameters, likewise
     pub gradient: DVector<f64>,
-    /// logarithm of the determinant of the states' normal matrix
-    pub log_determinant: f64,
 }
 
 impl Rows {
@@ -82,13 +86,109 @@ impl Rows {
     }
 }
 
+/// Parts of [`WIDTH`] components of a state.
+const PARTS: usize = STATE / WIDTH;
+
+/// Derivatives of one residual by the parts of both neighbouring states.
+struct Blocks {
+    each: [Matrix3<f64>; 2 * PARTS],
+    is_held: [bool; 2 * PARTS],
+}
+
+impl Blocks {
+    fn of(by_states: &Pair) -> Self {
+        let each: [Matrix3<f64>; 2 * PARTS] =
+            std::array::from_fn(|block| by_states.fixed_view::<WIDTH, WIDTH>(0, WIDTH * block).into_owned());
+        let is_held = each.each_ref().map(|block| block.iter().any(|value| *value != 0.0));
+        Self { each, is_held }
+    }
+
+    /// Those that are not zero.
+    fn held(&self) -> impl Iterator<Item = usize> + Clone {
+        let is_held = self.is_held;
+        (0..2 * PARTS).filter(move |block| is_held[*block])
+    }
+}
+
+impl Chain {
+    /// Of so many states that nothing shows.
+    #[must_use]
+    pub fn of(states: usize) -> Self {
+        Self {
+            diagonal: vec![Block::identity() * HOLD; states],
+            coupling: vec![Block::zeros(); states.saturating_sub(1)],
+        }
+    }
+
+    /// Adds the rows of a group by their derivatives.
+    pub fn add_rows(&mut self, form: &dyn Residuals, by_states: &[Pair]) {
+        for (at, by_states) in form.intervals().iter().zip(by_states) {
+            self.add(*at, &Blocks::of(by_states));
+        }
+    }
+
+    fn add(&mut self, at: usize, blocks: &Blocks) {
+        for one in blocks.held() {
+            for other in blocks.held().filter(|other| *other >= one) {
+                let product = blocks.each[one].tr_mul(&blocks.each[other]);
+                let (row, column) = (WIDTH * (one % PARTS), WIDTH * (other % PARTS));
+                let put = |to: &mut Block, (row, column), product: &Matrix3<f64>| {
+                    let mut into = to.fixed_view_mut::<WIDTH, WIDTH>(row, column);
+                    into += product;
+                };
+                if one / PARTS != other / PARTS {
+                    put(&mut self.coupling[at], (row, column), &product);
+                    continue;
+                }
+                let diagonal = &mut self.diagonal[at + one / PARTS];
+                put(diagonal, (row, column), &product);
+                if one != other {
+                    put(diagonal, (column, row), &product.transpose());
+                }
+            }
+        }
+    }
+
+    /// Logarithm of its determinant. `None` where it is not positive definite.
+    #[must_use]
+    pub fn log_determinant(&self) -> Option<f64> {
+        let (mut half, mut before) = (0.0, None::<Block>);
+        for (at, diagonal) in self.diagonal.iter().enumerate() {
+            let pivot = before.map_or(*diagonal, |before| diagonal - before.tr_mul(&before));
+            let factor = pivot.cholesky()?;
+            let lower = factor.l_dirty();
+            half += lower.diagonal().product().ln();
+            before = self.coupling.get(at).copied();
+            if let Some(before) = &mut before {
+                lower.solve_lower_triangular_unchecked_mut(before);
+            }
+        }
+        Some(2.0 * half)
+    }
+}
+
+/// Derivatives of a group's residuals by the states alone, over their standard deviations.
+#[must_use]
+pub fn by_states(group: &Group, states: &[State], theta: &[f64]) -> Vec<Pair> {
+    let form = group.form.as_ref();
+    let one = |row: usize| {
+        let at = form.intervals()[row];
+        let weight = group.weights(row);
+        let mut found = form.by_states(row, &states[at], &states[at + 1], theta);
+        for part in 0..WIDTH {
+            found.row_mut(part).scale_mut(weight[part]);
+        }
+        found
+    };
+    (0..form.intervals().len()).into_par_iter().with_min_len(ROWS_AT_ONCE).map(one).collect()
+}
+
 impl Normal {
-    /// Of rows of all groups; with no `parameters` that of the states alone.
+    /// Of rows of all groups.
     #[must_use]
     pub fn of(groups: &[Group], rows: &[Rows], states: usize, parameters: usize) -> Self {
         let mut normal = Self {
-            diagonal: vec![Block::identity() * HOLD; states],
-            coupling: vec![Block::zeros(); states.saturating_sub(1)],
+            chain: Chain::of(states),
             cross: vec![Columns::<STATE>::zeros(parameters); states],
             state_gradient: vec![State::zeros(); states],
             parameters: DMatrix::zeros(parameters, parameters),
@@ -106,30 +206,27 @@ impl Normal {
         for (row, &at) in form.intervals().iter().enumerate() {
             let (residual, by_states) = (&rows.residual[row], &rows.by_states[row]);
             let by_parameters = &rows.by_parameters[row];
-            let (first, second) = (
-                by_states.fixed_columns::<STATE>(0).into_owned(),
-                by_states.fixed_columns::<STATE>(STATE).into_owned(),
-            );
-            self.diagonal[at] += first.transpose() * first;
-            self.diagonal[at + 1] += second.transpose() * second;
-            self.coupling[at] += first.transpose() * second;
-            self.state_gradient[at] += first.transpose() * residual;
-            self.state_gradient[at + 1] += second.transpose() * residual;
-            self.cost += residual.norm_squared();
-            if self.parameters.is_empty() {
-                continue;
+            let blocks = Blocks::of(by_states);
+            self.chain.add(at, &blocks);
+            for block in blocks.held() {
+                let slope = blocks.each[block].tr_mul(residual);
+                let mut into =
+                    self.state_gradient[at + block / PARTS].fixed_rows_mut::<WIDTH>(WIDTH * (block % PARTS));
+                into += slope;
             }
-            let (one, other) = (first.transpose() * by_parameters, second.transpose() * by_parameters);
-            let squares = by_parameters.tr_mul(by_parameters);
-            let slope = by_parameters.tr_mul(residual);
+            self.cost += residual.norm_squared();
             for (column, &parameter) in own.iter().enumerate() {
-                let mut into = self.cross[at].column_mut(parameter);
-                into += one.column(column);
-                let mut into = self.cross[at + 1].column_mut(parameter);
-                into += other.column(column);
-                self.gradient[parameter] += slope[column];
+                let by_parameter = by_parameters.fixed_columns::<1>(column);
+                for block in blocks.held() {
+                    let product = blocks.each[block].tr_mul(&by_parameter);
+                    let cross = &mut self.cross[at + block / PARTS];
+                    let mut into = cross.fixed_view_mut::<WIDTH, 1>(WIDTH * (block % PARTS), parameter);
+                    into += product;
+                }
+                self.gradient[parameter] += by_parameter.dot(residual);
                 for (line, &with) in own.iter().enumerate() {
-                    self.parameters[(with, parameter)] += squares[(line, column)];
+                    self.parameters[(with, parameter)] +=
+                        by_parameters.fixed_columns::<1>(line).dot(&by_parameter);
                 }
             }
         }
@@ -138,38 +235,34 @@ impl Normal {
     /// Takes the states out. `None` where their normal matrix is not positive definite.
     #[must_use]
     pub fn reduced(&self) -> Option<Reduced> {
-        let (states, parameters) = (self.diagonal.len(), self.parameters.nrows());
+        let Chain { diagonal, coupling } = &self.chain;
+        let (states, parameters) = (diagonal.len(), self.parameters.nrows());
         let (mut pivots, mut gains) = (Vec::with_capacity(states), Vec::with_capacity(states));
-        let mut right: Vec<Columns<STATE>> = Vec::with_capacity(states);
-        let mut log_determinant = 0.0;
-        let mut pivot = *self.diagonal.first()?;
+        // inverse pivot times what is left on the right
+        let mut solved: Vec<Columns<STATE>> = Vec::with_capacity(states);
+        let mut pivot = *diagonal.first()?;
         for at in 0..states {
             if at > 0 {
                 let gain: &Block = &gains[at - 1];
-                pivot = self.diagonal[at] - self.coupling[at - 1].transpose() * gain;
+                pivot = diagonal[at] - coupling[at - 1].transpose() * gain;
             }
-            let factor = pivot.cholesky()?;
-            log_determinant += 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
-            let inverse = factor.inverse();
+            let inverse = pivot.cholesky()?.inverse();
             let mut line = Columns::<STATE>::zeros(parameters + 1);
             line.columns_mut(0, parameters).copy_from(&self.cross[at]);
             line.set_column(parameters, &self.state_gradient[at]);
             if at > 0 {
-                line -= self.coupling[at - 1].transpose() * (pivots[at - 1] * &right[at - 1]);
+                line -= coupling[at - 1].transpose() * &solved[at - 1];
             }
-            right.push(line);
+            solved.push(inverse * line);
             pivots.push(inverse);
             if at + 1 < states {
-                gains.push(inverse * self.coupling[at]);
+                gains.push(inverse * coupling[at]);
             }
         }
-        let mut answers = vec![Columns::<STATE>::zeros(parameters + 1); states];
-        for at in (0..states).rev() {
-            let mut line = pivots[at] * &right[at];
-            if at + 1 < states {
-                line -= gains[at] * &answers[at + 1];
-            }
-            answers[at] = line;
+        let mut answers = solved;
+        for at in (0..states.saturating_sub(1)).rev() {
+            let following = gains[at] * &answers[at + 1];
+            answers[at] -= following;
         }
         let mut information = self.parameters.clone();
         let mut gradient = self.gradient.clone();
@@ -177,7 +270,7 @@ impl Normal {
             information -= cross.tr_mul(&answer.columns(0, parameters));
             gradient -= cross.tr_mul(&answer.column(parameters));
         }
-        Some(Reduced { pivots, gains, answers, information, gradient, log_determinant })
+        Some(Reduced { pivots, gains, answers, information, gradient })
     }
 }
 
@@ -189,28 +282,40 @@ impl Reduced {
         let mut all = Vec::with_capacity(self.gains.len());
         for at in (0..self.gains.len()).rev() {
             let gain = self.gains[at];
-            let between = -gain * covariance;
+            let carried = gain * covariance;
             let second = covariance;
-            covariance = self.pivots[at] + gain * covariance * gain.transpose();
-            all.push([covariance, between, second]);
+            covariance = self.pivots[at] + carried * gain.transpose();
+            all.push([covariance, -carried, second]);
         }
         all.reverse();
         all
     }
 
-    /// A residual's derivatives by the parameters once the states answer to them, one column a parameter of the problem.
-    #[must_use]
-    pub fn projected(&self, form: &dyn Residuals, rows: &Rows, row: usize) -> Columns<WIDTH> {
-        let parameters = self.information.nrows();
+    /// A residual's derivatives by the parameters `of` once the states answer to them: one line a component.
+    pub fn project(
+        &self,
+        form: &dyn Residuals,
+        rows: &Rows,
+        (row, of): (usize, &[usize]),
+        into: &mut [Vec<f64>; WIDTH],
+    ) {
         let at = form.intervals()[row];
-        let by_states = &rows.by_states[row];
-        let mut out = -(by_states.fixed_columns::<STATE>(0) * self.answers[at].columns(0, parameters)
-            + by_states.fixed_columns::<STATE>(STATE) * self.answers[at + 1].columns(0, parameters));
-        for (column, &parameter) in form.parameters().iter().enumerate() {
-            let mut into = out.column_mut(parameter);
-            into += rows.by_parameters[row].column(column);
+        let (by_states, by_parameters) = (&rows.by_states[row], &rows.by_parameters[row]);
+        for (part, line) in into.iter_mut().enumerate() {
+            line.clear();
+            let (a, b) =
+                (by_states.fixed_view::<1, STATE>(part, 0), by_states.fixed_view::<1, STATE>(part, STATE));
+            line.extend(of.iter().map(|&parameter| {
+                let answer = |at: usize| self.answers[at].fixed_columns::<1>(parameter);
+                -(a.tr_dot(&answer(at)) + b.tr_dot(&answer(at + 1)))
+            }));
         }
-        out
+        for (column, parameter) in form.parameters().iter().enumerate() {
+            let Some(place) = of.iter().position(|of| of == parameter) else { continue };
+            for (part, line) in into.iter_mut().enumerate() {
+                line[place] += by_parameters[(part, column)];
+            }
+        }
     }
 
     /// The states' step for a step of the parameters.

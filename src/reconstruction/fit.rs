@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector, SVector};
 
-use super::arrow::{Normal, Reduced, Rows};
-use super::blocks::{STATE, State, WIDTH};
+use super::arrow::{Chain, Normal, Reduced, Rows, by_states};
+use super::blocks::{Block, Pair, STATE, State, WIDTH};
 use super::places::{BASE, SCALE};
 use super::residuals::Group;
 
@@ -191,27 +191,27 @@ impl<'a> Iterate<'a> {
 
     /// Noise levels by MacKay's fixed point: `sigma^2 <- sum r^2 / (rows - what states and parameters took of them)`.
     fn learn(&mut self, turn: &Turn, round: usize) {
+        let learns = |group: &Group| {
+            let (first, last) = group.learned_in;
+            group.floor.is_some() && (first..=last).contains(&round)
+        };
+        if !self.problem.groups.iter().any(learns) {
+            return;
+        }
         let neighbours = turn.reduced.neighbours();
         for (group, rows) in self.problem.groups.iter_mut().zip(&turn.rows) {
             let (first, last) = group.learned_in;
             let Some(floor) = group.floor.filter(|_| (first..=last).contains(&round)) else { continue };
             let mut taken = SVector::<f64, WIDTH>::zeros();
             let mut squares = SVector::<f64, WIDTH>::zeros();
-            let count = rows.residual.len() as f64;
-            for (row, &at) in group.form.intervals().iter().enumerate() {
-                let [one, between, other] = &neighbours[at];
-                let (a, b) = (
-                    rows.by_states[row].fixed_columns::<STATE>(0).into_owned(),
-                    rows.by_states[row].fixed_columns::<STATE>(STATE).into_owned(),
-                );
-                let of_states = (a * one).component_mul(&a)
-                    + (a * between).component_mul(&b) * 2.0
-                    + (b * other).component_mul(&b);
-                let projected =
-                    turn.reduced.projected(group.form.as_ref(), rows, row).select_columns(self.free);
-                let of_parameters = (&projected * &turn.covariance).component_mul(&projected);
+            let (count, form) = (rows.residual.len() as f64, group.form.as_ref());
+            let mut projected: [Vec<f64>; WIDTH] = Default::default();
+            for (row, &at) in form.intervals().iter().enumerate() {
+                let pair = &rows.by_states[row];
+                turn.reduced.project(form, rows, (row, self.free), &mut projected);
                 for part in 0..WIDTH {
-                    taken[part] += of_states.row(part).sum() + of_parameters.row(part).sum();
+                    taken[part] += taken_by_states(pair, part, &neighbours[at])
+                        + taken_by_parameters(&projected[part], &turn.covariance);
                     squares[part] += rows.residual[row][part].powi(2);
                 }
             }
@@ -226,16 +226,37 @@ impl<'a> Iterate<'a> {
     }
 
     /// Half the logarithm of the determinant that the states leave behind when they are integrated out: that of their normal
-    /// matrix, less that of the process by its second state, which goes with the parameters too.
-    fn half_log_determinant(&self) -> Result<f64, FitError> {
+    /// matrix, less that of the process by its second state, which goes with the parameters too. `known` is the normal matrix of
+    /// the groups that do not go with what was moved.
+    fn half_log_determinant(
+        &self,
+        rows: &[Rows],
+        (shaped, known): (&[bool], &Chain),
+    ) -> Result<f64, FitError> {
         let Problem { groups, states, process, .. } = &self.problem;
-        let rows: Vec<Rows> = groups.iter().map(|group| Rows::of(group, states, &self.theta)).collect();
-        let reduced = Normal::of(groups, &rows, states.len(), 0).reduced().ok_or(FitError::Singular)?;
-        let ahead = rows[*process]
-            .by_states
-            .iter()
-            .map(|pair| pair.fixed_view::<WIDTH, WIDTH>(0, STATE).determinant().abs().ln());
-        Ok(0.5 * reduced.log_determinant - ahead.sum::<f64>())
+        let (mut chain, mut ahead) = (known.clone(), 0.0);
+        for (index, group) in groups.iter().enumerate() {
+            let moved = shaped[index].then(|| by_states(group, states, &self.theta));
+            let pairs = moved.as_deref().unwrap_or(&rows[index].by_states);
+            if shaped[index] {
+                chain.add_rows(group.form.as_ref(), pairs);
+            }
+            if index == *process {
+                let determinant = |pair: &Pair| pair.fixed_view::<WIDTH, WIDTH>(0, STATE).determinant();
+                ahead = pairs.iter().map(|pair| determinant(pair).abs().ln()).sum();
+            }
+        }
+        Ok(0.5 * chain.log_determinant().ok_or(FitError::Singular)? - ahead)
+    }
+
+    /// The normal matrix of the groups that do not go with a parameter.
+    fn unmoved(&self, rows: &[Rows], shaped: &[bool]) -> Chain {
+        let Problem { groups, states, .. } = &self.problem;
+        let mut chain = Chain::of(states.len());
+        for ((group, rows), _) in groups.iter().zip(rows).zip(shaped).filter(|(_, shaped)| !**shaped) {
+            chain.add_rows(group.form.as_ref(), &rows.by_states);
+        }
+        chain
     }
 
     /// From the joint mode to the mode with the states integrated out, by Laplace: the slope of the determinant moves the
@@ -243,13 +264,26 @@ impl<'a> Iterate<'a> {
     fn marginal(&mut self) -> Result<(), FitError> {
         let here = self.linearised()?;
         let mut slope = DVector::zeros(self.free.len());
+        let mut known: Option<(Vec<bool>, Chain)> = None;
         for (at, &index) in self.free.iter().enumerate() {
+            let goes_with = |group: &Group| group.form.shaped_by().contains(&index);
+            let shaped: Vec<bool> = self.problem.groups.iter().map(goes_with).collect();
+            if !shaped.contains(&true) {
+                continue;
+            }
+            let (shaped, unmoved) = &*match known.take().filter(|(known, _)| *known == shaped) {
+                Some(found) => known.insert(found),
+                None => {
+                    let chain = self.unmoved(&here.rows, &shaped);
+                    known.insert((shaped, chain))
+                }
+            };
             let probe = PROBE * here.covariance[(at, at)].sqrt();
             let mut sides = [0.0; 2];
             for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
                 let kept = self.theta[index];
                 self.theta[index] = kept + sign * probe;
-                let found = self.half_log_determinant();
+                let found = self.half_log_determinant(&here.rows, (shaped, unmoved));
                 self.theta[index] = kept;
                 *side = found?;
             }
@@ -259,6 +293,32 @@ impl<'a> Iterate<'a> {
         self.moved(&Turn { step, ..here });
         Ok(())
     }
+}
+
+/// Share of one component of a residual that the two states took, of which these are the covariances.
+fn taken_by_states(pair: &Pair, part: usize, [one, between, other]: &[Block; 3]) -> f64 {
+    let (a, b) = (pair.fixed_view::<1, STATE>(part, 0), pair.fixed_view::<1, STATE>(part, STATE));
+    // most derivatives are zero
+    let of_column = |column: usize| {
+        let (mut sum, by_a, by_b) = (0.0, a[column], b[column]);
+        if by_a != 0.0 {
+            sum += a.tr_dot(&one.column(column)) * by_a;
+        }
+        if by_b != 0.0 {
+            sum += a.tr_dot(&between.column(column)) * by_b * 2.0;
+            sum += b.tr_dot(&other.column(column)) * by_b;
+        }
+        sum
+    };
+    (0..STATE).map(of_column).sum()
+}
+
+/// The same of the parameters.
+fn taken_by_parameters(projected: &[f64], covariance: &DMatrix<f64>) -> f64 {
+    let columns = covariance.column_iter().zip(projected);
+    columns
+        .map(|(column, own)| projected.iter().zip(column.iter()).map(|(a, b)| a * b).sum::<f64>() * own)
+        .sum()
 }
 
 /// Scale and effects, for which the fit is made; the others are nuisances. A lag at nought, for one, goes to and fro.
@@ -328,12 +388,16 @@ impl Fit {
             (1..BLOCKS).take_while(|block| share * BLOCKS as f64 >= *block as f64).count()
         };
         let mut scores = DMatrix::zeros(BLOCKS, of.len());
+        let mut projected: [Vec<f64>; WIDTH] = Default::default();
         for (group, rows) in groups.iter().zip(&self.rows) {
-            for (row, &at) in group.form.intervals().iter().enumerate() {
-                let projected = self.reduced.projected(group.form.as_ref(), rows, row).select_columns(of);
-                let part = projected.tr_mul(&rows.residual[row]);
-                let mut into = scores.row_mut(block_of(at));
-                into += part.transpose();
+            let form = group.form.as_ref();
+            for (row, &at) in form.intervals().iter().enumerate() {
+                self.reduced.project(form, rows, (row, of), &mut projected);
+                let (block, residual) = (block_of(at), &rows.residual[row]);
+                for column in 0..of.len() {
+                    scores[(block, column)] +=
+                        (0..WIDTH).map(|part| projected[part][column] * residual[part]).sum::<f64>();
+                }
             }
         }
         scores

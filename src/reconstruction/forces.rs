@@ -45,17 +45,18 @@ impl Term {
         Self { effect, values, free, steps, first: 0 }
     }
 
-    fn at(&self, theta: &[f64]) -> [f64; MOST_VALUES] {
-        let mut values = [0.0; MOST_VALUES];
+    fn put(&self, theta: &[f64], values: &mut [f64; MOST_VALUES]) {
         for (value, of) in values.iter_mut().zip(&self.values) {
             *value = *of;
         }
         for (place, &slot) in self.free.iter().enumerate() {
             values[slot] = theta[self.first + place];
         }
-        values
     }
 }
+
+/// Values of each term.
+type Values = [[f64; MOST_VALUES]; MOST_TERMS];
 
 /// What all equations look at.
 #[derive(Debug)]
@@ -104,9 +105,9 @@ impl Flight {
         self.cells.attitude[cell] * UnitQuaternion::from_scaled_axis(*tilt_rad)
     }
 
-    /// The rotors in a cell behind lag and lateness.
-    fn rotors(&self, cell: usize, theta: &[f64]) -> Rotors {
-        let thrust_n = self.cells.thrusts.behind(cell, theta[LAG], theta[LATE_FORCE]);
+    /// The rotors in a cell behind lag and lateness, s.
+    fn rotors(&self, cell: usize, lag_s: f64, late_s: f64) -> Rotors {
+        let thrust_n = self.cells.thrusts.behind(cell, lag_s, late_s);
         let mut speed = [0.0; MAX_ROTORS];
         for (speed, thrust) in speed.iter_mut().zip(&thrust_n).take(self.airframe.rotor_count()) {
             *speed = self.airframe.relative_speed_of_thrust(*thrust);
@@ -114,13 +115,20 @@ impl Flight {
         Rotors { speed, acceleration_1_s: [0.0; MAX_ROTORS], thrust_n }
     }
 
-    /// The specific force that thrust and effects make, body, m/s^2.
+    /// Values of the terms at parameters.
+    fn values(&self, theta: &[f64]) -> Values {
+        let mut values = [[0.0; MOST_VALUES]; MOST_TERMS];
+        values.iter_mut().zip(&self.terms).for_each(|(values, term)| term.put(theta, values));
+        values
+    }
+
+    /// The specific force that thrust and effects make, body, m/s^2, at a scale of nominal over true mass.
     fn modelled(
         &self,
         cell: usize,
         (velocity_m_s, attitude): (Vector3<f64>, UnitQuaternion<f64>),
         rotors: &Rotors,
-        theta: &[f64],
+        (scale, values): (f64, &Values),
     ) -> Vector3<f64> {
         let cells = &self.cells;
         let rates_rad_s = cells.rate_rad_s[cell];
@@ -132,19 +140,15 @@ impl Flight {
             wind_m_s: Vector3::zeros(),
             battery_voltage_v: cells.battery_voltage_v.as_ref().map(|all| all[cell]),
         };
-        let mut values = [[0.0; MOST_VALUES]; MOST_TERMS];
-        for (values, term) in values.iter_mut().zip(&self.terms) {
-            *values = term.at(theta);
-        }
         let effects =
-            self.terms.iter().zip(&values).map(|(term, values)| (term.effect, &values[..term.values.len()]));
+            self.terms.iter().zip(values).map(|(term, values)| (term.effect, &values[..term.values.len()]));
         let wind = |(effect, parameters): (&'static dyn Effect, &[f64])| {
             effect.wind_m_s(&input, &Own { parameters, states: &[], rates: &mut [] })
         };
         let at = Condition::new(&self.airframe, &state, &input, effects.clone().map(wind).sum());
         let effects = effects.map(|(effect, parameters)| (effect as &dyn Effect, parameters));
         let force_n = effects_wrench(effects, &at, rotors).force_n;
-        force_n * (theta[SCALE] / self.airframe.mass_kg)
+        force_n * (scale / self.airframe.mass_kg)
     }
 }
 
@@ -179,52 +183,85 @@ impl Residuals for Process {
     fn row(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> Row {
         let cell = self.intervals[row];
         let flight = &*self.flight;
-        let motion = flight.kinematics(cell, (a, b), theta);
-        let rotors = flight.rotors(cell, theta);
+        let mut values = flight.values(theta);
+        let linear = self.linear(cell, (a, b), theta, &values);
+        let Linear { motion, rotors, here, by_tilt, .. } = &linear;
+        let (motion_of, scale) = ((motion.velocity_m_s, motion.attitude), theta[SCALE]);
+        let mut by_parameters = Columns::<WIDTH>::zeros(self.parameters.len());
+        by_parameters.set_column(0, &(-here / scale));
+        for (column, lag_s, late_s) in
+            [(1, theta[LAG], theta[LATE_FORCE] + MOVED_S), (2, theta[LAG] + MOVED_S, theta[LATE_FORCE])]
+        {
+            let rotors = flight.rotors(cell, lag_s, late_s);
+            let there = flight.modelled(cell, motion_of, &rotors, (scale, &values));
+            by_parameters.set_column(column, &((here - there) / MOVED_S));
+        }
+        by_parameters.set_column(3, &(by_tilt * flight.cells.rate_rad_s[cell]));
+        let mut column = 4;
+        for (at, term) in flight.terms.iter().enumerate() {
+            for (&slot, step) in term.free.iter().zip(&term.steps) {
+                let kept = values[at][slot];
+                values[at][slot] = kept + step;
+                let there = flight.modelled(cell, motion_of, rotors, (scale, &values));
+                values[at][slot] = kept;
+                by_parameters.set_column(column, &((here - there) / *step));
+                column += 1;
+            }
+        }
+        Row { residual: motion.force_m_s2 - here, by_states: linear.by_states(), by_parameters }
+    }
+
+    fn by_states(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> Pair {
+        self.linear(self.intervals[row], (a, b), theta, &self.flight.values(theta)).by_states()
+    }
+}
+
+/// The equation of motion in a cell, linearised by the states.
+struct Linear {
+    motion: Kinematics,
+    rotors: Rotors,
+    /// modelled, m/s^2
+    here: Vector3<f64>,
+    by_velocity: Matrix3<f64>,
+    by_tilt: Matrix3<f64>,
+}
+
+impl Process {
+    fn linear(&self, cell: usize, states: (&State, &State), theta: &[f64], values: &Values) -> Linear {
+        let flight = &*self.flight;
+        let motion = flight.kinematics(cell, states, theta);
+        let rotors = flight.rotors(cell, theta[LAG], theta[LATE_FORCE]);
         let (velocity, attitude) = (motion.velocity_m_s, motion.attitude);
-        let here = flight.modelled(cell, (velocity, attitude), &rotors, theta);
+        let modelled =
+            |velocity, attitude| flight.modelled(cell, (velocity, attitude), &rotors, (theta[SCALE], values));
+        let here = modelled(velocity, attitude);
         let mut by_velocity = Matrix3::zeros();
         let mut by_tilt = motion.by_tilt;
         for axis in 0..3 {
             let mut moved = velocity;
             moved[axis] += MOVED;
-            let there = flight.modelled(cell, (moved, attitude), &rotors, theta);
+            let there = modelled(moved, attitude);
             by_velocity.set_column(axis, &((here - there) / MOVED));
             let mut tilt = motion.tilt_rad;
             tilt[axis] += MOVED;
-            let there = flight.modelled(cell, (velocity, flight.tilted(cell, &tilt)), &rotors, theta);
+            let there = modelled(velocity, flight.tilted(cell, &tilt));
             let mut column = by_tilt.column_mut(axis);
             column += (here - there) / MOVED;
         }
+        Linear { motion, rotors, here, by_velocity, by_tilt }
+    }
+}
+
+impl Linear {
+    fn by_states(&self) -> Pair {
         let mut by_states = Pair::zeros();
-        let half = by_velocity / 2.0;
+        let (half, to_body) = (self.by_velocity / 2.0, self.motion.to_body);
         let mut put =
             |at: usize, block: &Matrix3<f64>| by_states.fixed_view_mut::<3, 3>(0, at).copy_from(block);
-        put(VELOCITY, &(half - motion.to_body / STEP_S));
-        put(STATE + VELOCITY, &(half + motion.to_body / STEP_S));
-        put(TILT, &(by_tilt / 2.0));
-        put(STATE + TILT, &(by_tilt / 2.0));
-        let mut by_parameters = Columns::<WIDTH>::zeros(self.parameters.len());
-        by_parameters.set_column(0, &(-here / theta[SCALE]));
-        let mut moved = theta.to_vec();
-        for (column, index) in [(1, LATE_FORCE), (2, LAG)] {
-            moved[index] += MOVED_S;
-            let there = flight.modelled(cell, (velocity, attitude), &flight.rotors(cell, &moved), &moved);
-            moved[index] = theta[index];
-            by_parameters.set_column(column, &((here - there) / MOVED_S));
-        }
-        by_parameters.set_column(3, &(by_tilt * flight.cells.rate_rad_s[cell]));
-        let mut column = 4;
-        for term in &flight.terms {
-            for (place, step) in term.steps.iter().enumerate() {
-                let index = term.first + place;
-                moved[index] += step;
-                let there = flight.modelled(cell, (velocity, attitude), &rotors, &moved);
-                moved[index] = theta[index];
-                by_parameters.set_column(column, &((here - there) / *step));
-                column += 1;
-            }
-        }
-        Row { residual: motion.force_m_s2 - here, by_states, by_parameters }
+        put(VELOCITY, &(half - to_body / STEP_S));
+        put(STATE + VELOCITY, &(half + to_body / STEP_S));
+        put(TILT, &(self.by_tilt / 2.0));
+        put(STATE + TILT, &(self.by_tilt / 2.0));
+        by_states
     }
 }

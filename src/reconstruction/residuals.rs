@@ -23,6 +23,14 @@ pub trait Residuals: std::fmt::Debug + Send + Sync {
     fn parameters(&self) -> &[usize];
     /// One row at two neighbouring states.
     fn row(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> Row;
+    /// The parameters that its derivatives by the states depend on, of [`Self::parameters`].
+    fn shaped_by(&self) -> &[usize] {
+        self.parameters()
+    }
+    /// The derivatives by the states alone.
+    fn by_states(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> Pair {
+        self.row(row, a, b, theta).by_states
+    }
     /// What the standard deviation of a row is divided by: the root of the number of samples in a mean.
     fn weight(&self, _row: usize) -> f64 {
         1.0

@@ -35,6 +35,10 @@ impl Residuals for Accelerometer {
         &[BIAS, BIAS + 1, BIAS + 2, LATE_ATTITUDE]
     }
 
+    fn shaped_by(&self) -> &[usize] {
+        &[LATE_ATTITUDE]
+    }
+
     fn row(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> Row {
         let cell = self.intervals[row];
         let motion = self.flight.kinematics(cell, (a, b), theta);
@@ -109,6 +113,10 @@ impl Residuals for Mechanization {
 
     fn parameters(&self) -> &[usize] {
         &[BIAS, BIAS + 1, BIAS + 2]
+    }
+
+    fn shaped_by(&self) -> &[usize] {
+        &[]
     }
 
     fn row(&self, cell: usize, a: &State, b: &State, theta: &[f64]) -> Row {

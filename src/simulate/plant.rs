@@ -80,6 +80,32 @@ impl<'a> Plant<'a> {
         }
     }
 
+    /// [`Self::step`] of the effects' own states alone, as far as no one asks where the body is meanwhile
+    /// ([`Model::own_states_are_of_rotors`]).
+    pub fn step_own(&mut self, input: &Input, step_s: f64) {
+        match self.model.own_state_count() {
+            0 => {}
+            1..=4 => self.step_own_of::<4>(input, step_s),
+            5..=10 => self.step_own_of::<10>(input, step_s),
+            _ => self.step_own_of::<{ PLANT_STATES - RIGID_STATES }>(input, step_s),
+        }
+    }
+
+    fn step_own_of<const N: usize>(&mut self, input: &Input, step_s: f64) {
+        let (model, state, mut now) = (self.model, self.state(), *input);
+        let count = model.own_state_count();
+        let mut derivative = |time_s: f64, vector: &SVector<f64, N>| {
+            let mut out = SVector::<f64, N>::zeros();
+            now.time_s = time_s;
+            let (states, rates) = (&vector.as_slice()[..count], &mut out.as_mut_slice()[..count]);
+            model.rotor_rates(&state, &now, OwnStates { states, rates });
+            out
+        };
+        let own = &mut self.vector.as_mut_slice()[RIGID_STATES..RIGID_STATES + N];
+        let vector = SVector::<f64, N>::from_column_slice(own);
+        own.copy_from_slice(rk4_step(&mut derivative, input.time_s, &vector, step_s).as_slice());
+    }
+
     fn step_of<const N: usize>(&mut self, input: &Input, step_s: f64) {
         let (model, push) = (self.model, self.push);
         let count = model.own_state_count();

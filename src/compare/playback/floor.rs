@@ -1,11 +1,9 @@
 //! What a model that is right would leave: noise of the measured states and of the logged commands.
 
-use super::settings::PlaybackSettings;
-use super::windows::{Played, WindowErrors, played};
+use super::windows::{Played, WindowErrors, Windows};
 use crate::compare::CompareError;
-use crate::physics::{MAX_ROTORS, Model, State};
-use crate::signals::Signals;
-use crate::vehicle::Vehicle;
+use crate::physics::{MAX_ROTORS, State};
+use crate::simulate::PlantMemory;
 use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -33,35 +31,61 @@ pub struct CommandNoise {
     pub period_s: f64,
 }
 
+/// Noise of a recording.
+#[derive(Debug, Clone, Copy)]
+pub struct FloorNoise<'a> {
+    /// of the measured state
+    pub state: &'a StateNoise,
+    /// of the logged commands, where the rotors' speeds were not measured
+    pub commands: Option<&'a CommandNoise>,
+    /// of its draws
+    pub seed: u64,
+}
+
 /// What [`super::playback_windows`] would find of a model that is right: the sensors' noise at the start of
 /// each window, carried along by the model, and at every instant that is compared; and rotors that do
-/// not quite what the log says. One seeded draw a window.
-///
-/// # Errors
-/// As [`super::playback`].
-pub fn playback_floor(
-    (model, vehicle): (&Model, &Vehicle),
-    signals: &Signals,
-    settings: &PlaybackSettings,
-    (noise, commands, seed): (&StateNoise, Option<&CommandNoise>, u64),
-) -> Result<Vec<WindowErrors>, CompareError> {
-    let model = played(model, signals);
-    let exact = Played::of((&model, vehicle), None, signals, settings)?;
-    let mut generator = Pcg64Mcg::seed_from_u64(seed);
-    let mut otherwise = Played::of((&model, vehicle), None, signals, settings)?;
-    if let Some(commands) = commands {
-        commands.disturb(&mut otherwise, signals.grid.step_s, &mut generator);
+/// not quite what the log says. One seeded draw a window, and a generator a length of windows.
+pub(super) struct Floor<'a> {
+    otherwise: Played<'a>,
+    noise: &'a StateNoise,
+    generators: Vec<Pcg64Mcg>,
+}
+
+impl<'a> Floor<'a> {
+    /// Of so many lengths of windows.
+    pub fn of(mut played: Played<'a>, noise: FloorNoise<'a>, lengths: usize) -> Self {
+        let mut generator = Pcg64Mcg::seed_from_u64(noise.seed);
+        if let Some(commands) = noise.commands {
+            commands.disturb(&mut played, &mut generator);
+        }
+        Self { otherwise: played, noise: noise.state, generators: vec![generator; lengths] }
     }
-    let windows = &exact.windows;
-    let mut out = Vec::with_capacity(windows.starts.len());
-    for &start in &windows.starts {
-        let measured = windows.states.at(start);
-        let truth = exact.window(start, &measured)?;
-        let simulated = otherwise.window(start, &noise.on(&measured, &mut generator))?;
-        let pairs = truth.iter().zip(simulated).map(|(truth, of)| (of, noise.on(truth, &mut generator)));
-        out.push(windows.errors_against(start, pairs));
+
+    /// Ready for the windows that begin at an instant.
+    pub fn at(&mut self, start: usize) -> Result<Noisy<'_, 'a>, CompareError> {
+        let memory = self.otherwise.warm(start)?.memory();
+        Ok(Noisy { floor: self, start, memory })
     }
-    Ok(out)
+}
+
+/// A vehicle whose rotors did not quite what the log says, where windows begin.
+pub(super) struct Noisy<'f, 'a> {
+    floor: &'f mut Floor<'a>,
+    start: usize,
+    memory: PlantMemory,
+}
+
+impl Noisy<'_, '_> {
+    /// Errors of the next window of a length, of which the truth is what the model does without noise.
+    pub fn errors(&mut self, windows: &Windows, length: usize, truth: &[State]) -> WindowErrors {
+        let Floor { otherwise, noise, generators } = &mut *self.floor;
+        let generator = &mut generators[length];
+        let mut plant = otherwise.resume(self.memory);
+        plant.set_state(&noise.on(&plant.state(), generator));
+        let simulated = otherwise.window(plant, (self.start, truth.len()));
+        let pairs = truth.iter().zip(simulated).map(|(truth, of)| (of, noise.on(truth, generator)));
+        windows.errors_against(self.start, pairs)
+    }
 }
 
 fn normal(generator: &mut Pcg64Mcg) -> f64 {
@@ -81,7 +105,8 @@ impl StateNoise {
 }
 
 impl CommandNoise {
-    fn disturb(&self, played: &mut Played, step_s: f64, generator: &mut Pcg64Mcg) {
+    fn disturb(&self, played: &mut Played, generator: &mut Pcg64Mcg) {
+        let step_s = played.step_s;
         let mut now = SVector::zeros();
         let mut left_s = 0.0;
         for thrusts_n in &mut played.commands.thrusts_n {

@@ -3,6 +3,7 @@
 mod commands;
 mod fit;
 mod floor;
+mod lengths;
 mod measured;
 mod settings;
 #[cfg(test)]
@@ -11,7 +12,8 @@ mod torques;
 mod windows;
 
 pub use fit::{Fit, playback};
-pub use floor::{CommandNoise, StateNoise, playback_floor};
+pub use floor::{CommandNoise, FloorNoise, StateNoise};
+pub use lengths::{LengthErrors, playback_lengths};
 pub use settings::PlaybackSettings;
 pub use torques::torques_along;
 pub use windows::{WindowErrors, playback_windows, unchanged_windows};

@@ -1,16 +1,16 @@
 //! Playback window by window.
 
 use super::commands::Commands;
+use super::lengths::playback_lengths;
 use super::measured::MeasuredStates;
 use super::settings::PlaybackSettings;
 use crate::compare::CompareError;
 use crate::compare::mean_square::MeanSquare;
-use crate::physics::{Model, State};
+use crate::physics::{Input, Model, State};
 use crate::signals::{Grid, Signals, ThrustSource};
-use crate::simulate::{Plant, Push};
+use crate::simulate::{Plant, PlantMemory, Push};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
-use std::cmp::Ordering;
 
 /// [`playback`](super::playback) window by window, for whoever needs to know how the error is spread. `push` acts beside
 /// the model.
@@ -23,17 +23,8 @@ pub fn playback_windows(
     signals: &Signals,
     settings: &PlaybackSettings,
 ) -> Result<Vec<WindowErrors>, CompareError> {
-    let model = played(model, signals);
-    let played = Played::of((&model, vehicle), push, signals, settings)?;
-    let windows = &played.windows;
-    windows
-        .starts
-        .iter()
-        .map(|&start| {
-            let simulated = played.window(start, &windows.states.at(start))?;
-            Ok(windows.errors(start, &simulated))
-        })
-        .collect()
+    let each = playback_lengths((model, vehicle), push, signals, (settings, &[settings.window_s]), None)?;
+    Ok(each.into_iter().flat_map(|length| length.windows).collect())
 }
 
 /// The same windows, predicted by the state at the start of each: nothing changes. The baseline that published benchmarks call
@@ -71,19 +62,21 @@ pub(super) fn played(model: &Model, signals: &Signals) -> Model {
 
 /// Where a recording is predicted, and what was measured there.
 pub(super) struct Windows<'a> {
-    pub states: MeasuredStates<'a>,
+    states: MeasuredStates<'a>,
     /// instants
-    window: usize,
-    warm_up: usize,
+    pub window: usize,
     pub starts: Vec<usize>,
 }
 
+/// Grid steps in a time, at least none.
+fn steps(time_s: f64, grid: &Grid) -> usize {
+    (1..grid.count).take_while(|n| *n as f64 * grid.step_s <= time_s + 1e-9).count()
+}
+
 impl<'a> Windows<'a> {
-    fn of(signals: &'a Signals, settings: &PlaybackSettings) -> Result<Self, CompareError> {
+    pub fn of(signals: &'a Signals, settings: &PlaybackSettings) -> Result<Self, CompareError> {
         let states = MeasuredStates::of(signals)?;
-        let step_s = signals.grid.step_s;
-        let count =
-            |time_s: f64| (1..signals.grid.count).take_while(|n| *n as f64 * step_s <= time_s + 1e-9).count();
+        let count = |time_s: f64| steps(time_s, &signals.grid);
         let (window, warm_up) = (count(settings.window_s).max(1), count(settings.warm_up_s));
         let mut starts = Vec::new();
         for run in Grid::runs(&signals.usable, window + warm_up + 1) {
@@ -93,11 +86,11 @@ impl<'a> Windows<'a> {
             let PlaybackSettings { window_s, warm_up_s, .. } = *settings;
             return Err(CompareError::NoWindow { window_s, warm_up_s });
         }
-        Ok(Self { states, window, warm_up, starts })
+        Ok(Self { states, window, starts })
     }
 
     /// Errors of the states predicted for the instants after `start`.
-    fn errors(&self, start: usize, predicted: &[State]) -> WindowErrors {
+    pub fn errors(&self, start: usize, predicted: &[State]) -> WindowErrors {
         let measured = (start + 1..).map(|index| self.states.at(index));
         self.errors_against(start, predicted.iter().copied().zip(measured))
     }
@@ -131,10 +124,12 @@ impl<'a> Windows<'a> {
 pub(super) struct Played<'a> {
     model: &'a Model,
     push: Option<Push<'a>>,
-    pub windows: Windows<'a>,
+    states: MeasuredStates<'a>,
     pub commands: Commands<'a>,
-    step_s: f64,
+    pub step_s: f64,
     substeps: u32,
+    /// instants
+    warm_up: usize,
 }
 
 impl<'a> Played<'a> {
@@ -144,22 +139,44 @@ impl<'a> Played<'a> {
         signals: &'a Signals,
         settings: &PlaybackSettings,
     ) -> Result<Self, CompareError> {
-        let windows = Windows::of(signals, settings)?;
+        let states = MeasuredStates::of(signals)?;
         let commands = Commands::of(model, vehicle, signals)?;
         let step_s = signals.grid.step_s;
         let substeps = (1..100).find(|n| step_s / f64::from(*n) <= settings.step_s + 1e-12).unwrap_or(100);
-        Ok(Self { model, push, windows, commands, step_s, substeps })
+        let warm_up = steps(settings.warm_up_s, &signals.grid);
+        Ok(Self { model, push, states, commands, step_s, substeps, warm_up })
     }
 
     /// The vehicle as it was measured at an instant, with rotors that have long followed their commands.
     pub fn plant(&self, index: usize) -> Result<Plant<'_>, CompareError> {
-        let (state, commands) = (self.windows.states.at(index), self.commands.at(index, 0.0));
+        let (state, commands) = (self.states.at(index), self.commands.at(index, 0.0));
         Ok(Plant::new(self.model, self.push, &state, &commands)?)
+    }
+
+    /// The vehicle that a memory is of.
+    pub fn resume(&self, memory: PlantMemory) -> Plant<'_> {
+        Plant::resume(self.model, self.push, memory)
+    }
+
+    /// The vehicle as it was measured at an instant, with own states of the effects that followed the recording until then.
+    pub fn warm(&self, start: usize) -> Result<Plant<'_>, CompareError> {
+        let of_rotors = self.model.own_states_are_of_rotors();
+        let mut plant = self.plant(start - self.warm_up)?;
+        for index in start - self.warm_up..start {
+            plant.set_state(&self.states.at(index));
+            if of_rotors {
+                self.substeps(index, |input, step_s| plant.step_own(input, step_s));
+            } else {
+                self.step(&mut plant, index);
+            }
+        }
+        plant.set_state(&self.states.at(start));
+        Ok(plant)
     }
 
     /// Torque (body, N m) in the middle of the step from an instant to the next one, as measured; moves the effects' own states on.
     pub fn torque_nm(&self, plant: &mut Plant, index: usize) -> Vector3<f64> {
-        plant.set_state(&self.windows.states.at(index));
+        plant.set_state(&self.states.at(index));
         let torque_nm = plant.evaluate(&self.commands.at(index, 0.5)).wrench.torque_nm;
         self.step(plant, index);
         torque_nm
@@ -167,32 +184,27 @@ impl<'a> Played<'a> {
 
     /// One instant on, under the recorded commands.
     fn step(&self, plant: &mut Plant, index: usize) {
+        self.substeps(index, |input, step_s| plant.step(input, step_s));
+    }
+
+    /// Commands and length (s) of each integration step from an instant to the next one.
+    fn substeps(&self, index: usize, mut step: impl FnMut(&Input, f64)) {
         for substep in 0..self.substeps {
             let share = (f64::from(substep) + 0.5) / f64::from(self.substeps);
-            plant.step(&self.commands.at(index, share), self.step_s / f64::from(self.substeps));
+            step(&self.commands.at(index, share), self.step_s / f64::from(self.substeps));
         }
     }
 
-    /// States at the instants after `start`, from `initial` there.
-    pub fn window(&self, start: usize, initial: &State) -> Result<Vec<State>, CompareError> {
-        let Windows { states, window, warm_up, .. } = &self.windows;
-        let first = start - warm_up;
-        let mut plant = self.plant(first)?;
-        let mut out = Vec::with_capacity(*window);
-        for index in first..start + window {
-            match index.cmp(&start) {
-                Ordering::Less => plant.set_state(&states.at(index)),
-                Ordering::Equal => plant.set_state(initial),
-                Ordering::Greater => {}
-            }
+    /// States at the `window` instants after `start`, of a vehicle there.
+    pub fn window(&self, mut plant: Plant, (start, window): (usize, usize)) -> Vec<State> {
+        let mut out = Vec::with_capacity(window);
+        for index in start..start + window {
             self.step(&mut plant, index);
-            if index >= start {
-                if !states.is_turned_by_torques() {
-                    plant.set_state(&states.turned(plant.state(), index + 1));
-                }
-                out.push(plant.state());
+            if !self.states.is_turned_by_torques() {
+                plant.set_state(&self.states.turned(plant.state(), index + 1));
             }
+            out.push(plant.state());
         }
-        Ok(out)
+        out
     }
 }

@@ -7,7 +7,7 @@ use super::rate_law::{EmpiricalRates, Path, RateLaw};
 use super::ready::{Ready, flown};
 use super::settings::HoldoutSettings;
 use crate::compare::{
-    CommandNoise, CompareError, PlaybackSettings, StateNoise, WindowErrors, playback_floor, playback_windows,
+    CommandNoise, CompareError, FloorNoise, PlaybackSettings, StateNoise, WindowErrors, playback_lengths,
     torques_along, unchanged_windows,
 };
 use crate::diagnose::base::Base;
@@ -79,10 +79,12 @@ pub(super) fn open_loop(
     settings: &HoldoutSettings,
 ) -> Result<(Vec<OpenLoop>, Option<Interval>, usize), HoldoutError> {
     let models: Vec<Models> = ready.iter().map(models_of).collect::<Result<_, _>>()?;
-    let parts: Vec<(OpenLoop, Option<Interval>, usize)> = WINDOWS_S
-        .par_iter()
-        .map(|&window_s| one_length(window_s, (ready, &models), empirical, settings))
+    let flights: Vec<Vec<Played>> = (0..ready.len())
+        .into_par_iter()
+        .map(|index| played((index, &ready[index]), &models[index], empirical, settings))
         .collect::<Result<_, _>>()?;
+    let parts: Vec<(OpenLoop, Option<Interval>, usize)> =
+        (0..WINDOWS_S.len()).map(|length| one_length(length, (ready, &flights), settings)).collect();
     let half = parts.iter().find(|(of, ..)| of.is_half_second());
     let (improvement, blocks) = half.map_or((None, 0), |(_, improvement, blocks)| (*improvement, *blocks));
     Ok((parts.into_iter().map(|(of, ..)| of).collect(), improvement, blocks))
@@ -134,32 +136,49 @@ struct Played {
 }
 
 fn played(
+    (index, ready): (usize, &Ready),
+    models: &Models,
+    empirical: Option<&Empirical>,
+    settings: &HoldoutSettings,
+) -> Result<Vec<Played>, HoldoutError> {
+    by_length(ready, models, empirical, settings.seed ^ index as u64)
+        .map_err(|source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source })
+}
+
+/// The windows of each length.
+fn by_length(
     ready: &Ready,
     models: &Models,
     empirical: Option<&Empirical>,
-    (playback, seed): (&PlaybackSettings, u64),
-) -> Result<Played, CompareError> {
-    let signals = ready.flight.signals;
-    let run = |model: &Model, base: &Base, empirical: Option<&Empirical>| {
+    seed: u64,
+) -> Result<Vec<Played>, CompareError> {
+    let (signals, playback) = (ready.flight.signals, playback_of(HALF_S));
+    let run = |model: &Model, base: &Base, empirical: Option<&Empirical>, floor: Option<FloorNoise>| {
         let push = empirical.map(Empirical::push);
         let push = push.as_ref().map(|push| push as crate::simulate::Push);
-        playback_windows((model, &base.vehicle), push, signals, playback)
+        playback_lengths((model, &base.vehicle), push, signals, (&playback, &WINDOWS_S), floor)
     };
     let (base_before, base_after) = ready.pair.predicting();
-    let ((before, after), noise) = rayon::join(
+    let noise = FloorNoise { state: &models.noise, commands: models.commands.as_ref(), seed };
+    let own = std::ptr::eq(base_after, &ready.pair.after);
+    let (before, (after, other)) = rayon::join(
+        || run(&models.before, base_before, None, None),
         || {
-            rayon::join(
-                || run(&models.before, base_before, None),
-                || run(&models.after, base_after, empirical),
-            )
-        },
-        || {
-            let of = (&models.after, &ready.pair.after.vehicle);
-            playback_floor(of, signals, playback, (&models.noise, models.commands.as_ref(), seed))
+            // where the loading is the flight's own, the floor has the scale of the model without it
+            let other = (!own).then(|| run(&models.after, &ready.pair.after, None, Some(noise)));
+            (run(&models.after, base_after, empirical, own.then_some(noise)), other)
         },
     );
-    let unchanged = unchanged_windows(signals, playback)?;
-    Ok(Played { unchanged, before: before?, after: after?, noise: noise? })
+    let (before, mut after) = (before?, after?);
+    if let Some(other) = other {
+        after.iter_mut().zip(other?).for_each(|(after, other)| after.floor = other.floor);
+    }
+    let each = WINDOWS_S.iter().zip(before).zip(after);
+    each.map(|((&window_s, before), after)| {
+        let unchanged = unchanged_windows(signals, &playback_of(window_s))?;
+        Ok(Played { unchanged, before: before.windows, after: after.windows, noise: after.floor })
+    })
+    .collect()
 }
 
 /// Errors of all flights' windows of one length.
@@ -212,28 +231,23 @@ impl Sums {
 }
 
 fn one_length(
-    window_s: f64,
-    (ready, models): (&[Ready], &[Models]),
-    empirical: Option<&Empirical>,
+    length: usize,
+    (ready, flights): (&[Ready], &[Vec<Played>]),
     settings: &HoldoutSettings,
-) -> Result<(OpenLoop, Option<Interval>, usize), HoldoutError> {
-    let playback = playback_of(window_s);
+) -> (OpenLoop, Option<Interval>, usize) {
     let blocks = Blocks::new(4, settings.block_s);
     let mut sums = Sums { blocks, floor: [(0.0, 0); 4], at_end: [[0.0; 3]; 4], windows: 0 };
-    for (index, (ready, models)) in ready.iter().zip(models).enumerate() {
-        let seed = settings.seed ^ index as u64;
-        let played = played(ready, models, empirical, (&playback, seed))
-            .map_err(|source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source })?;
-        sums.add((index, ready.pair.predicted_from_s()), &played);
+    for (index, (ready, played)) in ready.iter().zip(flights).enumerate() {
+        sums.add((index, ready.pair.predicted_from_s()), &played[length]);
     }
     let (each, improvement) = sums.compared(settings);
     let of = OpenLoop {
-        window_s,
+        window_s: WINDOWS_S[length],
         windows: sums.windows,
         position_m: each[0],
         velocity_m_s: each[1],
         attitude_rad: each[2],
         rates_rad_s: each[3],
     };
-    Ok((of, improvement, sums.blocks.len()))
+    (of, improvement, sums.blocks.len())
 }
