@@ -1,5 +1,6 @@
 //! Where simulation and recording differ, which physics was left out, and the better model.
 
+mod acceptance;
 mod along;
 mod base;
 mod candidates;
@@ -53,6 +54,7 @@ pub mod signature;
 pub mod signatures;
 mod slight;
 mod spin_up;
+mod substitution;
 mod tested;
 mod timing;
 mod torques_by_instruments;

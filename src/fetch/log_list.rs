@@ -25,6 +25,8 @@ pub(super) struct LogList {
     heard: Option<Duration>,
     /// first and last number, once told
     range: Option<(u16, u16)>,
+    /// numbers begin one below what the vehicle tells of the last one: PX4 counts from 0 and tells the number of logs
+    one_below: bool,
     found: BTreeMap<u16, (u32, u32)>,
     is_empty: bool,
 }
@@ -32,7 +34,7 @@ pub(super) struct LogList {
 impl LogList {
     pub(super) fn new(peer: Peer) -> Self {
         let (pace, asked, found) = (Pace::default(), Asked::default(), BTreeMap::new());
-        Self { peer, pace, asked, heard: None, range: None, found, is_empty: false }
+        Self { peer, pace, asked, heard: None, range: None, one_below: false, found, is_empty: false }
     }
 
     /// The first run of entries that are missing.
@@ -79,7 +81,12 @@ impl Dialogue for LogList {
             return;
         }
         let count = entry.count.min(MOST);
-        let range = (entry.last.saturating_sub(count - 1), entry.last);
+        let told = (entry.last.saturating_sub(count - 1), entry.last);
+        if !self.one_below && told.0.checked_sub(1) == Some(entry.id) {
+            (self.one_below, self.range) = (true, None);
+        }
+        let below = u16::from(self.one_below);
+        let range = (told.0.saturating_sub(below), told.1.saturating_sub(below));
         if *self.range.get_or_insert(range) == range
             && (range.0..=range.1).contains(&entry.id)
             && self.found.insert(entry.id, (entry.size, entry.time_s)).is_none()

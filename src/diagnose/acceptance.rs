@@ -1,0 +1,106 @@
+//! Whether a candidate is accepted into the model, and the model with it.
+
+use super::base::lift_load;
+use super::fit::{Fitted, Newton, fit};
+use super::grid_refinement::refined;
+use super::latency::{is_delay, with_latency};
+use super::locate::mass_step_std_kg;
+use super::signature::EffectTerm;
+use super::tested::Tested;
+use super::trace::Trace;
+use crate::physics::PhysicsError;
+use crate::vehicle::VehicleSize;
+
+/// A candidate with its sharpest values and the model with it; `None` where it is refused.
+pub(super) fn accepted(
+    flights: &[Trace],
+    after: &Fitted,
+    best: Tested,
+) -> Result<Option<(Tested, Fitted)>, PhysicsError> {
+    let mut taken = refined(flights, after, best.clone());
+    let mut fitted = with_taken(flights, after, &taken)?;
+    if at_bound(&fitted, &taken) {
+        // what is sharpest by its slope can lie too far off for the effect itself
+        taken = best;
+        fitted = with_taken(flights, after, &taken)?;
+    }
+    let is_refused = wanders(flights, &fitted, &taken) || at_bound(&fitted, &taken);
+    Ok((!is_refused).then_some((taken, fitted)))
+}
+
+/// Fits again with the accepted candidate.
+pub(super) fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitted, PhysicsError> {
+    let mut base = after.base.clone();
+    base.present.extend(started(taken, &base.size).into_iter().map(released));
+    if let Some(load) = base.present.last_mut().filter(|term| term.signature.role.hangs_below) {
+        base.vehicle.body.mass_kg = lift_load(load, base.vehicle.body.mass_kg);
+    }
+    // a latency that the rotors' inertia had shortened is found again beside it
+    let shortened = taken.candidate.signature().is_some_and(|signature| signature.role.shortens_latency);
+    let newton = match shortened {
+        true if is_delay(base.latency, &base.vehicle) => Newton::Delay,
+        true => Newton::Free,
+        false => Newton::Held,
+    };
+    match newton {
+        Newton::Held => fit(flights, base, newton),
+        free => Ok(with_latency(flights, base, free)?.0),
+    }
+}
+
+/// The candidate's effects with the estimates of the evidence as start values.
+fn started(tested: &Tested, size: &VehicleSize) -> Vec<EffectTerm> {
+    let mut theta = tested.evidence.theta.iter();
+    let mut parts = tested.candidate.parts.clone();
+    for part in &mut parts {
+        for &free in &part.free {
+            if let Some(by) = theta.next() {
+                part.values[free] = part.possible(free, part.moved_to(free, *by), size);
+            }
+        }
+    }
+    if let [drag, wind] = parts.as_mut_slice()
+        && tested.candidate.through.is_some()
+    {
+        // the columns were those of one unit of drag
+        let strength = 0.5 * (drag.values[0] + drag.values[1]).max(1e-3);
+        for &free in &wind.free {
+            wind.values[free] = wind.possible(free, wind.values[free] / strength, size);
+        }
+    }
+    parts
+}
+
+/// Whether the fit moves a parameter of the candidate to its bound: the cause is then another one.
+fn at_bound(fitted: &Fitted, taken: &Tested) -> bool {
+    let just_taken = &fitted.base.present[fitted.base.present.len() - taken.candidate.parts.len()..];
+    just_taken.iter().any(|present| {
+        let mut common = 0..present.effect().parameters().len();
+        common.any(|slot| {
+            present.free.contains(&slot)
+                && present.is_at_bound(slot, &fitted.base.size)
+                && present.values[slot] != present.nothing_at(slot)
+        })
+    })
+}
+
+/// Whether a step of the mass could be a force that drifts by itself.
+fn wanders(flights: &[Trace], fitted: &Fitted, taken: &Tested) -> bool {
+    let moments =
+        taken.candidate.parts.iter().filter_map(|part| Some(part.values[part.signature.role.moment?]));
+    moments.into_iter().any(|moment_s| {
+        let delta_kg = taken.evidence.theta[0].abs();
+        delta_kg < WANDERED * mass_step_std_kg(flights, fitted, moment_s)
+    })
+}
+
+/// A step of the mass counts beyond this many standard errors of a force that drifts by itself: the z of
+/// [`Gates`](super::Gates).
+const WANDERED: f64 = 4.0;
+
+/// The effect with those parameters freed that can be estimated only after it was accepted.
+fn released(mut term: EffectTerm) -> EffectTerm {
+    let freed = (term.signature.refinement.freed)(&term);
+    term.free.extend(freed);
+    term
+}

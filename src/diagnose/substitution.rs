@@ -1,0 +1,41 @@
+//! One effect in place of several of one kind: two weak rotors can stand for a centre of mass that is off.
+
+use super::acceptance::with_taken;
+use super::candidates::candidates;
+use super::fit::{Fitted, Newton, fit};
+use super::price::Price;
+use super::score::test_all;
+use super::signature::Signature;
+use super::tested::Tested;
+use super::trace::Trace;
+use crate::physics::PhysicsError;
+
+/// Where an effect is in the model several times, the effect that explains most in their place, and the model with it; `None` where
+/// that costs more.
+///
+/// # Errors
+/// [`PhysicsError`] where the estimate leaves what is physical.
+pub(super) fn one_for_several(
+    flights: &[Trace],
+    fitted: &Fitted,
+    price: Price,
+    signatures: &[&'static Signature],
+) -> Result<Option<(Tested, Fitted)>, PhysicsError> {
+    let present = &fitted.base.present;
+    let times = |id: &str| present.iter().filter(|term| term.id() == id).count();
+    let Some(several) = present.iter().map(|term| term.id()).find(|id| times(id) > 1) else {
+        return Ok(None);
+    };
+    let columns: usize = present.iter().filter(|term| term.id() == several).map(|term| term.free.len()).sum();
+    let mut base = fitted.base.clone();
+    base.present.retain(|term| term.id() != several);
+    let without = fit(flights, base, Newton::Held)?;
+    let candidates = candidates(&without.base.vehicle, flights, signatures);
+    let serves = |tested: &Tested| tested.candidate.id != several && tested.evidence.theta.len() <= columns;
+    let tested = test_all(flights, &without, &candidates, signatures).into_iter().filter(serves);
+    let Some(best) = tested.max_by(|a, b| a.evidence.energy.total_cmp(&b.evidence.energy)) else {
+        return Ok(None);
+    };
+    let with = with_taken(flights, &without, &best)?;
+    Ok((price.cost(&with) < price.cost(fitted)).then_some((best, with)))
+}
