@@ -12,6 +12,8 @@ pub(super) const fn most(quantity: Quantity) -> f64 {
         | Quantity::WorldAcceleration
         | Quantity::Velocity
         | Quantity::GpsVelocity => 1e5,
+        // shares, or thousandths: commands are rebuilt from them
+        Quantity::ThrustSetpoint | Quantity::TorqueSetpoint | Quantity::ThrustVectorSetpoint => 1e5,
         Quantity::ActuatorCommand | Quantity::ActuatorDemand | Quantity::RotorSpeed => 1e6,
         Quantity::Position | Quantity::BarometricHeight => 1e8,
         Quantity::RollYaw
@@ -25,9 +27,6 @@ pub(super) const fn most(quantity: Quantity) -> f64 {
         | Quantity::YawRateSetpoint
         | Quantity::AttitudeSetpoint
         | Quantity::AngularRateSetpoint
-        | Quantity::ThrustSetpoint
-        | Quantity::TorqueSetpoint
-        | Quantity::ThrustVectorSetpoint
         | Quantity::LandedState
         | Quantity::Armed
         | Quantity::Mode => f64::INFINITY,
