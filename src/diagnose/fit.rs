@@ -161,9 +161,17 @@ pub fn fit(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted, 
 
 /// Rows, weights and coefficients at a base, without a Gauss-Newton step.
 pub(super) fn evaluate(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
+    let fitted = linearised(flights, base)?;
+    let (coefficients, covariance) = fitted.weighted.coefficients(&fitted.rows);
+    Ok(Fitted { coefficients, covariance, ..fitted })
+}
+
+/// The same for who finds the coefficients otherwise: they and their covariance are zero.
+pub(super) fn linearised(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
     let rows = Rows::new(flights, &base)?;
     let weighted = Weighted::new(&rows);
-    let (coefficients, covariance) = weighted.coefficients(&rows);
+    let count = rows.nuisances.len() + rows.effects.len();
+    let (coefficients, covariance) = (DVector::zeros(count), DMatrix::zeros(count, count));
     Ok(Fitted { base, rows, weighted, coefficients, covariance })
 }
 

@@ -6,7 +6,7 @@
 use super::channels::{AXES, CHANNELS, Channels, Nuisance};
 use super::columns::Columns;
 use super::evidence::weighted;
-use super::fit::{CONVERGED, Fitted, Newton, PASSES, evaluate, step};
+use super::fit::{CONVERGED, Fitted, Newton, PASSES, linearised, step};
 use super::hausman::differ;
 use super::trace::Trace;
 use crate::estimate::Estimated;
@@ -69,7 +69,7 @@ pub(super) fn fit_by_instruments(
     let Some(mut by) = by_instruments(flights, fitted.clone(), newton) else { return Ok(None) };
     for _ in 0..PASSES {
         let moved = step(&mut base, &by, newton);
-        let Ok(again) = evaluate(flights, base.clone()) else { return Ok(None) };
+        let Ok(again) = linearised(flights, base.clone()) else { return Ok(None) };
         let Some(next) = by_instruments(flights, again, newton) else { return Ok(None) };
         by = next;
         if moved < CONVERGED {

@@ -81,7 +81,7 @@ impl Noisy<'_, '_> {
         let Floor { otherwise, noise, generators } = &mut *self.floor;
         let generator = &mut generators[length];
         let mut plant = otherwise.resume(self.memory);
-        plant.set_state(&noise.on(&plant.state(), generator));
+        plant.set_state(&noise.on(&otherwise.measured(self.start), generator));
         let simulated = otherwise.window(plant, (self.start, truth.len()));
         let pairs = truth.iter().zip(simulated).map(|(truth, of)| (of, noise.on(truth, generator)));
         windows.errors_against(self.start, pairs)

@@ -153,6 +153,11 @@ impl<'a> Played<'a> {
         Ok(Plant::new(self.model, self.push, &state, &commands)?)
     }
 
+    /// What was measured at an instant.
+    pub fn measured(&self, index: usize) -> State {
+        self.states.at(index)
+    }
+
     /// The vehicle that a memory is of.
     pub fn resume(&self, memory: PlantMemory) -> Plant<'_> {
         Plant::resume(self.model, self.push, memory)
