@@ -113,7 +113,7 @@ fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
             usable: Usable::default(),
             torques: true,
             gyro_noise_rad_s: None,
-            height_by_pose: false,
+            height_by_pose: None,
             notes: Vec::new(),
         },
     }

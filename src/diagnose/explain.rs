@@ -4,6 +4,7 @@ use super::channels::{AXES, CHANNELS};
 use super::confusable::confusable_with;
 use super::evidence::LEAST_ROWS;
 use super::explanation::{Explanation, Verdict};
+use super::fed_back::is_fed_back;
 use super::fit::Fitted;
 use super::gates::Gates;
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
@@ -181,15 +182,16 @@ fn is_lacking(lack: &LackOfFit, fitted: &Fitted, mut axes: Range<usize>) -> bool
 fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> Explanation {
     let Beyond { lack, located_before, located_after, field, aperiodic } = beyond;
     let (mut named, mut slight) = names(traces, &found);
-    named.extend(latency_name(traces, vehicle, &found));
+    let limits = limits(&found.last, &found.after);
+    let too_little_excitation = too_little_excitation(&found.after, &limits);
+    let turned_by_control = too_little_excitation && is_fed_back(traces);
+    named.extend(latency_name(traces, vehicle, &found).filter(|_| !turned_by_control));
     match aperiodic.gust.as_ref().and_then(|gust| Some((gust_name(gust)?, gust.is_slight()))) {
         Some((effect, true)) => slight.push(Slight { effect, materiality: None }),
         Some((effect, false)) => named.push(effect),
         None => {}
     }
     let a_field = field.as_ref().is_some_and(|field| field.certain);
-    let limits = limits(&found.last, &found.after);
-    let too_little_excitation = too_little_excitation(&found.after, &limits);
     // what is large only of a torque that hardly anything took is noise
     let (axes, aperiodic) =
         if too_little_excitation { (0..3, aperiodic.of_forces()) } else { (0..AXES, aperiodic) };
@@ -215,6 +217,7 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
         closest,
         limits,
         too_little_excitation,
+        turned_by_control,
         lack_of_fit: lack,
         located_before,
         located_after,

@@ -64,6 +64,9 @@ pub struct Explanation {
     pub limits: Vec<DetectionLimit>,
     /// no effect that appears only in motion could have been detected at its usual size, and none was found
     pub too_little_excitation: bool,
+    /// hardly anything but the controller's answer to the gyroscopes' noise turned the vehicle: neither moments of inertia nor a
+    /// latency come from that
+    pub turned_by_control: bool,
     /// residual power at the trajectory's harmonics
     pub lack_of_fit: Option<LackOfFit>,
     /// localisation of the rigid body's residual

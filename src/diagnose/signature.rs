@@ -161,6 +161,8 @@ pub fn first_finer(term: &EffectTerm) -> Vec<usize> {
 pub struct Naming {
     /// size (norm of the amounts) that ordinary vehicles have: up to it there is no name
     pub ordinary: Option<f64>,
+    /// share of the vehicle's mass up to which an amount in kg gets no name
+    pub least_of_mass: f64,
     /// norm of all parameters below which it stays in the model without a name
     pub least: f64,
     /// whether it is ordinary in the presence of the other effects of the model, whatever its size
@@ -185,6 +187,7 @@ impl Naming {
     /// Nothing special.
     pub const PLAIN: Self = Self {
         ordinary: None,
+        least_of_mass: 0.0,
         least: 0.0,
         is_ordinary: |_, _| false,
         extra_z: 0.0,

@@ -116,7 +116,8 @@ fn to_a_stranger(bytes: &[u8]) -> Vec<u8> {
         target_system: 5,
         target_component: 2,
     });
-    let header = MavHeader { system_id: u32::from(bytes[5]), component_id: bytes[6], sequence: head.sequence };
+    let header =
+        MavHeader { system_id: u32::from(bytes[5]), component_id: bytes[6], sequence: head.sequence };
     let mut raw = MAVLinkV2MessageRaw::new();
     raw.serialize_message(header, &message);
     raw.raw_bytes().to_vec()

@@ -10,6 +10,10 @@ use crate::text::significant;
 /// Step between the moments that are tried, s. Chosen; not measured.
 const EVERY_S: f64 = 4.0;
 
+/// A change of less than this share of the mass gets no name: slow errors of the accelerometer and of the thrust law are as large.
+/// Chosen; not measured.
+const LEAST_OF_MASS: f64 = 0.01;
+
 /// A mass that changes at a moment of the flight.
 pub static SIGNATURE: Signature = Signature {
     needs: &[Need::OneFlight],
@@ -21,7 +25,7 @@ pub static SIGNATURE: Signature = Signature {
         grid: Some(GridScale::Even { slot: 0, step: 0.5, least: 0.03 }),
         ..Refinement::NONE
     },
-    naming: Naming { extra_z: 1.0, ..Naming::PLAIN },
+    naming: Naming { extra_z: 1.0, least_of_mass: LEAST_OF_MASS, ..Naming::PLAIN },
     role: Role { moment: Some(0), by_motion: false, ..Role::NONE },
     joint: Joint { forms: Some(|recorded, _| terms(recorded)), ..Joint::PLAIN },
     ..Signature::of(

@@ -122,6 +122,10 @@ pub struct AxisFit {
     pub after: f64,
 }
 
+/// Why moments of inertia are not determined where the excitation is too small.
+const BY_CONTROL: &str = "hardly anything but the controller's answer to the noise of the gyroscopes turned the vehicle; fly an \
+                          identification trajectory, which excites the rotation";
+
 impl ExplainStudy {
     /// Puts it together, not shown on anything yet.
     #[must_use]
@@ -172,7 +176,9 @@ impl ExplainStudy {
         let nominal = Nominal::of(&self.given.vehicle);
         let estimated = self.on_scale(self.fitted()).with_wider_window(self.given.inertia_by_wider_window);
         let is_weighed = |index| index == 0 && self.fitted().base.weighed_kg.is_some();
+        let by_control = |index: usize| index > 0 && self.explanation.turned_by_control;
         let not_determined = |index| match finding(&estimated, &nominal, index) {
+            _ if by_control(index) => Some(BY_CONTROL.to_owned()),
             Finding::NotDetermined { reason } if !is_weighed(index) => Some(reason),
             _ => None,
         };
