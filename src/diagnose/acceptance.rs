@@ -29,7 +29,7 @@ pub(super) fn accepted(
 }
 
 /// Fits again with the accepted candidate.
-pub(super) fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitted, PhysicsError> {
+fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitted, PhysicsError> {
     let mut base = after.base.clone();
     base.present.extend(started(taken, &base.size).into_iter().map(released));
     if let Some(load) = base.present.last_mut().filter(|term| term.signature.role.hangs_below) {

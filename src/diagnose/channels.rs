@@ -139,6 +139,10 @@ pub(super) fn joined(
     for column in &mut all {
         let of = of_flight.iter().find(|of| of.nuisance == column.nuisance);
         append(&mut column.values, of.map_or(&zeros(rows), |of| &of.values));
+        // what is known of it is what is known in the flight that knows least
+        if let Some(std) = of.map(|of| of.prior_std) {
+            column.prior_std = column.prior_std.zip(std).map(|(all, of)| all.max(of));
+        }
         if let Some(considered) = &mut column.considered {
             append(considered, of.and_then(|of| of.considered.as_ref()).unwrap_or(&zeros(rows)));
         }

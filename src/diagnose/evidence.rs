@@ -4,7 +4,7 @@
 //! autocovariance of the scores (Newey-West), whichever is larger. Unexplained physics enlarges it, so the evidence is
 //! conservative if the model is wrong.
 
-use super::channels::{CHANNELS, Channels, SECOND};
+use super::channels::{AXES, CHANNELS, Channels, SECOND};
 use super::columns::Columns;
 use super::priors::{OF_KERNEL, Priors};
 use super::rows::Rows;
@@ -103,6 +103,13 @@ impl Weighted {
     pub(super) fn by_first_reading(rows: &Rows, other: &Self) -> Self {
         let mut sigma = other.sigma;
         sigma[SECOND..].fill(0.0);
+        Self::with(rows, &sigma, other.long_run_deviation().powi(2))
+    }
+
+    /// By the forces alone.
+    pub(super) fn by_forces(rows: &Rows, other: &Self) -> Self {
+        let mut sigma = other.sigma;
+        sigma[3..AXES].fill(0.0);
         Self::with(rows, &sigma, other.long_run_deviation().powi(2))
     }
 

@@ -1,15 +1,22 @@
 //! Whether the accelerometer feels a force that was found: what acts on the vehicle shows in both readings of the force, a slow error
 //! of the autopilot's velocity in the second one only.
 
-use super::channels::SECOND;
-use super::evidence::Weighted;
+use super::channels::{Channels, SECOND};
+use super::evidence::{Evidence, Weighted};
 use super::fit::Fitted;
 use super::hausman::differ;
 use super::signature::EffectTerm;
+use crate::stats::normal_deviate;
 use nalgebra::{DMatrix, DVector};
 
 /// Standard errors below which the accelerometer alone shows no effect. Chosen; not measured.
 const NOTHING: f64 = 2.0;
+
+/// Standard errors from which on the forces alone show an effect. Chosen; not measured.
+const SHOWN: f64 = 3.0;
+
+/// Normal deviate from which on the accelerometer contradicts a force. Chosen; not measured.
+const CONTRADICTED: f64 = 2.5;
 
 /// Largest factor by which the other columns may raise the variance of an amount: a force that is fixed in the body is the same as
 /// the accelerometer's bias, and the accelerometer alone says nothing of it. Chosen; not measured.
@@ -26,8 +33,7 @@ pub(super) struct Felt {
 impl Felt {
     /// `None` where force is read once.
     pub(super) fn of(fitted: &Fitted) -> Option<Self> {
-        let sigma = &fitted.weighted.sigma;
-        if sigma[SECOND..].iter().all(|sigma| *sigma <= 0.0) || sigma[..3].iter().all(|sigma| *sigma <= 0.0) {
+        if !is_read_twice(fitted) {
             return None;
         }
         let felt = Weighted::by_first_reading(&fitted.rows, &fitted.weighted);
@@ -58,6 +64,42 @@ impl Felt {
             each.filter(told).map(of).filter(|amount| amount.felt_variance > 0.0).collect();
         amounts.iter().all(Amount::is_nothing) && amounts.iter().any(Amount::is_contradicted)
     }
+}
+
+/// Whether the accelerometer may feel a force that is on no model: it shows some of it, or does not contradict it. Columns and evidence
+/// are those of the force, by both readings.
+pub(super) fn may_feel(fitted: &Fitted, columns: &[Channels], evidence: &Evidence) -> bool {
+    if !is_read_twice(fitted) {
+        return true;
+    }
+    let Some(felt) = Weighted::by_first_reading(&fitted.rows, &fitted.weighted).test(columns) else {
+        return true;
+    };
+    let count = felt.theta.len();
+    let Some(factor) = felt.covariance.clone().cholesky() else { return true };
+    let deviate = |of: DVector<f64>| normal_deviate(of.dot(&factor.solve(&of)), count);
+    let own = DVector::from_column_slice(&felt.theta);
+    let apart = DVector::from_column_slice(&evidence.theta) - &own;
+    deviate(own) >= NOTHING || deviate(apart) < CONTRADICTED
+}
+
+/// Whether the forces alone show one of an effect's amounts. The effect's first column in the model has the index `first`.
+pub(super) fn shows_in_forces(fitted: &Fitted, term: &EffectTerm, first: usize) -> bool {
+    let (coefficients, covariance) =
+        Weighted::by_forces(&fitted.rows, &fitted.weighted).coefficients(&fitted.rows);
+    let mut amounts = term.free.iter().enumerate().filter(|(_, slot)| term.is_amount(**slot));
+    amounts.any(|(index, &slot)| {
+        let at = first + index;
+        let std = covariance[(at, at)].max(0.0).sqrt();
+        std > 0.0 && (term.from_nothing(slot) + coefficients[at]).abs() > SHOWN * std
+    })
+}
+
+/// Whether force is read by the accelerometer and by the autopilot's velocity.
+fn is_read_twice(fitted: &Fitted) -> bool {
+    let sigma = &fitted.weighted.sigma;
+    let any = |of: &[f64]| of.iter().any(|sigma| *sigma > 0.0);
+    any(&sigma[SECOND..]) && any(&sigma[..3])
 }
 
 /// A size by everything, and by the accelerometer and the torques alone, with their variances.

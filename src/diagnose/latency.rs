@@ -9,8 +9,9 @@ use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing, per
 use super::evidence::Weighted;
 use super::fed_back::{UNCONFIRMED_S, is_fed_back};
 use super::fit::{Fitted, Newton, evaluate, fit};
+use super::flight_rows::residuals;
 use super::hausman::{contradict, differ};
-use super::rows::{Rows, residuals};
+use super::rows::Rows;
 use super::signature::EffectTerm;
 use super::signatures::{ALL, BENT_THRUST};
 use super::torques_by_instruments::fit_by_instruments;

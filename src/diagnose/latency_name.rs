@@ -38,7 +38,8 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     } else {
         // the motor, which also lags, and the command's hold are in the total
         let known = vehicle.propulsion.mean_time_constant_s().map(|known_s| (known_s, 0.0));
-        let (motor_s, unsure_s) = known.unwrap_or_else(|| unstated_motor(total_s, against_lag));
+        let (motor_s, unsure_s) =
+            known.unwrap_or_else(|| unstated_motor(total_s - held_s(traces), (against_lag, against_delay)));
         (parts.delay_s - held_s(traces) - motor_s, std_s.hypot(unsure_s))
     };
     let (own, others) = if is_lag { (against_lag, against_delay) } else { (against_delay, against_lag) };
@@ -66,13 +67,21 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
 /// Chosen; not measured.
 const UNSTATED_MOTOR_S: (f64, f64) = (0.025, 0.015);
 
-/// Lag of the motors within a delay, s, and its standard error, if none is stated. Its square is what the second order of the
-/// latency lacks of a pure delay's, and by this order a pure lag is `against_lag` standard deviations off.
-fn unstated_motor(total_s: f64, against_lag: f64) -> (f64, f64) {
-    let most_s = if against_lag > 0.0 { total_s / against_lag.sqrt() } else { f64::INFINITY };
-    let most_s = most_s.min(total_s);
+/// Lag of the motors within a latency behind the delay of the recording, s, and its standard error, if none is stated. Its square is
+/// what the second order of the latency lacks of a pure delay's, which is `against_delay` standard errors; a pure lag is
+/// `against_lag` of them away.
+fn unstated_motor(behind_s: f64, (against_lag, against_delay): (f64, f64)) -> (f64, f64) {
+    let told_s = if against_lag > 0.0 {
+        behind_s * ((against_delay + WITHIN) / against_lag).sqrt()
+    } else {
+        f64::INFINITY
+    };
+    let most_s = told_s.min(behind_s).max(0.0);
     if most_s < 2.0 * UNSTATED_MOTOR_S.0 { (0.5 * most_s, most_s / 12_f64.sqrt()) } else { UNSTATED_MOTOR_S }
 }
+
+/// Standard errors by which the second order may be off. Chosen; not measured.
+const WITHIN: f64 = 2.0;
 
 /// Parameters of a lag by its rising and falling time constants if they are distinguished, otherwise by the latency as
 /// a whole.

@@ -5,7 +5,6 @@ use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels, noth
 use super::fed_back::{UNCONFIRMED_S, is_fed_back};
 use super::rotors::RotorMotion;
 use super::trace::Trace;
-use crate::regression::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
 use crate::signals::central_difference;
 use nalgebra::Vector3;
 
@@ -26,26 +25,6 @@ const LEVEL_STD_RAD: f64 = 0.01;
 /// Standard deviation of the prior of the accelerometer's bias if velocity does not determine it, m/s^2. Chosen; not
 /// measured.
 const BIAS_STD_M_S2: f64 = 0.2;
-
-/// For each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2.
-pub(super) fn momentum_rows(trace: &Trace) -> [[Vec<f64>; 3]; 6] {
-    let rates: Vec<Vector3<f64>> = trace.states.iter().map(|state| state.rates_rad_s).collect();
-    let turning = trace.weak_vector(1, &rates);
-    let products =
-        RATE_PAIRS.map(|(i, j)| trace.weak(0, &rates.iter().map(|w| w[i] * w[j]).collect::<Vec<f64>>()));
-    let mut out: [[Vec<f64>; 3]; 6] = Default::default();
-    for row in 0..trace.rows() {
-        let turning = Vector3::from_fn(|axis, _| turning[axis][row]);
-        let phi = momentum_regressor(0.0, &turning)
-            + gyroscopic_from_products(&std::array::from_fn(|k| products[k][row]));
-        for (entry, axes) in out.iter_mut().enumerate() {
-            for (axis, values) in axes.iter_mut().enumerate() {
-                values.push(phi[(1 + axis, 1 + entry)]);
-            }
-        }
-    }
-    out
-}
 
 pub(super) fn nuisances(
     trace: &Trace,

@@ -1,6 +1,7 @@
 //! What a model costs: what it leaves unexplained, its columns, and how far its nuisances are from what is known of them.
 
 use super::fit::Fitted;
+use super::tested::Tested;
 
 /// Energy that a column must explain to justify a parameter, in squared standard deviations of independent rows.
 /// Chosen; not measured.
@@ -22,6 +23,11 @@ impl Price {
     /// Of these columns, in squared sigmas of the rows.
     pub(super) fn of_columns(self, count: usize) -> f64 {
         COLUMN_PRICE * self.alike * count as f64
+    }
+
+    /// Energy that a candidate explains, less the price of its columns.
+    pub(super) fn worth(self, tested: &Tested) -> f64 {
+        tested.evidence.energy - self.of_columns(tested.evidence.theta.len())
     }
 
     /// Twice the negative log-density of the rows and of the nuisances' priors, and the columns' price, in squared sigmas of the

@@ -102,7 +102,7 @@ impl<'a> Recorded<'a> {
             Need::Position => self.all(|trace| trace.known.position && trace.known.attitude),
             Need::Accelerometer => self.all(Trace::has_accelerometer),
             Need::ForceTwice => self.all(Trace::reads_force_twice),
-            Need::Frame => self.all(|trace| trace.reads_force_twice() && trace.height_by_pose != Some(false)),
+            Need::Frame => self.all(|trace| trace.reads_force_twice() && !trace.position_by_receiver),
             Need::Voltage => self.full_voltage().is_some(),
             Need::Torques => self.compares_torques(),
             Need::OneFlight => self.flights.len() == 1,

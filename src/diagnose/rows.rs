@@ -5,20 +5,18 @@
 //! by the kinematics: what acts on the vehicle shows in both, a fault of a sensor in one of them. A parameter's column is built from the signals that are not
 //! on the left of its row: rotor thrusts by the commands for forces, by the measured motion for torques.
 
-use super::along::{PartAlong, each_along, moved_by, wrench_along};
+use super::along::{PartAlong, each_along};
 use super::base::Base;
 use super::channels::{
-    AXES, CHANNELS, Channels, Nuisance, NuisanceColumn, SECOND, append, channels, joined, measures, nothing,
-    per_step,
+    AXES, CHANNELS, Channels, Nuisance, NuisanceColumn, append, channels, joined, measures, nothing, per_step,
 };
-use super::nuisances::nuisances;
-use super::rotors::{OfRotors, RotorMotion};
-use super::sensors::{KnownMotion, true_motion, true_readings};
+use super::flight_rows::{Along, Part, one_flight, residual};
+use super::rotors::RotorMotion;
+use super::sensors::{KnownMotion, true_readings};
 use super::signature::EffectTerm;
 use super::trace::Trace;
-use super::velocity_error::velocity_error;
 use crate::physics::{Model, PhysicsError, Wrench};
-use nalgebra::{Vector3, Vector4};
+use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -44,18 +42,6 @@ pub struct Rows {
     flights: Vec<Arc<Along>>,
     /// of the base, where it has effects on the sensors
     known_motion: Option<KnownMotion>,
-}
-
-/// One flight's rotors and loads under the base.
-#[derive(Debug)]
-struct Along {
-    felt: OfRotors,
-    commanded: RotorMotion,
-    motion: RotorMotion,
-    /// N, of the model with the rotors by the commands
-    force_n: Vec<Vector3<f64>>,
-    /// N m, of the model with the rotors by the motion
-    torque_nm: Vec<Vector3<f64>>,
 }
 
 impl Rows {
@@ -360,93 +346,6 @@ fn moved_models(base: &Base, candidate: &EffectTerm) -> Result<Vec<Moved>, Physi
         Ok(Moved { up: base.model(std::slice::from_ref(&moved))?, down: None, step })
     };
     candidate.free.iter().map(one).collect()
-}
-
-/// The residual for the true motion of the flights.
-pub(super) fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
-    let model = base.model(&[])?;
-    let parts: Vec<Channels> = true_motion(recorded, base)
-        .par_iter()
-        .map(|trace| one_flight((trace, recorded.len()), base, &model).residual)
-        .collect();
-    let mut out = Channels::default();
-    parts.iter().for_each(|part| append(&mut out, part));
-    Ok(out)
-}
-
-fn forces_n(wrenches: &[Wrench]) -> Vec<Vector3<f64>> {
-    wrenches.iter().map(|wrench| wrench.force_n).collect()
-}
-
-fn torques_nm(wrenches: &[Wrench]) -> Vec<Vector3<f64>> {
-    wrenches.iter().map(|wrench| wrench.torque_nm).collect()
-}
-
-fn weak_wrench(trace: &Trace, forces: &[Vector3<f64>], torques: &[Vector3<f64>]) -> Channels {
-    channels(trace, trace.weak_vector(0, forces), trace.weak_vector(0, torques))
-}
-
-/// One flight's share of the rows.
-struct Part {
-    along: Along,
-    residual: Channels,
-    /// the same ones in every flight
-    nuisances: Vec<NuisanceColumn>,
-    /// of this flight alone
-    own: Vec<NuisanceColumn>,
-}
-
-fn one_flight((trace, flights): (&Trace, usize), base: &Base, model: &Model) -> Part {
-    let (felt, commanded) = trace.by_commands(&model.airframe, base.latency);
-    let (by_commands, (motion, by_motion)) =
-        rayon::join(|| wrench_along(model, trace, &commanded), || moved_by(trace, (base, model), &commanded));
-    let (force_n, torque_nm) = (forces_n(&by_commands), torques_nm(&by_motion));
-    drop((by_commands, by_motion));
-    let along = Along { felt, commanded, motion, force_n, torque_nm };
-    let (residual, (nuisances, own)) = rayon::join(
-        || residual(trace, base, model, &along),
-        || {
-            let own = velocity_error((trace, flights), (base, model), &along.commanded, &along.force_n);
-            (nuisances(trace, base, &along.commanded, &along.force_n), own)
-        },
-    );
-    Part { along, residual, nuisances, own }
-}
-
-/// `m K(a) - K(F)` and `D(J w) + K(w x J w) - K(M)`, with the effects' part from the smooth thrusts.
-fn residual(trace: &Trace, base: &Base, model: &Model, along: &Along) -> Channels {
-    let airframe = &model.airframe;
-    let jitter = trace.jitter(&airframe.propulsion);
-    let (commanded_n, moved_n) = (&along.commanded.thrust_n, &along.motion.thrust_n);
-    let (mut forces, mut torques) = (Vec::new(), Vec::new());
-    for index in 0..trace.grid.count {
-        let rotors = airframe.thrust_wrench(&along.felt.at(index));
-        let jitter = jitter.as_ref().map_or_else(Vector4::zeros, |jitter| jitter[index] * 0.5);
-        let effects_force = along.force_n[index] - airframe.thrust_wrench(&commanded_n.at(index)).force_n;
-        let effects_torque = along.torque_nm[index] - airframe.thrust_wrench(&moved_n.at(index)).torque_nm;
-        let used = if trace.usable[index] { 1.0 } else { 0.0 };
-        forces.push(rotors.force_n - Vector3::z() * jitter[0] + effects_force * used);
-        torques
-            .push(rotors.torque_nm - Vector3::new(jitter[1], jitter[2], jitter[3]) + effects_torque * used);
-    }
-    let acting = weak_wrench(trace, &forces, &torques);
-    let readings = trace.weak_specific_force();
-    let momentum = trace.momentum();
-    let j = &base.vehicle.body.inertia_kg_m2;
-    let six = [j[(0, 0)], j[(0, 1)], j[(0, 2)], j[(1, 1)], j[(1, 2)], j[(2, 2)]];
-    let mut out = acting;
-    for axis in 0..3 {
-        for (reading, first) in readings.iter().zip([0, SECOND]) {
-            for (row, value) in out[first + axis].iter_mut().enumerate() {
-                *value = base.vehicle.body.mass_kg * reading[axis][row] - *value;
-            }
-        }
-        for (row, value) in out[3 + axis].iter_mut().enumerate().filter(|_| trace.torques) {
-            let turning: f64 = (0..6).map(|k| momentum[k][axis][row] * six[k]).sum();
-            *value = turning - *value;
-        }
-    }
-    out
 }
 
 #[cfg(test)]

@@ -78,6 +78,7 @@ pub(in super::super) fn turning_on_the_spot() -> Signals {
             torques: true,
             gyro_noise_rad_s: None,
             height_by_pose: None,
+            position_by_receiver: false,
             notes: Vec::new(),
         },
     }

@@ -53,9 +53,12 @@ pub fn search(
                 };
                 after = fitted;
                 let mut step = Step { taken, rivals: passed.split_off(1) };
-                if let Some((taken, fitted)) = one_for_several(flights, &after, price, signatures)? {
+                if let Some((taken, fitted)) =
+                    one_for_several(flights, &after, price, (gates, signatures, &refused))?
+                {
                     after = fitted;
-                    step.taken = taken;
+                    // the others were rivals of what it replaces
+                    step = Step { taken, rivals: Vec::new() };
                 }
                 step.emit();
                 steps.push(step);
@@ -132,8 +135,7 @@ fn pruned(
 
 /// Sorts candidates by the energy that they explain less the price of its columns.
 fn by_worth(mut tested: Vec<Tested>, price: Price) -> Vec<Tested> {
-    let worth = |tested: &Tested| tested.evidence.energy - price.of_columns(tested.evidence.theta.len());
-    tested.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+    tested.sort_by(|a, b| price.worth(b).total_cmp(&price.worth(a)));
     tested
 }
 

@@ -2,7 +2,7 @@
 
 use super::base::Base;
 use super::fed_back::is_fed_back;
-use super::felt::Felt;
+use super::felt::{Felt, shows_in_forces};
 use super::fit::{Fitted, Newton, fit};
 use super::floors::{FORM, add_floors};
 use super::limits::is_beyond_showing;
@@ -10,7 +10,9 @@ use super::named::Strength;
 use super::physical::make_physical;
 use super::reconstructed::reconstruct;
 use super::signature::EffectTerm;
+use super::signatures::BENT_THRUST;
 use super::tested::Search;
+use super::thrust_slope::may_be_noise;
 use super::torques_by_instruments::torques_by_instruments;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
@@ -61,8 +63,12 @@ fn leave_out_unnamed(traces: &[Trace], found: &mut Search) -> Result<bool, Physi
         let beyond = is_beyond_showing(&found.after, present, first);
         let strength = fitted_strength(&found.after, present, first);
         let refuted = felt.as_ref().is_some_and(|felt| felt.refutes(&found.after, present, first));
+        // a bend acts on the commands' own noise, and that is in the torques
+        let bent = present.is(&BENT_THRUST) && is_fed_back(traces);
+        let unseen =
+            bent && (!shows_in_forces(&found.after, present, first) || may_be_noise(traces, &found.after));
         first += present.free.len();
-        kept.push(!(beyond || refuted || is_ordinary(present, &all)));
+        kept.push(!(beyond || refuted || unseen || is_ordinary(present, &all)));
         if strength.count > 0 && strength.z < STAYS && weakest.is_none_or(|(least, _)| strength.z < least) {
             weakest = Some((strength.z, place));
         }

@@ -1,8 +1,9 @@
 //! One effect in place of several of one kind: two weak rotors can stand for a centre of mass that is off.
 
-use super::acceptance::with_taken;
+use super::acceptance::accepted;
 use super::candidates::candidates;
 use super::fit::{Fitted, Newton, fit};
+use super::gates::{Gates, passes};
 use super::price::Price;
 use super::score::test_all;
 use super::signature::Signature;
@@ -19,7 +20,7 @@ pub(super) fn one_for_several(
     flights: &[Trace],
     fitted: &Fitted,
     price: Price,
-    signatures: &[&'static Signature],
+    (gates, signatures, refused): (&Gates, &[&'static Signature], &[&'static str]),
 ) -> Result<Option<(Tested, Fitted)>, PhysicsError> {
     let present = &fitted.base.present;
     let times = |id: &str| present.iter().filter(|term| term.id() == id).count();
@@ -31,11 +32,17 @@ pub(super) fn one_for_several(
     base.present.retain(|term| term.id() != several);
     let without = fit(flights, base, Newton::Held)?;
     let candidates = candidates(&without.base.vehicle, flights, signatures);
-    let serves = |tested: &Tested| tested.candidate.id != several && tested.evidence.theta.len() <= columns;
-    let tested = test_all(flights, &without, &candidates, signatures).into_iter().filter(serves);
-    let Some(best) = tested.max_by(|a, b| a.evidence.energy.total_cmp(&b.evidence.energy)) else {
-        return Ok(None);
+    let tested = test_all(flights, &without, &candidates, signatures);
+    let count = tested.len() as f64;
+    let serves = |tested: &Tested| {
+        let id = tested.candidate.id;
+        id != several
+            && !refused.contains(&id)
+            && tested.evidence.theta.len() <= columns
+            && passes(tested, &without, gates, count)
     };
-    let with = with_taken(flights, &without, &best)?;
-    Ok((price.cost(&with) < price.cost(fitted)).then_some((best, with)))
+    let best = tested.into_iter().filter(serves).max_by(|a, b| price.worth(a).total_cmp(&price.worth(b)));
+    let Some(best) = best else { return Ok(None) };
+    let accepted = accepted(flights, &without, best)?;
+    Ok(accepted.filter(|(_, with)| price.cost(with) < price.cost(fitted)))
 }

@@ -2,7 +2,7 @@
 //! motion.
 
 use super::instruments::{Instruments, instruments};
-use super::nuisances::momentum_rows;
+use super::momentum::momentum_rows;
 use super::rotors::{OfRotors, RotorMotion, felt, filtered};
 use super::timing::{command_period_s, inertial_late};
 use crate::physics::{ActuationLatency, Airframe, State};
@@ -67,6 +67,8 @@ pub struct Trace {
     pub gravity_m_s2: f64,
     /// whether motion capture or a camera gives the height; `None` where it is not known
     pub height_by_pose: Option<bool>,
+    /// a satellite receiver gives the position
+    pub position_by_receiver: bool,
     /// of the torques, if the commanded trajectory was recorded
     pub(super) instruments: Option<Arc<Instruments>>,
     /// what every model of this motion is compared with, once it was asked for
@@ -164,6 +166,7 @@ impl Trace {
             felt_m_s2: Series::default(),
             gravity_m_s2: vehicle.gravity_m_s2,
             height_by_pose: signals.quality.height_by_pose,
+            position_by_receiver: signals.quality.position_by_receiver,
             instruments: None,
             weak_motion: Arc::default(),
         };
@@ -266,7 +269,9 @@ impl Trace {
         self.weak_motion.get_or_init(|| {
             let measured = self.specific_force_m_s2.as_ref().map(|force| self.weak_vector(0, force));
             let specific_force = measured.into_iter().chain(self.weak_kinematic()).collect();
-            WeakMotion { specific_force, momentum: momentum_rows(self) }
+            let rates: Vec<Vector3<f64>> = self.states.iter().map(|state| state.rates_rad_s).collect();
+            let momentum = momentum_rows(&rates, |order, series| self.weak(order, series));
+            WeakMotion { specific_force, momentum }
         })
     }
 

@@ -7,7 +7,7 @@ use super::align::{
 };
 use super::changed::{changes_in_the_air, resting_on_defaults};
 use super::flight::{AsRecorded, Quality, Reference, Series, Signals};
-use super::height::is_height_by_pose;
+use super::height::{is_height_by_pose, is_position_by_receiver};
 use super::lifts::too_little;
 use super::noise::gyro_noise_rad_s;
 use super::rotor_thrusts::ThrustSource;
@@ -123,6 +123,7 @@ pub fn condition(
             usable: used,
             torques: sufficiency.torques,
             height_by_pose: is_height_by_pose(recording),
+            position_by_receiver: is_position_by_receiver(recording),
             notes,
         },
     };

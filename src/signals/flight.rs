@@ -125,6 +125,8 @@ pub struct Quality {
     pub torques: bool,
     /// whether motion capture or a camera gives the height, or else satellites and air pressure; `None` where it is not known
     pub height_by_pose: Option<bool>,
+    /// a satellite receiver gives the position
+    pub position_by_receiver: bool,
     /// notes for the user
     pub notes: Vec<Note>,
 }
@@ -160,6 +162,7 @@ mod tests {
                 usable: Usable::default(),
                 torques: true,
                 height_by_pose: None,
+                position_by_receiver: false,
                 notes: Vec::new(),
             },
         };

@@ -22,6 +22,13 @@ pub(super) fn is_height_by_pose(recording: &Recording) -> Option<bool> {
     })
 }
 
+/// Whether a satellite receiver gives the position: its velocity is logged, and no pose.
+pub(super) fn is_position_by_receiver(recording: &Recording) -> bool {
+    let mut streams = recording.streams.iter().filter(|(_, stream)| !stream.is_empty());
+    let by_receiver = streams.clone().any(|(key, _)| key.quantity == Quantity::GpsVelocity);
+    by_receiver && !streams.any(|(key, _)| key.quantity == Quantity::Position && POSES.contains(&key.source))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,7 +1,7 @@
 //! How well a model played back follows the recording.
 
+use super::lengths::playback_windows;
 use super::settings::PlaybackSettings;
-use super::windows::playback_windows;
 use crate::compare::CompareError;
 use crate::compare::mean_square::MeanSquare;
 use crate::physics::Model;

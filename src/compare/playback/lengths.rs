@@ -18,6 +18,21 @@ pub struct LengthErrors {
     pub floor: Vec<WindowErrors>,
 }
 
+/// [`playback`](super::playback) window by window, for whoever needs to know how the error is spread. `push` acts beside
+/// the model.
+///
+/// # Errors
+/// As [`playback`](super::playback).
+pub fn playback_windows(
+    (model, vehicle): (&Model, &Vehicle),
+    push: Option<Push>,
+    signals: &Signals,
+    settings: &PlaybackSettings,
+) -> Result<Vec<WindowErrors>, CompareError> {
+    let each = playback_lengths((model, vehicle), push, signals, (settings, &[settings.window_s]), None)?;
+    Ok(each.into_iter().flat_map(|length| length.windows).collect())
+}
+
 /// [`playback_windows`](super::playback_windows) over windows of each of these lengths (s), in place of that of the settings;
 /// with the floor that noise makes, of the model without `push`.
 ///

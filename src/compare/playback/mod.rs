@@ -13,7 +13,7 @@ mod windows;
 
 pub use fit::{Fit, playback};
 pub use floor::{CommandNoise, FloorNoise, StateNoise};
-pub use lengths::{LengthErrors, playback_lengths};
+pub use lengths::{LengthErrors, playback_lengths, playback_windows};
 pub use settings::PlaybackSettings;
 pub use torques::torques_along;
-pub use windows::{WindowErrors, playback_windows, unchanged_windows};
+pub use windows::{WindowErrors, unchanged_windows};

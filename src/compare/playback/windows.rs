@@ -1,7 +1,6 @@
 //! Playback window by window.
 
 use super::commands::Commands;
-use super::lengths::playback_lengths;
 use super::measured::MeasuredStates;
 use super::settings::PlaybackSettings;
 use crate::compare::CompareError;
@@ -12,22 +11,7 @@ use crate::simulate::{Plant, PlantMemory, Push};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
-/// [`playback`](super::playback) window by window, for whoever needs to know how the error is spread. `push` acts beside
-/// the model.
-///
-/// # Errors
-/// As [`playback`](super::playback).
-pub fn playback_windows(
-    (model, vehicle): (&Model, &Vehicle),
-    push: Option<Push>,
-    signals: &Signals,
-    settings: &PlaybackSettings,
-) -> Result<Vec<WindowErrors>, CompareError> {
-    let each = playback_lengths((model, vehicle), push, signals, (settings, &[settings.window_s]), None)?;
-    Ok(each.into_iter().flat_map(|length| length.windows).collect())
-}
-
-/// The same windows, predicted by the state at the start of each: nothing changes. The baseline that published benchmarks call
+/// The windows of [`playback_windows`](super::playback_windows), predicted by the state at the start of each: nothing changes. The baseline that published benchmarks call
 /// naive.
 ///
 /// # Errors

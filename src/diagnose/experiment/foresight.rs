@@ -266,6 +266,7 @@ impl Flown {
                 torques: true,
                 gyro_noise_rad_s: Some(like.gyro_noise_rad_s),
                 height_by_pose: like.height_by_pose,
+                position_by_receiver: like.position_by_receiver,
                 notes: Vec::new(),
             },
         }

@@ -2,6 +2,7 @@
 //! low-frequency power than a sensor's (red noise), gusts; and lack of fit for flights without a period.
 
 use super::super::channels::{AXES, Channels, SECOND};
+use super::super::felt::may_feel;
 use super::super::fit::Fitted;
 use super::super::signature::EffectTerm;
 use super::super::trace::Trace;
@@ -178,12 +179,12 @@ fn trend(traces: &[Trace], fitted: &Fitted, view: &View) -> Option<Trend> {
     quantities
         .into_iter()
         .filter_map(|of| {
-            let column = trend_column(traces, view, of);
-            let evidence = fitted.weighted.test(&[column])?;
+            let column = [trend_column(traces, view, of)];
+            let evidence = fitted.weighted.test(&column)?;
             let per_min = evidence.theta[0];
             let relative = per_min.abs() * longest_s / 60.0 / scale(fitted, of).max(f64::MIN_POSITIVE);
             let least = if matches!(of, Quantity::Torque(_)) { UNNAMED_TORQUE } else { UNNAMED_FORCE };
-            let certain = evidence.z > TREND_Z && relative > least;
+            let certain = evidence.z > TREND_Z && relative > least && may_feel(fitted, &column, &evidence);
             Some(Trend { of, per_min, std_per_min: evidence.std(0), z: evidence.z, relative, certain })
         })
         .max_by(|a, b| a.certain.cmp(&b.certain).then(a.z.total_cmp(&b.z)))

@@ -5,6 +5,7 @@
 //! name: it is tested on the residual of the names, and compared with their part.
 
 use super::super::channels::{AXES, CHANNELS, Channels, channels};
+use super::super::felt::may_feel;
 use super::super::fit::Fitted;
 use super::super::trace::Trace;
 use crate::diagnose::materiality::UNNAMED_FORCE;
@@ -104,6 +105,7 @@ pub fn field_test(
     let certain = evidence.z > FIELD_Z
         && evidence.gain >= FIELD_GAIN
         && force_n.abs() >= least_n
+        && may_feel(after, &columns, &evidence)
         && all_along(after, &columns, &evidence.theta);
     let energy_alone = if certain { taken(before, after, &columns) } else { evidence.energy };
     Some(FieldTest {

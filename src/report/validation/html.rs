@@ -174,6 +174,7 @@ mod tests {
             torques: true,
             gyro_noise_rad_s: None,
             height_by_pose: None,
+            position_by_receiver: false,
             notes: Vec::new(),
         };
         let flight = ValidatedFlight {
