@@ -1,11 +1,12 @@
 //! Tests of the rows of the weak form.
 
 use super::*;
+use crate::diagnose::channels::SECOND;
 use crate::recording::Quantity;
 use crate::signals::{AsRecorded, Grid, Quality, Series, Signals, ThrustSource, Usable};
 use crate::simulate::random_vehicle;
 use crate::vehicle::{RigidBody, Rotor, Spin, Vehicle};
-use nalgebra::{Matrix3, UnitQuaternion};
+use nalgebra::{Matrix3, UnitQuaternion, Vector4};
 
 /// Rows that no flight made, 0.05 s apart.
 pub(in super::super) fn rows_of(
