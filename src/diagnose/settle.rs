@@ -65,8 +65,8 @@ fn leave_out_unnamed(traces: &[Trace], found: &mut Search) -> Result<bool, Physi
         let refuted = felt.as_ref().is_some_and(|felt| felt.refutes(&found.after, present, first));
         // a bend acts on the commands' own noise, and that is in the torques
         let bent = present.is(&BENT_THRUST) && is_fed_back(traces);
-        let unseen =
-            bent && (!shows_in_forces(&found.after, present, first) || may_be_noise(traces, &found.after));
+        let unseen = bent
+            && (!shows_in_forces(&found.after, present, first) || is_noise(present, traces, &found.after));
         first += present.free.len();
         kept.push(!(beyond || refuted || unseen || is_ordinary(present, &all)));
         if strength.count > 0 && strength.z < STAYS && weakest.is_none_or(|(least, _)| strength.z < least) {
@@ -85,6 +85,11 @@ fn leave_out_unnamed(traces: &[Trace], found: &mut Search) -> Result<bool, Physi
     base.present.retain(|_| each.next().unwrap_or(true));
     found.after = fit(traces, base, Newton::Held)?;
     Ok(true)
+}
+
+/// Whether noise alone may have bent a thrust curve: it lowers the slope, and never raises it.
+fn is_noise(bent: &EffectTerm, traces: &[Trace], fitted: &Fitted) -> bool {
+    bent.values[0] < 0.0 && may_be_noise(traces, fitted)
 }
 
 /// Whether an effect stays in the model without a name: every vehicle has this much of it, or it is too small for its

@@ -5,6 +5,7 @@ use super::instruments::{Instruments, instruments};
 use super::momentum::momentum_rows;
 use super::rotors::{OfRotors, RotorMotion, felt, filtered};
 use super::timing::{command_period_s, inertial_late};
+use super::trace_error::TraceError;
 use crate::physics::{ActuationLatency, Airframe, State};
 use crate::signals::{
     Butterworth, Grid, Series, Signals, ThrustSource, WeakKernel, central_difference, stride,
@@ -93,28 +94,6 @@ pub struct Known {
     pub velocity: bool,
     /// position
     pub position: bool,
-}
-
-/// Errors of a flight that cannot be diagnosed.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum TraceError {
-    /// no gyroscope
-    #[error(
-        "body rates are not recorded: expected ANGULAR_RATE from HIGHRES_IMU, ATTITUDE or similar; without them no torque can be compared"
-    )]
-    NoRates,
-    /// neither accelerometer nor velocity with attitude
-    #[error("neither an accelerometer nor velocity with attitude is recorded: no force can be compared")]
-    NoForce,
-    /// rotor thrusts unknown
-    #[error("the log holds force and torque, not actuator outputs: what the rotors did is not known")]
-    NoRotors,
-    /// grid too coarse for the low-pass
-    #[error("sampled at {rate_hz:.1} Hz: expected at least 25 Hz")]
-    TooSlow {
-        /// Hz
-        rate_hz: f64,
-    },
 }
 
 impl Trace {

@@ -8,7 +8,8 @@ use super::search;
 use super::settings::NextSettings;
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::trace::{Trace, TraceError};
+use crate::diagnose::trace::Trace;
+use crate::diagnose::trace_error::TraceError;
 use crate::signals::Signals;
 use crate::vehicle::{Limits, Vehicle};
 

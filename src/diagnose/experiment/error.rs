@@ -1,7 +1,7 @@
 //! Errors of the design of the next flight.
 
 use super::flight::Inseparable;
-use crate::diagnose::trace::TraceError;
+use crate::diagnose::trace_error::TraceError;
 use crate::physics::PhysicsError;
 
 /// Errors of the design of the next flight.

@@ -1,7 +1,7 @@
 //! Errors of the comparison with a hold-out flight.
 
 use crate::compare::CompareError;
-use crate::diagnose::trace::TraceError;
+use crate::diagnose::trace_error::TraceError;
 use crate::physics::PhysicsError;
 
 /// Errors of the comparison with a hold-out flight.

@@ -1,7 +1,7 @@
 //! Why effects cannot be identified.
 
 use super::wanted;
-use crate::diagnose::trace::TraceError;
+use crate::diagnose::trace_error::TraceError;
 use crate::physics::PhysicsError;
 
 /// Why effects cannot be identified.
