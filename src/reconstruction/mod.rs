@@ -13,13 +13,15 @@ mod force_problem;
 mod forces;
 mod place;
 mod places;
+mod problem;
 mod residuals;
 mod sensors;
 mod thrusts;
 
 pub use blocks::{STATE, State, WIDTH};
 pub use error::ReconstructionError;
-pub use fit::{BLOCKS, Fit, FitError, Problem, Unknown, fit, fit_mode};
+pub use fit::{BLOCKS, Fit, FitError, fit, fit_mode};
 pub use force_problem::{KnownLag, force_problem};
 pub use forces::Term;
+pub use problem::{Problem, Unknown};
 pub use residuals::{Group, Residuals, Row};

@@ -6,10 +6,11 @@ use super::align::{
     vectors_onto, velocity_offset,
 };
 use super::changed::{changes_in_the_air, resting_on_defaults};
-use super::flight::{AsRecorded, Quality, Reference, Series, Signals};
+use super::flight::{AsRecorded, Quality, Series, Signals};
 use super::height::{is_height_by_pose, is_position_by_receiver};
 use super::lifts::too_little;
 use super::noise::gyro_noise_rad_s;
+use super::reference::reference;
 use super::rotor_thrusts::ThrustSource;
 use super::select::{best, best_of, mean_rate_hz, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
@@ -372,32 +373,4 @@ fn battery_voltage_v(recording: &Recording, grid: &Grid) -> Option<Vec<f64>> {
     let known = raw.time_s.iter().zip(&raw.values).filter(|(_, volts)| (0.1..1e3).contains(*volts));
     let (time_s, values) = known.map(|(time_s, volts)| (*time_s, *volts)).unzip();
     super::linear_onto(&Stream { time_s, width: 1, values }, 0.0, grid)
-}
-
-/// The commanded acceleration and yaw, by linear interpolation; `None` if they were not recorded.
-fn reference(recording: &Recording, grid: &Grid) -> Option<Reference> {
-    let (key, acceleration) = best(recording, Quantity::AccelerationSetpoint, |s| s.width == 3)?;
-    let acceleration = super::cubic_onto(acceleration, 0.0, grid)?;
-    let yaw = best(recording, Quantity::YawSetpoint, |s| s.width == 1)
-        .and_then(|(_, stream)| super::cubic_onto(&unwrapped(stream), 0.0, grid))
-        .unwrap_or_else(|| vec![0.0; grid.count]);
-    Some(Reference {
-        acceleration: Series::new(
-            acceleration.chunks_exact(3).map(|a| Vector3::new(a[0], a[1], a[2])).collect(),
-        ),
-        yaw: yaw.into(),
-        message: key.source,
-    })
-}
-
-/// An angle without its jumps of a full turn.
-fn unwrapped(stream: &Stream) -> Stream {
-    let mut out = stream.clone();
-    for i in 1..out.values.len() {
-        let turns = ((out.values[i] - out.values[i - 1]) / std::f64::consts::TAU).round();
-        if turns.is_finite() {
-            out.values[i] -= turns * std::f64::consts::TAU;
-        }
-    }
-    out
 }

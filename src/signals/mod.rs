@@ -18,6 +18,7 @@ mod noise;
 mod one_flight;
 mod plausible;
 mod rebuilt;
+mod reference;
 mod rotor_thrusts;
 mod said;
 mod select;
