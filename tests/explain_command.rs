@@ -125,7 +125,7 @@ fn bad_input_is_refused_with_what_was_expected_and_what_came() {
             "model.toml is an input",
         ),
         (vec!["no-such.tlog"], "no-such.tlog"),
-        (vec![idle.to_str().unwrap()], "no actuator outputs. Next time request"),
+        (vec![idle.to_str().unwrap()], "no actuator outputs for 4 rotors"),
     ] {
         let mut all = vec!["explain"];
         all.extend(&arguments);

@@ -317,7 +317,7 @@ fn streams_that_an_effect_needs_are_named_where_they_are_missing() {
     let sag = said(&[Q::BatteryVoltage], "battery_sag");
     assert!(sag.contains("battery_sag needs battery voltage") && sag.contains("BATTERY_STATUS"), "{sag}");
     let none = said(&[Q::ActuatorCommand, Q::RotorSpeed], "linear_drag");
-    assert!(none.contains("no actuator outputs. Next time request SERVO_OUTPUT_RAW"), "{none}");
+    assert!(none.contains("no actuator outputs for 4 rotors"), "{none}");
     let lag = said(&[Q::ActuatorCommand], "motor_lag");
     assert!(lag.contains("no actuator outputs") || lag.contains("needs actuator commands"), "{lag}");
     let imu = said(&[Q::SpecificForce], "imu_offset");

@@ -348,6 +348,22 @@ fn rotor_speeds_are_in_radians_a_second() {
     close(&rig.only(Quantity::RotorSpeed), &[200.0 * PI, 100.0 * PI, 0.0, TAU]);
 }
 
+#[test]
+fn a_receivers_velocity_is_over_ground_and_needs_a_fix() {
+    let with = |fix_type, vel, cog| {
+        px4(&M::GPS_RAW_INT(dialect::GPS_RAW_INT_DATA { fix_type, vel, cog, ..Default::default() }))
+    };
+    let fix = dialect::GpsFixType::GPS_FIX_TYPE_3D_FIX;
+    // to the east; the vertical velocity is not in it
+    let east = with(fix, 250, 9000).only(Quantity::GpsVelocity);
+    close(&east[..2], &[0.0, -2.5]);
+    assert!(east[2].is_nan());
+    let none = dialect::GpsFixType::GPS_FIX_TYPE_2D_FIX;
+    for (fix, vel, cog) in [(none, 250, 9000), (fix, u16::MAX, 9000), (fix, 250, u16::MAX)] {
+        assert!(with(fix, vel, cog).said.is_empty());
+    }
+}
+
 fn battery(cells: &[u16], current_battery: i16, voltages_ext: [u16; 4]) -> M {
     let mut voltages = [u16::MAX; 10];
     voltages[..cells.len()].copy_from_slice(cells);

@@ -4,7 +4,7 @@
 use super::channels::{Channels, SECOND};
 use super::evidence::{Evidence, Weighted};
 use super::fit::Fitted;
-use super::hausman::differ;
+use super::hausman::{DEVIATE, differ};
 use super::signature::EffectTerm;
 use crate::stats::normal_deviate;
 use nalgebra::{DMatrix, DVector};
@@ -14,9 +14,6 @@ const NOTHING: f64 = 2.0;
 
 /// Standard errors from which on the forces alone show an effect. Chosen; not measured.
 const SHOWN: f64 = 3.0;
-
-/// Normal deviate from which on the accelerometer contradicts a force. Chosen; not measured.
-const CONTRADICTED: f64 = 2.5;
 
 /// Largest factor by which the other columns may raise the variance of an amount: a force that is fixed in the body is the same as
 /// the accelerometer's bias, and the accelerometer alone says nothing of it. Chosen; not measured.
@@ -80,7 +77,7 @@ pub(super) fn may_feel(fitted: &Fitted, columns: &[Channels], evidence: &Evidenc
     let deviate = |of: DVector<f64>| normal_deviate(of.dot(&factor.solve(&of)), count);
     let own = DVector::from_column_slice(&felt.theta);
     let apart = DVector::from_column_slice(&evidence.theta) - &own;
-    deviate(own) >= NOTHING || deviate(apart) < CONTRADICTED
+    deviate(own) >= NOTHING || deviate(apart) < DEVIATE
 }
 
 /// Whether the forces alone show one of an effect's amounts. The effect's first column in the model has the index `first`.

@@ -2,7 +2,7 @@
 //! holds in either case.
 
 /// Normal deviate beyond which they differ. Chosen; not measured.
-const DEVIATE: f64 = 2.5;
+pub(super) const DEVIATE: f64 = 2.5;
 
 /// Whether the difference of the values is more than the greater variance of the second allows. Both variances are in the
 /// squared unit of the difference.

@@ -109,3 +109,25 @@ const ORDINARY_STD_S: f64 = 0.0025;
 /// Standard deviations beyond which a lag is distinguished from a delay. More than for other pairs, because rotors with
 /// different rising and falling time constants are neither and resemble a delay. Chosen; not measured.
 const TOLD_APART: f64 = 15.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lag_of_unstated_motors_is_at_most_the_latency_and_what_its_second_order_allows() {
+        let near = |(lag_s, std_s): (f64, f64), expected: (f64, f64)| {
+            assert!(
+                (lag_s - expected.0).abs() < 1e-6 && (std_s - expected.1).abs() < 1e-6,
+                "{lag_s} {std_s}"
+            );
+        };
+        // the second order is not told: what motors have, or half of a short latency
+        near(unstated_motor(0.08, (0.0, 0.0)), UNSTATED_MOTOR_S);
+        near(unstated_motor(0.02, (0.0, 0.0)), (0.01, 0.005_773_503));
+        // 0.04 sqrt((0 + 2) / 200) = 0.004
+        near(unstated_motor(0.04, (200.0, 0.0)), (0.002, 0.001_154_701));
+        // 0.04 sqrt((6 + 2) / 200) = 0.008
+        near(unstated_motor(0.04, (200.0, 6.0)), (0.004, 0.002_309_401));
+    }
+}

@@ -34,14 +34,6 @@ pub(super) fn nuisances(
 ) -> Vec<NuisanceColumn> {
     let none = || vec![0.0; trace.rows()];
     let force = |values: [Vec<f64>; 3]| channels(trace, values, nothing(trace));
-    let torque = |values: [Vec<f64>; 3]| channels(trace, nothing(trace), values);
-    let column = |nuisance, prior_std, values: Channels| NuisanceColumn {
-        nuisance,
-        values,
-        prior_std,
-        first_row: 0,
-        considered: None,
-    };
     let mass_kg = base.vehicle.body.mass_kg;
     let mut out = Vec::new();
     // more mass than assumed: more force than assumed was there, in proportion to it
@@ -49,35 +41,10 @@ pub(super) fn nuisances(
     out.push(column(Nuisance::Mass, None, force(trace.weak_vector(0, &forces))));
     for (entry, axes) in trace.momentum().iter().enumerate() {
         let values = axes.each_ref().map(|values| values.iter().map(|v| -v).collect::<Vec<f64>>());
-        out.push(column(Nuisance::Inertia(entry), None, torque(values)));
+        out.push(column(Nuisance::Inertia(entry), None, channels(trace, nothing(trace), values)));
     }
-    // by the commands for the force, by the motion for the torques
     let thrust: Vec<f64> = commanded.thrust_n.each().map(|thrusts| thrusts.iter().sum::<f64>()).collect();
-    let late: Vec<f64> = central_difference(&thrust, trace.grid.step_s).iter().map(|d| -d).collect();
-    let late = trace.weak(0, &late);
-    let turning = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
-    let [late_x, late_y, late_z] = [0, 1, 2].map(|axis| {
-        let column: Vec<f64> = turning.iter().map(|t| -t[axis]).collect();
-        trace.weak(0, &central_difference(&column, trace.grid.step_s))
-    });
-    // in yaw the rotors' inertia leads by as much as a latency lags: where the one is estimated, roll and pitch tell the
-    // other, and its error goes into the inertia's
-    let of_yaw = torque([none(), none(), late_z.clone()]);
-    let spins_up = base.estimates(|term| term.signature.role.shortens_latency);
-    let late_torque = [late_x, late_y, if spins_up { none() } else { late_z }];
-    let both = channels(trace, [none(), none(), late.clone()], late_torque);
-    let considered = spins_up.then_some(of_yaw);
-    out.push(NuisanceColumn { considered, ..column(Nuisance::Latency, None, both) });
-    if trace.reads_force_twice() {
-        let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
-        values[SECOND + 2].clone_from(&late);
-        out.push(column(Nuisance::KinematicLatency, Some(KINEMATIC_LATENCY_STD_S), values));
-        out.push(lateral_latency(trace, &thrust));
-    }
-    let late = force([none(), none(), late]);
-    // where the gyroscopes' noise is fed back, the torques do not tell the latency as well as that
-    let unsure_s = if is_fed_back(std::slice::from_ref(trace)) { UNCONFIRMED_S } else { 0.0 };
-    out.push(column(Nuisance::ForceLatency, Some(FORCE_LATENCY_STD_S.hypot(unsure_s)), late));
+    out.extend(latencies(trace, base, &thrust));
     let thrust = trace.weak(0, &thrust);
     let negative: Vec<f64> = thrust.iter().map(|t| -t).collect();
     // no thrust axis is known to a tenth of a degree; one that leans much is an effect
@@ -95,6 +62,44 @@ pub(super) fn nuisances(
     out
 }
 
+/// Latencies: of the commands, of the force beyond that of the torques, and of the kinematics. The thrust is by the commands, N.
+fn latencies(trace: &Trace, base: &Base, thrust_n: &[f64]) -> Vec<NuisanceColumn> {
+    let none = || vec![0.0; trace.rows()];
+    let mut out = Vec::new();
+    // by the commands for the force, by the motion for the torques
+    let late: Vec<f64> = central_difference(thrust_n, trace.grid.step_s).iter().map(|d| -d).collect();
+    let late = trace.weak(0, &late);
+    let turning = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
+    let [late_x, late_y, late_z] = [0, 1, 2].map(|axis| {
+        let column: Vec<f64> = turning.iter().map(|t| -t[axis]).collect();
+        trace.weak(0, &central_difference(&column, trace.grid.step_s))
+    });
+    // in yaw the rotors' inertia leads by as much as a latency lags: where the one is estimated, roll and pitch tell the
+    // other, and its error goes into the inertia's
+    let of_yaw = channels(trace, nothing(trace), [none(), none(), late_z.clone()]);
+    let spins_up = base.estimates(|term| term.signature.role.shortens_latency);
+    let late_torque = [late_x, late_y, if spins_up { none() } else { late_z }];
+    let both = channels(trace, [none(), none(), late.clone()], late_torque);
+    let considered = spins_up.then_some(of_yaw);
+    out.push(NuisanceColumn { considered, ..column(Nuisance::Latency, None, both) });
+    if trace.reads_force_twice() {
+        let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
+        values[SECOND + 2].clone_from(&late);
+        out.push(column(Nuisance::KinematicLatency, Some(KINEMATIC_LATENCY_STD_S), values));
+        out.push(lateral_latency(trace, thrust_n));
+    }
+    let late = channels(trace, [none(), none(), late], nothing(trace));
+    // where the gyroscopes' noise is fed back, the torques do not tell the latency as well as that
+    let unsure_s = if is_fed_back(std::slice::from_ref(trace)) { UNCONFIRMED_S } else { 0.0 };
+    out.push(column(Nuisance::ForceLatency, Some(FORCE_LATENCY_STD_S.hypot(unsure_s)), late));
+    out
+}
+
+/// A column of the whole flight.
+fn column(nuisance: Nuisance, prior_std: Option<f64>, values: Channels) -> NuisanceColumn {
+    NuisanceColumn { nuisance, values, prior_std, first_row: 0, considered: None }
+}
+
 /// The kinematics along body x and y as they come late: the force in the world changes as the thrust, N, turns with the body. It
 /// goes with the velocity as a drag does, the faster the motion the more.
 fn lateral_latency(trace: &Trace, thrust_n: &[f64]) -> NuisanceColumn {
@@ -106,13 +111,7 @@ fn lateral_latency(trace: &Trace, thrust_n: &[f64]) -> NuisanceColumn {
     let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
     values[SECOND] = trace.weak(0, &along_x);
     values[SECOND + 1] = trace.weak(0, &along_y);
-    NuisanceColumn {
-        nuisance: Nuisance::LateralLatency,
-        values,
-        prior_std: Some(LATERAL_LATENCY_STD_S),
-        first_row: 0,
-        considered: None,
-    }
+    column(Nuisance::LateralLatency, Some(LATERAL_LATENCY_STD_S), values)
 }
 
 /// The accelerometer's bias, and the level of the attitude for the kinematics, unless the base has an effect for it.
@@ -123,13 +122,7 @@ fn sensor_nuisances(trace: &Trace, mass_kg: f64, leans: bool) -> Vec<NuisanceCol
         for axis in 0..3 {
             let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
             values[axis].fill(mass_kg);
-            out.push(NuisanceColumn {
-                nuisance: Nuisance::AccelerometerBias(axis),
-                values,
-                prior_std,
-                first_row: 0,
-                considered: None,
-            });
+            out.push(column(Nuisance::AccelerometerBias(axis), prior_std, values));
         }
     }
     if trace.known.attitude && trace.known.velocity && !leans {
@@ -143,9 +136,7 @@ fn sensor_nuisances(trace: &Trace, mass_kg: f64, leans: bool) -> Vec<NuisanceCol
             for (slot, column) in trace.weak_vector(0, &leaning).into_iter().enumerate() {
                 values[first + slot] = column;
             }
-            let nuisance = Nuisance::Level(axis);
-            let prior_std = Some(LEVEL_STD_RAD);
-            out.push(NuisanceColumn { nuisance, values, first_row: 0, prior_std, considered: None });
+            out.push(column(Nuisance::Level(axis), Some(LEVEL_STD_RAD), values));
         }
     }
     out

@@ -40,28 +40,22 @@ pub fn search(
     let mut refused: Vec<&'static str> = Vec::new();
     loop {
         let price = Price::of(&after);
-        let mut passed;
+        let passed;
         (passed, last) = ranked(flights, (&after, price), gates, signatures, &refused);
         tracing::debug!(candidates = last.len(), taken = steps.len(), "candidates tested");
-        match passed.first().cloned() {
-            Some(taken) if steps.len() < gates.steps => {
-                let id = taken.candidate.id;
-                let Some((taken, fitted)) = accepted(flights, &after, taken)? else {
-                    tracing::debug!(effect = id, "effect refused");
-                    refused.push(id);
-                    continue;
-                };
-                after = fitted;
-                let mut step = Step { taken, rivals: passed.split_off(1) };
-                if let Some((taken, fitted)) =
-                    one_for_several(flights, &after, price, (gates, signatures, &refused))?
-                {
-                    after = fitted;
-                    // the others were rivals of what it replaces
-                    step = Step { taken, rivals: Vec::new() };
+        match passed.first() {
+            Some(best) if steps.len() < gates.steps => {
+                let id = best.candidate.id;
+                match taken(flights, &mut after, passed, (price, gates, signatures, &refused))? {
+                    Some(step) => {
+                        step.emit();
+                        steps.push(step);
+                    }
+                    None => {
+                        tracing::debug!(effect = id, "effect refused");
+                        refused.push(id);
+                    }
                 }
-                step.emit();
-                steps.push(step);
             }
             _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
@@ -85,6 +79,27 @@ pub fn search(
         ..found
     };
     Ok(Search { before, after, latency, steps, last })
+}
+
+/// Takes the best of the candidates into the model, or what stands for it and others of its kind; `None` where it is refused.
+fn taken(
+    flights: &[Trace],
+    after: &mut Fitted,
+    mut passed: Vec<Tested>,
+    (price, gates, signatures, refused): (Price, &Gates, &[&'static Signature], &[&'static str]),
+) -> Result<Option<Step>, PhysicsError> {
+    let rivals = passed.split_off(1);
+    let Some(best) = passed.pop() else { return Ok(None) };
+    let Some((taken, fitted)) = accepted(flights, after, best)? else { return Ok(None) };
+    *after = fitted;
+    Ok(Some(match one_for_several(flights, after, price, (gates, signatures, refused))? {
+        Some((taken, fitted)) => {
+            *after = fitted;
+            // the others were rivals of what it replaces
+            Step { taken, rivals: Vec::new() }
+        }
+        None => Step { taken, rivals },
+    }))
 }
 
 /// The candidates that pass the gates, by worth, and all that were tested. Mountings are tested where no effect passes.

@@ -98,8 +98,7 @@ fn is_ordinary(term: &EffectTerm, base: &Base) -> bool {
     let naming = &term.signature.naming;
     let of_all = || term.values.iter().map(|value| value * value).sum::<f64>().sqrt();
     let amounts = || term.signature.amounts.iter().filter_map(|&slot| term.values.get(slot));
-    let of_mass = || term.size() < naming.least_of_mass * base.vehicle.body.mass_kg;
-    naming.least_of_mass > 0.0 && of_mass()
+    term.size() < naming.least_of_mass * base.vehicle.body.mass_kg
         || naming.ordinary.is_some_and(|ordinary| term.size() < ordinary)
         || naming.least > 0.0 && of_all() < naming.least
         || naming.most.is_some_and(|most| amounts().any(|amount| *amount > most))

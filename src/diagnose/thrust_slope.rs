@@ -12,28 +12,42 @@ use crate::physics::Airframe;
 pub(super) fn may_be_noise(flights: &[Trace], fitted: &Fitted) -> bool {
     let Ok(airframe) = Airframe::new(&fitted.base.vehicle) else { return false };
     let mass_kg = fitted.base.vehicle.body.mass_kg;
-    let (mut commanded, mut measured, mut both) = (0.0, 0.0, 0.0);
+    let mut pairs: Vec<(f64, f64)> = Vec::new();
     for trace in flights {
         let thrust = trace.felt_n(&airframe, fitted.base.latency);
         let thrust: Vec<f64> = thrust.each().map(|rotors| rotors.iter().sum()).collect();
-        let Some(force) = trace.weak_specific_force().first() else { return false };
-        let (x, y) = (about_mean(trace.weak(0, &thrust)), about_mean(force[2].clone()));
-        for (x, y) in x.iter().zip(&y) {
-            let y = mass_kg * y;
-            commanded += x * x;
-            measured += y * y;
-            both += x * y;
-        }
+        let Some([.., force]) = trace.weak_specific_force().first() else { return false };
+        let measured = force.iter().map(|force| mass_kg * force).collect();
+        pairs.extend(about_mean(trace.weak(0, &thrust)).into_iter().zip(about_mean(measured)));
     }
-    both > 0.0 && lies_between(1.0, both / commanded, measured / both)
+    slopes(&pairs).is_some_and(|(least, greatest)| (least..=greatest).contains(&1.0))
 }
 
-fn lies_between(value: f64, one: f64, other: f64) -> bool {
-    (one.min(other)..=one.max(other)).contains(&value)
+/// Slopes of the second on the first of each pair, and of the first on the second turned around; `None` where they do not grow together.
+fn slopes(pairs: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let sum = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>();
+    let (first, second, both) = (sum(|(x, _)| x * x), sum(|(_, y)| y * y), sum(|(x, y)| x * y));
+    (both > 0.0).then(|| (both / first, second / both))
 }
 
 fn about_mean(mut values: Vec<f64>) -> Vec<f64> {
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     values.iter_mut().for_each(|value| *value -= mean);
     values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A slope of 1 with noise in both, by hand: sums of squares 10 and 10, of products 8.
+    #[test]
+    fn the_slope_lies_between_both_regressions() {
+        let noisy = [(2.0, 1.0), (1.0, 2.0), (-2.0, -1.0), (-1.0, -2.0)];
+        assert_eq!(slopes(&noisy), Some((0.8, 1.25)));
+        let exact = [(1.0, 0.8), (-1.0, -0.8)];
+        let (least, greatest) = slopes(&exact).unwrap();
+        assert!((least - 0.8).abs() < 1e-12 && (greatest - 0.8).abs() < 1e-12);
+        assert_eq!(slopes(&[(1.0, -1.0), (-1.0, 1.0)]), None);
+    }
 }

@@ -12,9 +12,9 @@ use super::quantity::QuantitySummary;
 pub struct Inspection {
     /// one or two sentences: what the log is good for and what to do next
     pub verdict: String,
-    /// why nothing can be identified whatever the vehicle is, and what to do: nothing was flown, or no stream shows it
+    /// nothing can be identified whatever the vehicle is: nothing was flown, or no stream shows it
     #[serde(skip)]
-    pub unflown: Option<String>,
+    pub unflown: Option<Unflown>,
     /// what to change about the next recording, the most important first
     pub advice: Vec<String>,
     /// whose log it is
@@ -385,4 +385,13 @@ pub struct Text {
     pub severity: u8,
     /// what
     pub text: String,
+}
+
+/// Why nothing can be identified whatever the vehicle is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unflown {
+    /// the reason, and what to do
+    pub why: String,
+    /// the reason is that no actuator outputs are logged: what a vehicle file expects of them says more
+    pub lacks_actuators: bool,
 }

@@ -29,7 +29,7 @@ mod window;
 pub use inspection::{
     ClockSummary, CsvReading, Excitation, FlightSummary, Inspection, ModeChange, OffsetSummary, Outlook,
     ParameterSummary, Reading, Segment, SenderSummary, StreamSummary, Text, TextSummary, Timeline,
-    TlogReading, VehicleSummary,
+    TlogReading, Unflown, VehicleSummary,
 };
 pub use onboard::{OnboardReading, TopicSummary};
 pub use quantity::{ExpectedParameter, QuantitySummary};

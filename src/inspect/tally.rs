@@ -325,14 +325,13 @@ impl Found {
         let clock = std::mem::take(&mut tally.clock).summary();
         let modes = self.modes_of();
         let foreseen = self.foreseen(&tally, &mut assessment, vehicle);
-        let missing_curve = tally.parameters.missing_curve(self.autopilot);
         let evidence = Evidence {
             streams: &self.streams,
             assessment: &assessment,
             vehicle,
             assumed: foreseen.as_ref().and_then(Foreseen::assumed),
             contradictions: foreseen.as_ref().map_or(&[], |foreseen| &foreseen.contradictions),
-            missing_curve,
+            missing_curve: tally.parameters.missing_curve(self.autopilot),
             kind: self.kind,
             armed: tally.timeline.armed_ever(),
             said_in_air_s: tally.timeline.said_in_air_s(),
@@ -353,12 +352,11 @@ impl Found {
             foreseen: foreseen.as_ref(),
             at_most: assessment.flight.usable_s > MOSTLY * most_s,
         });
-        let unflown = unflown(&evidence);
         let (verdict, mut advice) = verdict(&evidence, &identifiability, &self.vehicle);
         advice.extend(tally.parameters.notes(self.autopilot, &flown_s).iter().map(ToString::to_string));
         Inspection {
             verdict,
-            unflown,
+            unflown: unflown(&evidence),
             advice,
             vehicle: self.vehicle,
             clock,

@@ -1,7 +1,7 @@
 //! What a log is good for, in words, and what to do next.
 
 use super::evidence::Evidence;
-use super::inspection::{Outlook, VehicleSummary};
+use super::inspection::{Outlook, Unflown, VehicleSummary};
 use super::lacking::{SOUND_COPY, lack};
 use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION};
 use crate::autopilot::VehicleKind;
@@ -31,8 +31,8 @@ pub(super) fn verdict(
     (sentence(evidence, outlook), advice)
 }
 
-/// Why nothing can be identified whatever the vehicle is, and what to do.
-pub(super) fn unflown(evidence: &Evidence<'_>) -> Option<String> {
+/// Why nothing can be identified whatever the vehicle is.
+pub(super) fn unflown(evidence: &Evidence<'_>) -> Option<Unflown> {
     let nothing = evidence.nothing().filter(|_| evidence.is_unflown())?;
     // a list is for `inspect` alone
     let next = if evidence.streams.is_empty() {
@@ -40,7 +40,9 @@ pub(super) fn unflown(evidence: &Evidence<'_>) -> Option<String> {
     } else {
         instead_of_nothing(evidence)
     };
-    Some(format!("{nothing}. {next}"))
+    let lacks_actuators =
+        evidence.holds_streams() && evidence.grounded().is_none() && evidence.actuator_hz().is_none();
+    Some(Unflown { why: format!("{nothing}. {next}"), lacks_actuators })
 }
 
 fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {

@@ -277,3 +277,35 @@ fn coloured_std((slope, residual): (&[f64], &[f64]), instants: usize, informatio
     }
     variance.max(0.0).sqrt() / information
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rates of a vehicle that turns, each sample stamped late by this.
+    fn rates(period_s: f64, late_s: f64) -> Stream {
+        let time_s: Vec<f64> =
+            (0..1500).map(|index| f64::from(index) * period_s).take_while(|t| *t < 30.0).collect();
+        let at = |t: f64| [(3.0 * t).sin(), (2.1 * t + 0.4).cos(), 0.3 * (1.3 * t).sin()];
+        let values = time_s.iter().flat_map(|t| at(t - late_s)).collect();
+        Stream { time_s, width: 3, values }
+    }
+
+    #[test]
+    fn rates_of_another_message_are_as_late_as_their_stamps() {
+        let grid = Grid { start_s: 1.0, step_s: 0.02, count: 1400 };
+        let kernel = WeakKernel::new(0.2, grid.step_s);
+        let centers = kernel.centers(&vec![true; grid.count], 3);
+        let frame = AlignFrame { askew: false, grid: &grid, kernel: &kernel, centers: &centers };
+        for late_s in [-0.01, 0.0, 0.018] {
+            let found = rate_offset(&rates(0.02, late_s), &rates(0.04, 0.0), &frame).unwrap();
+            assert!(found.repaired && (found.late_s - late_s).abs() < 1e-4, "{late_s}: {found:?}");
+        }
+        // with a pause of the inertial unit nothing is known of it
+        let mut paused = rates(0.04, 0.0);
+        for time_s in paused.time_s.iter_mut().skip(400) {
+            *time_s += 1.0;
+        }
+        assert_eq!(rate_offset(&rates(0.02, 0.0), &paused, &frame), None);
+    }
+}

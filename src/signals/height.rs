@@ -53,6 +53,21 @@ mod tests {
     }
 
     #[test]
+    fn a_receiver_gives_the_position_where_no_pose_is_logged() {
+        let (pose, receiver) =
+            ((Quantity::Position, "vehicle_mocap_odometry"), (Quantity::GpsVelocity, "GPS_RAW_INT"));
+        for (streams, expected) in
+            [(&[receiver][..], true), (&[pose], false), (&[pose, receiver], false), (&[], false)]
+        {
+            // what gives the height says nothing of the axes
+            for parameters in [&[][..], &[("EKF2_HGT_REF", 0.0)]] {
+                let recording = with(streams, parameters, Autopilot::Px4);
+                assert_eq!(is_position_by_receiver(&recording), expected, "{streams:?}");
+            }
+        }
+    }
+
+    #[test]
     fn parameters_say_it_before_streams_do() {
         let estimate = (Quantity::Position, "vehicle_local_position");
         let pose = (Quantity::Position, "vehicle_mocap_odometry");

@@ -189,20 +189,8 @@ impl DataflashWriter {
             numbers(into, &XKF1, [time_us, 0.0, roll, pitch, yaw, vn, ve, vd, vd, pn, pe, pd]);
         }
         if rates.satellites.is_due(now, period) {
-            let ([vn, ve, vd], [latitude, longitude, height_m]) = (at.velocity_m_s, at.on_earth);
-            let course = ve.atan2(vn).to_degrees().rem_euclid(360.0);
-            let speed = vn.hypot(ve);
-            let [week, of_week_ms] = at.gps_time;
-            let (fix, count) = (3.0, 14.0);
-            numbers(
-                into,
-                &GPS,
-                [
-                    time_us, 0.0, fix, of_week_ms, week, count, latitude, longitude, height_m, speed, course,
-                    vd,
-                ],
-            );
-            numbers(into, &BARO, [time_us, 0.0, height_m]);
+            satellites(into, at);
+            numbers(into, &BARO, [time_us, 0.0, at.on_earth[2]]);
         }
         if rates.targets.is_due(now, period) && at.armed {
             for (axis, form) in [PSCN, PSCE, PSCD].iter().enumerate() {
@@ -236,6 +224,20 @@ impl DataflashWriter {
             numbers(into, &MODE, [at.time_us, number, number, 0.0]);
         }
     }
+}
+
+/// A fix in three dimensions by fourteen satellites.
+fn satellites(into: &mut Vec<u8>, at: &Moment) {
+    const FIX_3D: f64 = 3.0;
+    const COUNT: f64 = 14.0;
+    let ([vn, ve, vd], [latitude, longitude, height_m]) = (at.velocity_m_s, at.on_earth);
+    let (speed, course) = (vn.hypot(ve), ve.atan2(vn).to_degrees().rem_euclid(360.0));
+    let [week, of_week_ms] = at.gps_time;
+    let [time_us, instance] = [at.time_us, 0.0];
+    let fix = [
+        time_us, instance, FIX_3D, of_week_ms, week, COUNT, latitude, longitude, height_m, speed, course, vd,
+    ];
+    numbers(into, &GPS, fix);
 }
 
 /// Attitude and rates, and what was asked of them.
