@@ -1,5 +1,5 @@
-//! Flights whose log is too slow to compare torques with the motion, as both autopilots write by default: forces alone are
-//! used, and what needs torques is not determined.
+//! Flights whose log is too slow to compare torques with the motion, as both autopilots write by default: forces are used, and
+//! torques averaged over seconds, which tell what acts always.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
@@ -69,7 +69,7 @@ fn mass_is_determined_and_inertia_is_not() {
     let signals = conditioned(&slow(flown(Vec::new()), 10.0)).unwrap();
     assert!(!signals.quality.torques);
     let note = &signals.quality.notes[0];
-    assert!(note.is_warning() && note.text.contains("Forces alone are used"), "{note}");
+    assert!(note.is_warning() && note.text.contains("torques averaged over seconds"), "{note}");
     let found = identify(&[signals], &pair().nominal, &IdentifySettings::default()).unwrap();
     let [mass, inertia @ ..] = &found.best.result.parameters;
     let Finding::Determined { value, std } = mass.finding else { panic!("{mass:?}") };
@@ -104,7 +104,35 @@ fn drag_is_named_with_its_size() {
     }
 }
 
-/// Forces alone tell neither the latency from command to rotor nor which rotor is weak.
+fn parameter(found: &Explanation, effect: &str, parameter: &str) -> (f64, f64) {
+    let [named] = &found.named[..] else { panic!("{:?}, {:?}", found.named, found.slight) };
+    assert_eq!((named.id, found.verdict), (effect, Verdict::Explained));
+    let of = named.get(parameter).unwrap();
+    (of.value, of.std)
+}
+
+#[test]
+fn a_weak_rotor_is_named_by_averaged_torques() {
+    let size = pair().truth.size();
+    let concealed = [("rotor", 2.0), ("factor", 0.92)];
+    let found = explained(vec![ActiveEffect::named("weak_rotor", &concealed, &size).unwrap()]);
+    assert_eq!(found.named[0].value("rotor"), 2.0);
+    let (factor, std) = parameter(&found, "weak_rotor", "factor");
+    assert!((factor - 0.92).abs() < 3.0 * std && std < 0.01, "{factor} +- {std}");
+}
+
+#[test]
+fn a_centre_of_mass_is_named_by_averaged_torques() {
+    let size = pair().truth.size();
+    let concealed = [("x", 0.006), ("y", -0.004), ("z", 0.0)];
+    let found = explained(vec![ActiveEffect::named("com_offset", &concealed, &size).unwrap()]);
+    for (axis, truth_m) in [("x", 0.006), ("y", -0.004)] {
+        let (value, std) = parameter(&found, "com_offset", axis);
+        assert!((value - truth_m).abs() < 3.0 * std && std < 0.001, "{axis}: {value} +- {std}");
+    }
+}
+
+/// Forces and averaged torques do not tell the latency from command to rotor.
 #[test]
 fn what_needs_torques_is_not_determined_together_with_the_rigid_body() {
     let signals = conditioned(&slow(flown(Vec::new()), 10.0)).unwrap();
@@ -124,7 +152,7 @@ fn what_needs_torques_is_not_determined_together_with_the_rigid_body() {
     assert!(reason("motor_lag", "time_constant").contains("forces alone do not tell it"));
     assert!(!reason("linear_drag", "at_hubs").is_empty());
     assert!(found.acting.iter().all(|effect| effect.effect().id() != "motor_lag"));
-    let refused = identified(&["weak_rotor"]).unwrap_err().to_string();
+    let refused = identified(&["angular_damping"]).map(|_| ()).unwrap_err().to_string();
     assert!(refused.contains("fast actuator commands and body rates"), "{refused}");
 }
 

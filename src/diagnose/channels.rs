@@ -1,5 +1,6 @@
 //! One value a row for each axis of force and torque, and the nuisance columns that are always estimated.
 
+use super::averaged::averaged;
 use super::trace::Trace;
 
 /// One value a row and channel.
@@ -86,21 +87,28 @@ impl NuisanceColumn {
     }
 }
 
-/// Channels of the force in each available measurement (N), and of the torque (N m) where torques are compared.
+/// Channels of the force in each available measurement (N), and of the torque (N m): of each row, or averaged where commands or
+/// body rates are slow.
 pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
+    let torque = if trace.torques { torque } else { averaged(trace, torque) };
+    let mut out = force_channels(trace, force);
+    out[3..AXES].iter_mut().zip(torque).for_each(|(channel, torque)| *channel = torque);
+    out
+}
+
+/// Channels of the force in each available measurement (N), at any of the rows, without a torque.
+pub(super) fn force_channels(trace: &Trace, force: [Vec<f64>; 3]) -> Channels {
     let rows = force[0].len();
-    let nothing = || std::array::from_fn(|_| vec![0.0; rows]);
-    let torque = if trace.torques { torque } else { nothing() };
-    let second = if trace.reads_force_twice() { force.clone() } else { nothing() };
-    let ([fx, fy, fz], [tx, ty, tz], [kx, ky, kz]) = (force, torque, second);
-    [fx, fy, fz, tx, ty, tz, kx, ky, kz]
+    let nothing = || vec![0.0; rows];
+    let second = if trace.reads_force_twice() { force.clone() } else { std::array::from_fn(|_| nothing()) };
+    let ([fx, fy, fz], [kx, ky, kz]) = (force, second);
+    [fx, fy, fz, nothing(), nothing(), nothing(), kx, ky, kz]
 }
 
 /// Whether a flight measures a channel. The others are zero.
 pub(super) fn measures(trace: &Trace, channel: usize) -> bool {
     match channel {
-        0..3 => true,
-        3..AXES => trace.torques,
+        0..AXES => true,
         _ => trace.reads_force_twice(),
     }
 }

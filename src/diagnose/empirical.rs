@@ -2,7 +2,7 @@
 //!
 //! The term is no mechanism. It is valid inside the flown range and zero outside.
 
-use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing};
+use super::channels::{Channels, Nuisance, SECOND, append, force_channels};
 use super::evidence::weighted;
 use super::explain::ExplainSettings;
 use super::explanation::{Explanation, Verdict};
@@ -158,7 +158,7 @@ impl Empirical {
     pub fn left_of(&self, fitted: &Fitted, traces: &[Trace], channel: usize) -> Vec<f64> {
         let mut own = Channels::default();
         for trace in traces {
-            append(&mut own, &channels(trace, self.weak_force(trace), nothing(trace)));
+            append(&mut own, &force_channels(trace, self.weak_force(trace)));
         }
         let sigma = &fitted.weighted.sigma;
         let share = fitted.weighted.project(&weighted(&own, sigma));
@@ -274,7 +274,7 @@ fn columns(traces: &[Trace], along: Along, knots: &[f64]) -> Vec<Channels> {
                     })
                     .collect();
                 let force = trace.weak_vector(0, &force);
-                append(&mut out[3 * knot + axis], &channels(trace, force, nothing(trace)));
+                append(&mut out[3 * knot + axis], &force_channels(trace, force));
             }
         }
     }

@@ -193,9 +193,9 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
         None => {}
     }
     let a_field = field.as_ref().is_some_and(|field| field.certain);
-    // what is large only of a torque that hardly anything took is noise
-    let (axes, aperiodic) =
-        if too_little_excitation { (0..3, aperiodic.of_forces()) } else { (0..AXES, aperiodic) };
+    // what is large only of a torque that hardly anything took, or that commands too far apart give, is noise
+    let by_forces = too_little_excitation || !found.after.rows.compares_torques;
+    let (axes, aperiodic) = if by_forces { (0..3, aperiodic.of_forces()) } else { (0..AXES, aperiodic) };
     let lacking = lack.as_ref().is_some_and(|lack| is_lacking(lack, &found.after, axes))
         || a_field
         || aperiodic.is_lacking();
@@ -281,7 +281,7 @@ fn names(traces: &[Trace], found: &Search) -> (Vec<Named>, Vec<Slight>) {
             };
             let is_amount = free && present.is_amount(slot);
             let std = if is_amount { std.hypot(present.signature.naming.least_std) } else { std };
-            let is_shown = fitted.rows.compares_torques() || !present.is_share_at_hubs(slot);
+            let is_shown = fitted.rows.compares_torques || !present.is_share_at_hubs(slot);
             if is_shown && (free || (present.signature.naming.says)(present, slot)) {
                 let value = present.values[slot];
                 parameters.push(NamedParameter { name: parameter.name, value, std, unit: parameter.unit });

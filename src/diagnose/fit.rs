@@ -224,7 +224,7 @@ pub(super) fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
             index += 1;
         }
     }
-    base.bring_to_scale(fitted.rows.compares_torques());
+    base.bring_to_scale(fitted.rows.compares_torques);
     most
 }
 

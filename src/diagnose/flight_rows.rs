@@ -103,7 +103,7 @@ pub(super) fn residual(trace: &Trace, base: &Base, model: &Model, along: &Along)
                 *value = base.vehicle.body.mass_kg * reading[axis][row] - *value;
             }
         }
-        for (row, value) in out[3 + axis].iter_mut().enumerate().filter(|_| trace.torques) {
+        for (row, value) in out[3 + axis].iter_mut().enumerate() {
             let turning: f64 = (0..6).map(|k| momentum[k][axis][row] * six[k]).sum();
             *value = turning - *value;
         }

@@ -198,7 +198,7 @@ fn look_alikes(flights: &[Trace]) -> Vec<EffectTerm> {
 pub fn finding_of(fitted: &Fitted) -> LatencyFinding {
     let index = fitted.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Latency);
     let std_s = index
-        .filter(|_| fitted.rows.compares_torques())
+        .filter(|_| fitted.rows.compares_torques)
         .map_or(f64::INFINITY, |index| fitted.covariance[(index, index)].max(0.0).sqrt());
     LatencyFinding {
         total_s: fitted.base.latency.total_s(),

@@ -2,6 +2,7 @@
 
 mod acceptance;
 mod along;
+mod averaged;
 mod base;
 mod candidates;
 mod channels;

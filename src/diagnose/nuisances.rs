@@ -1,7 +1,7 @@
 //! Columns that are in every fit: properties that no vehicle file states exactly, and errors of sensors.
 
 use super::base::Base;
-use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels, nothing};
+use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels, force_channels, nothing};
 use super::fed_back::{UNCONFIRMED_S, is_fed_back};
 use super::rotors::RotorMotion;
 use super::trace::Trace;
@@ -33,7 +33,9 @@ pub(super) fn nuisances(
     by_commands_n: &[Vector3<f64>],
 ) -> Vec<NuisanceColumn> {
     let none = || vec![0.0; trace.rows()];
-    let force = |values: [Vec<f64>; 3]| channels(trace, values, nothing(trace));
+    let force = |values: [Vec<f64>; 3]| force_channels(trace, values);
+    // averaged torques tell what acts always, not how the vehicle turns
+    let torque = |values: [Vec<f64>; 3]| if trace.torques { values } else { nothing(trace) };
     let mass_kg = base.vehicle.body.mass_kg;
     let mut out = Vec::new();
     // more mass than assumed: more force than assumed was there, in proportion to it
@@ -41,7 +43,7 @@ pub(super) fn nuisances(
     out.push(column(Nuisance::Mass, None, force(trace.weak_vector(0, &forces))));
     for (entry, axes) in trace.momentum().iter().enumerate() {
         let values = axes.each_ref().map(|values| values.iter().map(|v| -v).collect::<Vec<f64>>());
-        out.push(column(Nuisance::Inertia(entry), None, channels(trace, nothing(trace), values)));
+        out.push(column(Nuisance::Inertia(entry), None, channels(trace, nothing(trace), torque(values))));
     }
     let thrust: Vec<f64> = commanded.thrust_n.each().map(|thrusts| thrusts.iter().sum::<f64>()).collect();
     out.extend(latencies(trace, base, &thrust));
@@ -55,7 +57,8 @@ pub(super) fn nuisances(
     if let Some(jitter) = &trace.jitter(&base.vehicle.propulsion) {
         let channel =
             |row: usize| trace.weak(0, &jitter.iter().map(|jitter| -jitter[row]).collect::<Vec<f64>>());
-        let values = channels(trace, [none(), none(), channel(0)], [channel(1), channel(2), channel(3)]);
+        let torques = torque([channel(1), channel(2), channel(3)]);
+        let values = channels(trace, [none(), none(), channel(0)], torques);
         out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
     }
     out.extend(sensor_nuisances(trace, mass_kg, base.stands_for(Nuisance::Level(0))));
@@ -78,7 +81,11 @@ fn latencies(trace: &Trace, base: &Base, thrust_n: &[f64]) -> Vec<NuisanceColumn
     // other, and its error goes into the inertia's
     let of_yaw = channels(trace, nothing(trace), [none(), none(), late_z.clone()]);
     let spins_up = base.estimates(|term| term.signature.role.shortens_latency);
-    let late_torque = [late_x, late_y, if spins_up { none() } else { late_z }];
+    let late_torque = match (trace.torques, spins_up) {
+        (false, _) => nothing(trace),
+        (true, true) => [late_x, late_y, none()],
+        (true, false) => [late_x, late_y, late_z],
+    };
     let both = channels(trace, [none(), none(), late.clone()], late_torque);
     let considered = spins_up.then_some(of_yaw);
     out.push(NuisanceColumn { considered, ..column(Nuisance::Latency, None, both) });
@@ -88,7 +95,7 @@ fn latencies(trace: &Trace, base: &Base, thrust_n: &[f64]) -> Vec<NuisanceColumn
         out.push(column(Nuisance::KinematicLatency, Some(KINEMATIC_LATENCY_STD_S), values));
         out.push(lateral_latency(trace, thrust_n));
     }
-    let late = channels(trace, [none(), none(), late], nothing(trace));
+    let late = force_channels(trace, [none(), none(), late]);
     // where the gyroscopes' noise is fed back, the torques do not tell the latency as well as that
     let unsure_s = if is_fed_back(std::slice::from_ref(trace)) { UNCONFIRMED_S } else { 0.0 };
     out.push(column(Nuisance::ForceLatency, Some(FORCE_LATENCY_STD_S.hypot(unsure_s)), late));

@@ -316,7 +316,7 @@ fn replaced(
     }
     base.vehicle = settled.vehicle;
     base.vehicle.body.mass_kg = fitted.base.vehicle.body.mass_kg / scale;
-    let by_force = base.bring_to_scale(fitted.rows.compares_torques());
+    let by_force = base.bring_to_scale(fitted.rows.compares_torques);
     let mut after = evaluate(traces, base)?;
     put_covariance(&mut after, &sizes, (scale, by_force), covariance);
     Ok(Ok(after))

@@ -19,7 +19,7 @@ pub enum Need {
     Frame,
     /// battery voltage
     Voltage,
-    /// commands and body rates fast enough to compare torques, in one of the flights
+    /// commands and body rates fast enough to compare torques row by row, in one of the flights
     Torques,
     /// the effect has a time in one flight
     OneFlight,

@@ -8,7 +8,7 @@
 use super::along::{PartAlong, each_along};
 use super::base::Base;
 use super::channels::{
-    AXES, CHANNELS, Channels, Nuisance, NuisanceColumn, append, channels, joined, measures, nothing, per_step,
+    CHANNELS, Channels, Nuisance, NuisanceColumn, append, channels, joined, measures, nothing, per_step,
 };
 use super::flight_rows::{Along, Part, one_flight, residual};
 use super::rotors::RotorMotion;
@@ -36,6 +36,8 @@ pub struct Rows {
     pub nuisances: Vec<NuisanceColumn>,
     /// one for each free parameter of the base's effects, in order
     pub effects: Vec<Channels>,
+    /// in one of the flights, torques are compared row by row, not only on average
+    pub compares_torques: bool,
     /// N m, root mean square of the torque that the motion needs, about body x, y, z
     pub torque_rms: [f64; 3],
     /// data for further columns about the same base
@@ -63,6 +65,7 @@ impl Rows {
             residual: Default::default(),
             nuisances: Vec::new(),
             effects: Vec::new(),
+            compares_torques: flights.iter().any(|trace| trace.torques),
             torque_rms: [0.0; 3],
             flights: Vec::new(),
             known_motion: known_motion.clone(),
@@ -110,6 +113,7 @@ impl Rows {
             residual: self.residual.clone(),
             nuisances: kept.cloned().collect(),
             effects: self.effects.clone(),
+            compares_torques: self.compares_torques,
             torque_rms: self.torque_rms,
             flights: Vec::new(),
             known_motion: None,
@@ -126,12 +130,6 @@ impl Rows {
     #[must_use]
     pub fn count_of(&self, channel: usize) -> usize {
         self.measured[channel].iter().map(ExactSizeIterator::len).sum()
-    }
-
-    /// Whether any flight's torques are compared.
-    #[must_use]
-    pub fn compares_torques(&self) -> bool {
-        (3..AXES).any(|channel| self.count_of(channel) > 0)
     }
 
     /// No rows at all.

@@ -24,6 +24,7 @@ pub(in super::super) fn rows_of(
         residual,
         nuisances,
         effects,
+        compares_torques: true,
         torque_rms: [1.0; 3],
         flights: Vec::new(),
         known_motion: None,

@@ -1,6 +1,7 @@
 //! One flight for the weak form: measured states, and the rotor thrusts in two versions, from commands and from the
 //! motion.
 
+use super::averaged::averaged;
 use super::instruments::{Instruments, instruments};
 use super::momentum::momentum_rows;
 use super::rotors::{OfRotors, RotorMotion, felt, filtered};
@@ -35,7 +36,7 @@ pub struct Trace {
     pub states: Series<State>,
     /// parts of the state that are measured
     pub known: Known,
-    /// commands and body rates are fast enough to compare torques; otherwise torque channels are zero
+    /// commands and body rates are fast enough to compare torques row by row; otherwise they are averaged over seconds
     pub torques: bool,
     /// V
     pub voltage_v: Option<Series<f64>>,
@@ -249,7 +250,10 @@ impl Trace {
             let measured = self.specific_force_m_s2.as_ref().map(|force| self.weak_vector(0, force));
             let specific_force = measured.into_iter().chain(self.weak_kinematic()).collect();
             let rates: Vec<Vector3<f64>> = self.states.iter().map(|state| state.rates_rad_s).collect();
-            let momentum = momentum_rows(&rates, |order, series| self.weak(order, series));
+            let mut momentum = momentum_rows(&rates, |order, series| self.weak(order, series));
+            if !self.torques {
+                momentum = momentum.map(|axes| averaged(self, axes));
+            }
             WeakMotion { specific_force, momentum }
         })
     }

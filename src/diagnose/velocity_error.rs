@@ -12,7 +12,7 @@
 
 use super::along::wrench_along;
 use super::base::Base;
-use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels};
+use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, force_channels};
 use super::rotors::RotorMotion;
 use super::trace::Trace;
 use crate::physics::Model;
@@ -122,8 +122,7 @@ impl Knots {
         let hat: Vec<f64> = reach.clone().map(|index| self.hat(knot, trace.grid.time_s(index))).collect();
         let force: Vec<Vector3<f64>> =
             slope[reach].iter().zip(&hat).map(|(slope, hat)| slope * *hat).collect();
-        let no_torque = std::array::from_fn(|_| vec![0.0; rows.len()]);
-        let mut out = channels(trace, trace.weak_vector_in(0, &force, &rows), no_torque);
+        let mut out = force_channels(trace, trace.weak_vector_in(0, &force, &rows));
         let Some(first) = kinematic(trace) else { return out };
         let error: Vec<Vector3<f64>> = hat.iter().map(|hat| Vector3::z() * *hat).collect();
         let turned = trace.weak_acceleration(&error, &Vector3::zeros(), &rows);

@@ -42,9 +42,11 @@ fn needs(quantity: &str) -> &'static [Need] {
     match quantity {
         "mass" => &[COMMANDS, Need::Force, Need::TurningIfThere(LEAST_FORCE_HZ)],
         "thrust_curve" => &[COMMANDS, TURNING, Need::Force],
+        // they act always: averaged torques tell them
+        "centre_of_mass" | "rotor_efficiency" => &[COMMANDS, TURNING],
         "drag" | "wind" => &[COMMANDS, TURNING, Need::Force, Need::Velocity],
         "voltage_sag" => &[COMMANDS, TURNING, Need::Force, Need::Voltage],
-        // they act through torques
+        // they act through torques as the vehicle turns
         _ => &[Need::Commands(LEAST_TORQUE_HZ), Need::Turning(LEAST_TORQUE_HZ)],
     }
 }

@@ -121,7 +121,7 @@ pub struct Quality {
     pub airborne_s: Vec<(f64, f64)>,
     /// time that each rule of the mask left out
     pub usable: Usable,
-    /// commands and body rates are fast enough to compare torques with the motion; otherwise only forces are compared
+    /// commands and body rates are fast enough to compare torques with the motion; otherwise forces are compared, and torques on average
     pub torques: bool,
     /// whether motion capture or a camera gives the height, or else satellites and air pressure; `None` where it is not known
     pub height_by_pose: Option<bool>,

@@ -67,7 +67,7 @@ pub(super) type Needed<'a> = (&'static str, &'static str, &'a Stream, f64);
 /// What the rates of a flight's streams are good for.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sufficiency {
-    /// fast enough to compare torques with the motion; otherwise forces alone
+    /// fast enough to compare torques with the motion; otherwise forces, and torques on average
     pub(super) torques: bool,
     /// on streams that are slow
     pub(super) note: Option<Note>,
@@ -111,8 +111,9 @@ fn slow_note(slow: &str) -> Note {
 fn forces_note(slow: &str, logging: Option<&str>) -> Note {
     let set = logging.map_or_else(String::new, |set| format!(": for the log that the vehicle writes, {set}"));
     let text = format!(
-        "sampled too slowly to compare torques with the motion: {slow}. Forces alone are used: inertia, damping, centre \
-         of mass and lag cannot be determined. 100 Hz of each is good{set}"
+        "sampled too slowly to compare torques with the motion: {slow}. Forces are used, and torques averaged over seconds: they \
+         tell a weak rotor and a centre of mass that is off, but inertia, damping and lag cannot be determined. 100 Hz of each \
+         is good{set}"
     );
     Note::warning(About::Sensors, text)
 }
@@ -145,7 +146,7 @@ mod tests {
         let flight = [(10.0, 50.0)];
         let found = check(&[needed("body rates", &good), outputs], &flight, Autopilot::Px4).unwrap();
         let said = found.note.unwrap().text;
-        assert!(!found.torques && said.contains("Forces alone are used"), "{said}");
+        assert!(!found.torques && said.contains("torques averaged over seconds"), "{said}");
         assert!(said.contains("actuator outputs (SERVO_OUTPUT_RAW) at 9.5 Hz, expected 38 Hz"), "{said}");
         assert!(!said.contains("body rates (ATTITUDE)"), "{said}");
         assert!(said.contains("set SDLOG_PROFILE = 9"), "{said}");

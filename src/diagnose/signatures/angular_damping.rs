@@ -1,5 +1,6 @@
 //! Signature: damping of the rotation.
 
+use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Form, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::axes;
@@ -8,6 +9,7 @@ use crate::vehicle::Vehicle;
 
 /// Damping of the rotation.
 pub static SIGNATURE: Signature = Signature {
+    needs: &[Need::Torques],
     forms: |_| forms(),
     naming: Naming { usual, ..Naming::PLAIN },
     role: Role { like_latency: Some(|| SIGNATURE.whole()), ..Role::NONE },

@@ -14,7 +14,7 @@ const ABOUT_M_S: f64 = 1.0;
 
 /// A moment at the rotors' hubs by the airspeed across their axes.
 pub static SIGNATURE: Signature = Signature {
-    needs: &[Need::Velocity],
+    needs: &[Need::Velocity, Need::Torques],
     forms: |_| vec![SIGNATURE.form(&[0.0], &[0])],
     naming: Naming { is_ordinary, ..Naming::PLAIN },
     role: Role { of_air: true, ..Role::NONE },

@@ -1,11 +1,13 @@
 //! Signature: the rotors' own inertia.
 
+use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::RotorInertia;
 
 /// The rotors' own inertia.
 pub static SIGNATURE: Signature = Signature {
+    needs: &[Need::Torques],
     forms: |_| vec![SIGNATURE.form(&[0.0], &[0])],
     // and no force of the room, which position and velocity tell of, looks like it
     naming: Naming { ubiquitous: true, ..Naming::PLAIN },

@@ -1,7 +1,7 @@
 //! Signature: a rotor that is weaker than the others.
 
 use crate::diagnose::named::Named;
-use crate::diagnose::recorded::{Need, Recorded};
+use crate::diagnose::recorded::Recorded;
 use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, Role, Signature, Whence};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words;
@@ -25,8 +25,6 @@ const BETWEEN_SAMPLES: f64 = 0.001;
 /// A rotor that is weaker than the others.
 pub static SIGNATURE: Signature = Signature {
     nothing: 1.0,
-    // in the force, one rotor is like another
-    needs: &[Need::Torques],
     forms: |recorded| {
         let rotors = terms(recorded.vehicle.rotors.len()).into_iter();
         rotors.map(|term| Form { term, instead_of_nuisance: false }).collect()
