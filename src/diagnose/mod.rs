@@ -32,6 +32,7 @@ pub mod joint;
 mod kinematic;
 mod latency;
 mod latency_name;
+mod left_over;
 mod limits;
 pub mod locate;
 mod materiality;

@@ -5,6 +5,7 @@ use super::fed_back::is_fed_back;
 use super::felt::{Felt, shows_in_forces};
 use super::fit::{Fitted, Newton, fit};
 use super::floors::{FORM, add_floors};
+use super::left_over::add_left_over;
 use super::limits::is_beyond_showing;
 use super::named::Strength;
 use super::physical::make_physical;
@@ -35,15 +36,19 @@ pub(super) fn settle(
     found: &mut Search,
 ) -> Result<(), PhysicsError> {
     leave_out_unnamed(traces, found)?;
+    let mut by_instruments = false;
     for left in (0..SETTLINGS).rev() {
         tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, traces, found))?;
         if is_fed_back(traces) {
-            tracing::info_span!("instruments")
+            by_instruments = tracing::info_span!("instruments")
                 .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
         }
         if left == 0 || !leave_out_unnamed(traces, found)? {
             break;
         }
+    }
+    if !by_instruments {
+        add_left_over(&mut found.after);
     }
     add_floors(&mut found.after);
     found.latency.std_s = found.latency.std_s.hypot(FORM * found.latency.total_s);

@@ -8,6 +8,7 @@ use super::columns::Columns;
 use super::evidence::weighted;
 use super::fit::{CONVERGED, Fitted, Newton, PASSES, linearised, step};
 use super::hausman::differ;
+use super::left_over::of_left_over;
 use super::trace::Trace;
 use crate::estimate::Estimated;
 use crate::physics::PhysicsError;
@@ -17,8 +18,8 @@ use std::ops::Range;
 /// Places of the moments of inertia in [`Estimated::theta`].
 const MOMENTS: [usize; 3] = [1, 4, 6];
 
-/// Inertia and damping of a model as instruments tell them, where least squares contradicts them. The latency of the model and
-/// its standard error, s, are known.
+/// Inertia and damping of a model as instruments tell them, where least squares contradicts them or is the less certain. The
+/// latency of the model and its standard error, s, are known. Returns whether the instruments hold.
 ///
 /// # Errors
 /// [`PhysicsError`] where the base is not physical.
@@ -26,18 +27,19 @@ pub(super) fn torques_by_instruments(
     flights: &[Trace],
     latency_std_s: f64,
     fitted: &mut Fitted,
-) -> Result<(), PhysicsError> {
-    let Some(mut by) = fit_by_instruments(flights, fitted, Newton::Held)? else { return Ok(()) };
+) -> Result<bool, PhysicsError> {
+    let Some(mut by) = fit_by_instruments(flights, fitted, Newton::Held)? else { return Ok(false) };
     if let Some(brings) = brought_by_latency(flights, &by).filter(|_| latency_std_s.is_finite()) {
         by.covariance += &brings * brings.transpose() * latency_std_s.powi(2);
     }
     let (plain, told) = (fitted.rigid_body(), by.rigid_body());
-    let contradicts = |at: usize| {
+    let left_over = of_left_over(fitted);
+    let contradicts = |(at, left_over): (usize, f64)| {
         let variance = |body: &Estimated| body.covariance[(at, at)];
-        differ(told.theta[at] - plain.theta[at], variance(&plain), variance(&told))
+        differ(told.theta[at] - plain.theta[at], variance(&plain) + left_over, variance(&told))
     };
-    if !MOMENTS.into_iter().any(contradicts) {
-        return Ok(());
+    if !MOMENTS.into_iter().zip(left_over).any(contradicts) {
+        return Ok(false);
     }
     let places: Vec<usize> =
         (0..by.covariance.nrows()).filter(|&place| by.covariance[(place, place)] > 0.0).collect();
@@ -51,7 +53,7 @@ pub(super) fn torques_by_instruments(
         }
     }
     *fitted = after;
-    Ok(())
+    Ok(true)
 }
 
 /// The fit with inertia, latency and what damps the rotation by instruments, iterated; `None` where they cannot be had so.
