@@ -24,7 +24,7 @@ fn main() {
     let failed = outcomes.iter().filter(|o| o.is_none()).count();
     let rows: Vec<(Row, Method)> = outcomes.into_iter().flatten().collect();
     println!("{} flights identified, {failed} not flown (trajectory beyond the vehicle)", rows.len());
-    for method in [Method::Weak, Method::WeakRobust, Method::WeakIv, Method::Ls, Method::Fmls] {
+    for method in [Method::Weak, Method::Ls, Method::Fmls] {
         report(method.name(), &rows, |row, _| row.iter().find(|(m, _)| *m == method).map(|(_, r)| *r));
     }
     report("best", &rows, |row, best| row.iter().find(|(m, _)| *m == best).map(|(_, r)| *r));

@@ -14,6 +14,7 @@ use mavid::physics::RigidBodyModel;
 use mavid::recording::{Quantity, Recording};
 use mavid::signals::{ConditionSettings, SignalsError, ThrustPreference, condition};
 use mavid::simulate::pid::{PidFlightSettings, simulate_pid_flight};
+use mavid::study::{self, IdentifyRequest, Silent};
 use mavid::vehicle::{Anchor, RigidBody, Vehicle};
 use nalgebra::{SVector, Vector3};
 use std::path::{Path, PathBuf};
@@ -208,21 +209,21 @@ fn the_autopilots_masses_from_pulse_widths() {
     let Some(shared) = support::shared() else { return };
     let folder = shared.join("recordings/autopilots");
     for (log, vehicle, mass_kg, weak) in [
-        ("ap_baseline.tlog", "ardupilot-quad.toml", 3.0, None),
-        ("ap_wind5E.tlog", "ardupilot-quad.toml", 3.0, None),
-        ("px4_baseline.tlog", "px4-sih.toml", 1.0, None),
-        ("px4_motor1_85.tlog", "px4-sih.toml", 1.0, Some(("front_right", 0.85))),
+        ("ap_baseline.tlog", "ardupilot-quad.toml", 3.0, false),
+        ("ap_wind5E.tlog", "ardupilot-quad.toml", 3.0, false),
+        ("px4_baseline.tlog", "px4-sih.toml", 1.0, false),
+        ("px4_motor1_85.tlog", "px4-sih.toml", 1.0, true),
     ] {
-        let found = from_files(&folder.join(log), &folder.join(vehicle));
-        assert!((mass_of(&found) / mass_kg - 1.0).abs() < 0.02, "{log}: {}", mass_of(&found));
-        match (&found.weak_rotor, weak) {
-            (None, None) => {}
-            (Some(found), Some((name, factor))) => {
-                assert_eq!(found.name, name);
-                assert!((found.factor - factor).abs() < 0.02, "{found:?}");
-            }
-            (found, weak) => unreachable!("{log}: {found:?} for {weak:?}"),
-        }
+        let request = IdentifyRequest {
+            logs: vec![folder.join(log)],
+            vehicle: folder.join(vehicle).into(),
+            ..IdentifyRequest::default()
+        };
+        let study = study::identify(&request, &Silent).unwrap();
+        let mass = study.body().estimated.theta[0];
+        assert!((mass / mass_kg - 1.0).abs() < 0.02, "{log}: {mass}");
+        assert_eq!(study.identification.best.method, Method::Joint);
+        assert_eq!(study.beside.contains(&"weak_rotor"), weak, "{log}: {:?}", study.beside);
     }
 }
 

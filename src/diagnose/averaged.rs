@@ -1,28 +1,16 @@
 //! Torques of flights whose commands or body rates are logged too seldom to compare them row by row: averaged over seconds, they
 //! still tell what acts always, such as a weak rotor or a centre of mass that is off.
 
-use super::trace::Trace;
 use std::ops::Range;
 
 /// Time over which torques are averaged, s: at least sixteen samples of commands that are just fast enough for forces. Chosen; not
 /// measured.
 const AVERAGED_S: f64 = 2.0;
 
-/// Each row's mean with those of the run around it, N m, body.
-pub(super) fn averaged(trace: &Trace, torque: [Vec<f64>; 3]) -> [Vec<f64>; 3] {
-    let half = rows_a_side(trace);
-    torque.map(|axis| running_mean(&axis, &trace.runs, half))
-}
-
-/// Rows on each side that are averaged with one.
-fn rows_a_side(trace: &Trace) -> usize {
-    match trace.centers[..] {
-        [first, second, ..] => {
-            let apart_s = (second - first) as f64 * trace.grid.step_s;
-            (0.5 * AVERAGED_S / apart_s).round() as usize
-        }
-        _ => 0,
-    }
+/// Each row's mean with those of the run around it, N m, body. Rows are `apart_s` apart.
+pub(super) fn averaged(torque: [Vec<f64>; 3], runs: &[Range<usize>], apart_s: f64) -> [Vec<f64>; 3] {
+    let half = if apart_s > 0.0 { (0.5 * AVERAGED_S / apart_s).round() as usize } else { 0 };
+    torque.map(|axis| running_mean(&axis, runs, half))
 }
 
 /// Mean over `half` rows on each side, fewer where a run begins or ends.

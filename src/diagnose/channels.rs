@@ -1,6 +1,5 @@
 //! One value a row for each axis of force and torque, and the nuisance columns that are always estimated.
 
-use super::averaged::averaged;
 use super::trace::Trace;
 
 /// One value a row and channel.
@@ -90,7 +89,7 @@ impl NuisanceColumn {
 /// Channels of the force in each available measurement (N), and of the torque (N m): of each row, or averaged where commands or
 /// body rates are slow.
 pub(super) fn channels(trace: &Trace, force: [Vec<f64>; 3], torque: [Vec<f64>; 3]) -> Channels {
-    let torque = if trace.torques { torque } else { averaged(trace, torque) };
+    let torque = trace.torque_rows(torque);
     let mut out = force_channels(trace, force);
     out[3..AXES].iter_mut().zip(torque).for_each(|(channel, torque)| *channel = torque);
     out

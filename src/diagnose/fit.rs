@@ -7,6 +7,7 @@ use super::rows::Rows;
 use super::trace::Trace;
 use crate::estimate::{Estimated, THETA, ThetaCovariance, theta_of};
 use crate::physics::PhysicsError;
+use crate::vehicle::Propulsion;
 use nalgebra::{DMatrix, DVector};
 
 /// A base fitted to the flights.
@@ -49,6 +50,18 @@ impl Fitted {
             explained: Some(self.explained_torques()),
             by_wider_window: None,
             by_guessed_curve: None,
+        }
+    }
+
+    /// The same on the scale of the stated thrust, also of a vehicle that was weighed.
+    #[must_use]
+    pub fn with_stated_thrust(&self, stated: &Propulsion) -> Estimated {
+        let of_stated = stated.full_thrust_n() / self.base.vehicle.propulsion.full_thrust_n();
+        let estimated = self.rigid_body();
+        Estimated {
+            theta: estimated.theta * of_stated,
+            covariance: estimated.covariance * of_stated.powi(2),
+            ..estimated
         }
     }
 

@@ -36,7 +36,7 @@ pub struct Trace {
     pub states: Series<State>,
     /// parts of the state that are measured
     pub known: Known,
-    /// commands and body rates are fast enough to compare torques row by row; otherwise they are averaged over seconds
+    /// commands and body rates are fast enough to compare torques row by row; else they are averaged
     pub torques: bool,
     /// V
     pub voltage_v: Option<Series<f64>>,
@@ -183,6 +183,15 @@ impl Trace {
         self.specific_force_m_s2.as_ref()
     }
 
+    /// Torques as they are compared, N m, body: row by row, or averaged where commands or body rates are slow.
+    pub(super) fn torque_rows(&self, torque: [Vec<f64>; 3]) -> [Vec<f64>; 3] {
+        if self.torques {
+            return torque;
+        }
+        let apart = self.centers.windows(2).map(|pair| pair[1] - pair[0]).min().unwrap_or_default();
+        averaged(torque, &self.runs, apart as f64 * self.grid.step_s)
+    }
+
     /// Number of weak-form rows.
     #[must_use]
     pub fn rows(&self) -> usize {
@@ -250,10 +259,8 @@ impl Trace {
             let measured = self.specific_force_m_s2.as_ref().map(|force| self.weak_vector(0, force));
             let specific_force = measured.into_iter().chain(self.weak_kinematic()).collect();
             let rates: Vec<Vector3<f64>> = self.states.iter().map(|state| state.rates_rad_s).collect();
-            let mut momentum = momentum_rows(&rates, |order, series| self.weak(order, series));
-            if !self.torques {
-                momentum = momentum.map(|axes| averaged(self, axes));
-            }
+            let momentum = momentum_rows(&rates, |order, series| self.weak(order, series));
+            let momentum = momentum.map(|axes| self.torque_rows(axes));
             WeakMotion { specific_force, momentum }
         })
     }

@@ -1,6 +1,6 @@
 //! The expected covariance of an estimate, from known noises.
 
-use super::problem::{Channel, Normal, Problem};
+use super::problem::{Normal, Problem};
 use nalgebra::DMatrix;
 
 /// A noise and the equations that it affects. A noise in several equations correlates their errors.
@@ -33,8 +33,7 @@ impl Problem {
     /// flight: an offset that is estimated from them belongs to the flight.
     #[must_use]
     pub fn expected_covariance(&self, noise: &[NoiseTerm]) -> DMatrix<f64> {
-        let shares: Vec<Normal> =
-            (0..self.channels.len()).map(|index| self.normal_share(index, None)).collect();
+        let shares: Vec<Normal> = (0..self.channels.len()).map(|index| self.normal_share(index)).collect();
         let sigma: Vec<f64> = (0..self.channels.len())
             .map(|channel| noise.iter().map(|term| term.variance(channel)).sum::<f64>().sqrt())
             .collect();
@@ -43,8 +42,7 @@ impl Problem {
         for term in noise {
             let mut weighted: Option<DMatrix<f64>> = None;
             for (channel, factors) in &term.reaches {
-                let Channel { x, z, .. } = &self.channels[*channel];
-                let mut rows = z.as_ref().unwrap_or(x) / sigma[*channel].powi(2);
+                let mut rows = &self.channels[*channel].x / sigma[*channel].powi(2);
                 for mut column in rows.column_iter_mut() {
                     let mean = column.mean();
                     column.add_scalar_mut(term.of_mean * mean);

@@ -6,7 +6,7 @@
 use super::compensate::take_out;
 use super::result::{CURVE_IS_A_GUESS, Estimated};
 use super::theta::{NAMES, Theta};
-use super::weak::{WeakMethod, solve_weak};
+use super::weak::solve_weak;
 use crate::note::{About, Note};
 use crate::physics::ActuationLatency;
 use crate::regression::{WeakMotion, WeakRows, weak_rows};
@@ -134,6 +134,6 @@ pub(super) fn moved_by_curve(
         low.push(rows_of(at_low));
         high.push(rows_of(at_high));
     }
-    let theta = |rows: &[WeakRows]| Some(solve_weak(rows, nominal, WeakMethod::LeastSquares)?.theta);
+    let theta = |rows: &[WeakRows]| Some(solve_weak(rows, nominal)?.theta);
     Some(curve.moved([&theta(&low)?, &theta(&high)?]))
 }

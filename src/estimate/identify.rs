@@ -1,4 +1,4 @@
-//! All methods on one or several flights of a vehicle, and the recommended one.
+//! The methods for a rigid body alone, on one or several flights of a vehicle.
 
 use super::compensate::{as_stated, compensation, take_out};
 use super::error::EstimateError;
@@ -7,12 +7,11 @@ use super::method::Method;
 use super::nominal::Nominal;
 use super::paper_runs::PaperRuns;
 use super::plausible::disagreeing;
-use super::recommend::{Recommendation, recommend};
+use super::recommend::Recommendation;
 use super::recursive::History;
 use super::result::{Estimated, MethodResult};
-use super::rotor_check::{WeakRotor, weak_rotor, with_weak_rotor};
 use super::theta::Theta;
-use super::weak::{Latency, WeakEstimate, WeakMethod, latency, solve_weak};
+use super::weak::{Latency, WeakEstimate, latency, solve_weak};
 use super::window::by_wider_window;
 use crate::note::{About, Note};
 use crate::physics::ActuationLatency;
@@ -44,7 +43,7 @@ impl Default for IdentifySettings {
 pub struct Identification {
     /// one result for each method that could be applied
     pub methods: Vec<MethodResult>,
-    /// the recommended method
+    /// the recommended method: of those for a rigid body alone, the weak form
     pub best: Recommendation,
     /// estimates over time of the paper's four methods
     pub histories: Vec<(Method, History)>,
@@ -62,16 +61,12 @@ pub struct Identification {
     pub scaled_condition_number: f64,
     /// N m, constant torque about body x, y, z that remains with the rotors' nominal geometry
     pub trim_torque_nm: [f64; 3],
-    /// a rotor with less thrust than commanded, corrected for all other results
-    pub weak_rotor: Option<WeakRotor>,
     /// residual standard deviation of the weak form: N, N m
     pub residual: Vec<f64>,
     /// equation of each entry of [`Self::residual`]
     pub residual_channels: Vec<&'static str>,
     /// share of each of these equations' variance that the rigid body explains (-)
     pub explained: Vec<f64>,
-    /// strength of the commanded trajectory as instrument: smallest first-stage F
-    pub instrument_f: Option<f64>,
     /// m/s^2, vertical specific force of the accelerometer minus that of the kinematics, for each flight
     pub accelerometer_bias: Vec<Option<f64>>,
     /// reasons for missing methods, and other remarks
@@ -107,48 +102,11 @@ pub fn identify(
     settings: &IdentifySettings,
 ) -> Result<Identification, EstimateError> {
     let _stage = tracing::info_span!("identify", flights = flights.len()).entered();
-    let found = with_even_rotors(flights, vehicle, settings)?;
-    found.best.result.emit();
-    Ok(found)
-}
-
-/// Identifies with a correction for a weak rotor, if there is one.
-fn with_even_rotors(
-    flights: &[Signals],
-    vehicle: &Vehicle,
-    settings: &IdentifySettings,
-) -> Result<Identification, EstimateError> {
-    let found = identify_evenly(flights, vehicle, settings)?;
-    let Some(weak) = found.weak_rotor else { return Ok(found) };
-    tracing::info!(rotor = weak.name, factor = weak.factor, std = weak.std, "weak rotor taken out");
-    let mended = with_weak_rotor(flights, vehicle, &weak);
-    let mut again = identify_evenly(&mended, vehicle, settings)?;
-    let text = format!(
-        "the remaining torque is that of rotor {} giving {:.3} +- {:.3} of its thrust: corrected, the other rotors \
-         set the scale",
-        weak.name, weak.factor, weak.std
-    );
-    again.notes.push(Note::remark(About::Estimate, text));
-    again.weak_rotor = Some(weak);
-    Ok(again)
-}
-
-/// Identifies with every rotor as strong as commanded.
-fn identify_evenly(
-    flights: &[Signals],
-    vehicle: &Vehicle,
-    settings: &IdentifySettings,
-) -> Result<Identification, EstimateError> {
     let nominal = Nominal::of(vehicle);
     let mut notes = Vec::new();
     let mut weak = WeakFlights::from(flights, vehicle, settings);
     let (found, compensated) = weak.compensate(&nominal.theta, vehicle);
-    let plain =
-        solve_weak(&weak.rows, &nominal.theta, WeakMethod::LeastSquares).ok_or(EstimateError::NoRows)?;
-    let robust = solve_weak(&weak.rows, &nominal.theta, WeakMethod::Robust);
-    let by_instruments = weak.instruments(&mut notes).and_then(|instruments| {
-        solve_weak(&weak.rows, &nominal.theta, WeakMethod::Instruments(&instruments))
-    });
+    let plain = solve_weak(&weak.rows, &nominal.theta).ok_or(EstimateError::NoRows)?;
 
     let harmonic_hz = highest_of_all_hz(&weak.signals);
     let (paper, cutoff_hz) = paper_runs(&weak.signals, vehicle, settings, harmonic_hz)?;
@@ -161,16 +119,8 @@ fn identify_evenly(
         Estimated::of(weak).with_wider_window(wider).with_guessed_curve(moved)
     };
     let mut methods = paper.results(&whole(&plain));
-    let weak_forms = [
-        (Method::Weak, Some(&plain)),
-        (Method::WeakRobust, robust.as_ref()),
-        (Method::WeakIv, by_instruments.as_ref()),
-    ];
-    let result_of = |(method, found): (Method, Option<&WeakEstimate>)| {
-        Some(MethodResult::new(method, &whole(found?), &nominal))
-    };
-    methods.extend(weak_forms.into_iter().filter_map(result_of));
-    let best = recommend((&plain, &whole), robust.as_ref(), by_instruments.as_ref(), &nominal);
+    let best = Recommendation::weak(whole(&plain), &nominal);
+    methods.push(MethodResult::new(Method::Weak, &whole(&plain), &nominal));
     notes.extend(disagreeing(&weak.rows, &nominal.theta));
     let by_commands = |signals: &Signals| signals.quality.thrust_source == ThrustSource::Command;
     notes.extend(flights.iter().any(by_commands).then(|| Note::remark(About::Actuators, BY_COMMANDS)));
@@ -179,7 +129,6 @@ fn identify_evenly(
         methods,
         condition_number: paper.condition_number(),
         histories: paper.histories(),
-        weak_rotor: weak_rotor(&plain, flights, vehicle),
         latency: found,
         compensated,
         cutoff_hz,
@@ -189,7 +138,6 @@ fn identify_evenly(
         residual: plain.solution.sigma.clone(),
         residual_channels: plain.channels.clone(),
         explained: plain.explained.clone(),
-        instrument_f: by_instruments.as_ref().map(|iv| instrument_f(&plain, iv)),
         accelerometer_bias: weak.accelerometer_bias,
         notes,
     })
@@ -220,7 +168,7 @@ pub fn inertia_by_wider_window(flights: &[Signals], vehicle: &Vehicle) -> [f64; 
     let (nominal, settings) = (Nominal::of(vehicle), IdentifySettings::default());
     let mut weak = WeakFlights::from(flights, vehicle, &settings);
     weak.compensate(&nominal.theta, vehicle);
-    let narrow = solve_weak(&weak.rows, &nominal.theta, WeakMethod::LeastSquares);
+    let narrow = solve_weak(&weak.rows, &nominal.theta);
     narrow.map_or([f64::NAN; 3], |narrow| weak.by_wider_window(&narrow, &nominal.theta, &settings))
 }
 
@@ -321,58 +269,4 @@ impl WeakFlights {
         let window = (settings.weak_half_width_s, self.gravity_m_s2);
         by_wider_window(&self.signals, (narrow, nominal), window)
     }
-
-    /// Rows of the commanded trajectory; `None`, with a note, if a flight has none.
-    fn instruments(&self, notes: &mut Vec<Note>) -> Option<Vec<WeakRows>> {
-        let mut out = Vec::new();
-        for (signals, kernel) in self.signals.iter().zip(&self.kernels) {
-            let (Some(reference), Some(rate)) = (&signals.reference, &signals.rate) else {
-                let text = "no instrumental variables: the commanded acceleration or the body rates are not recorded";
-                notes.push(Note::remark(About::Estimate, text));
-                return None;
-            };
-            let step_s = signals.grid.step_s;
-            let commanded = WeakMotion::commanded(reference, step_s, 0, self.gravity_m_s2);
-            let delay = commanded.omega.as_ref().map_or(0, |omega| tracking_delay(rate, omega, signals));
-            let commanded = WeakMotion::commanded(reference, step_s, delay, self.gravity_m_s2);
-            out.push(weak_rows(signals, &commanded, kernel));
-        }
-        Some(out)
-    }
-}
-
-/// The delay, in grid steps, with the largest correlation of commanded and measured rates.
-fn tracking_delay(
-    rate: &[nalgebra::Vector3<f64>],
-    commanded: &[nalgebra::Vector3<f64>],
-    signals: &Signals,
-) -> usize {
-    let mut best = (f64::NEG_INFINITY, 0);
-    let mut delay = 0;
-    while (delay as f64) * signals.grid.step_s < 0.6 {
-        let sum: f64 = (delay..rate.len())
-            .step_by(4)
-            .filter(|&i| signals.usable[i])
-            .map(|i| rate[i].dot(&commanded[i - delay]))
-            .sum();
-        if sum > best.0 {
-            best = (sum, delay);
-        }
-        delay += 2;
-    }
-    best.1
-}
-
-/// Strength of the instruments: smallest squared ratio of standard errors turned into an F, over the
-/// moments of inertia.
-fn instrument_f(plain: &WeakEstimate, iv: &WeakEstimate) -> f64 {
-    let rows = plain.solution.residuals.first().map_or(0, nalgebra::DVector::len) as f64;
-    let independent = rows / 8.0;
-    [1, 4, 6]
-        .into_iter()
-        .map(|i| {
-            let share = (plain.covariance[(i, i)] / iv.covariance[(i, i)]).clamp(0.0, 0.999);
-            share / (1.0 - share) * independent / 10.0
-        })
-        .fold(f64::INFINITY, f64::min)
 }

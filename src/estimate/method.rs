@@ -13,10 +13,8 @@ pub enum Method {
     Fmgd,
     /// weak form, weighted least squares
     Weak,
-    /// weak form, Huber weights
-    WeakRobust,
-    /// weak form, the commanded trajectory as instrument
-    WeakIv,
+    /// weak form together with the effects that the flights show, sizes of forces with the flight path, torques by instruments
+    Joint,
 }
 
 impl Method {
@@ -29,8 +27,7 @@ impl Method {
             Self::Fmls => "FMLS",
             Self::Fmgd => "FMGD",
             Self::Weak => "WEAK",
-            Self::WeakRobust => "WEAK-ROBUST",
-            Self::WeakIv => "WEAK-IV",
+            Self::Joint => "JOINT",
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::result::{Finding, MethodResult};
 use super::theta::{NAMES, Theta, ThetaCovariance, UNITS, theta_of};
 use super::thrust_scale::ThrustScale;
-use super::weak::{WeakMethod, solve_weak};
+use super::weak::solve_weak;
 use crate::note::{About, Note};
 use crate::regression::WeakRows;
 use crate::vehicle::{Guessed, Vehicle};
@@ -118,7 +118,7 @@ pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<Note> {
     if flights.len() < 2 {
         return Vec::new();
     }
-    let alone = |rows| solve_weak(std::slice::from_ref(rows), nominal, WeakMethod::LeastSquares);
+    let alone = |rows| solve_weak(std::slice::from_ref(rows), nominal);
     let each: Vec<Option<(Theta, ThetaCovariance)>> =
         flights.iter().map(|rows| alone(rows).map(|found| (found.theta, found.covariance))).collect();
     flights_apart(&each).into_iter().map(|text| Note::warning(About::Estimate, text)).collect()

@@ -10,8 +10,6 @@ pub struct Channel {
     pub y: DVector<f64>,
     /// rows x parameters
     pub x: DMatrix<f64>,
-    /// instruments, rows x parameters; the regressors themselves for ordinary least squares
-    pub z: Option<DMatrix<f64>>,
 }
 
 /// Channels that share their parameters and their rows' instants.
@@ -57,21 +55,14 @@ impl Problem {
         self.channels.first().map_or(0, |channel| channel.x.ncols())
     }
 
-    /// Least squares with each channel weighted by its own residual, and optional weights for each row and channel
-    /// (robust estimation).
+    /// Least squares with each channel weighted by its own residual.
     #[must_use]
-    pub fn solve(&self, row_weights: Option<&[DVector<f64>]>) -> Solution {
-        let Fit { mut theta, sigma, normal } = self.fit(row_weights);
+    pub fn solve(&self) -> Solution {
+        let Fit { mut theta, sigma, normal } = self.fit();
         let residuals = self.residuals(&theta);
-        // what a row contributes to the estimate is its weighted residual
-        let scored: Vec<DVector<f64>> = match row_weights {
-            Some(weights) => residuals.iter().zip(weights).map(|(r, w)| r.component_mul(w)).collect(),
-            None => residuals.clone(),
-        };
-        let lags = self.residual_lags(&scored);
+        let lags = self.residual_lags(&residuals);
         let bread = normal.inverse();
-        let covariance = self.covariance(&bread, &Scaled { residuals: &scored, sigma: &sigma, lags })
-            * row_weights.map_or(1.0, held_back_inflation);
+        let covariance = self.covariance(&bread, &Scaled { residuals: &residuals, sigma: &sigma, lags });
         for (index, value) in theta.iter_mut().enumerate() {
             if normal.scale[index] <= 0.0 {
                 *value = f64::NAN;
@@ -82,17 +73,17 @@ impl Problem {
 
     /// The estimate alone; parameters without a column are zero.
     #[must_use]
-    pub fn estimate(&self, row_weights: Option<&[DVector<f64>]>) -> DVector<f64> {
-        self.fit(row_weights).theta
+    pub fn estimate(&self) -> DVector<f64> {
+        self.fit().theta
     }
 
     /// Alternates between the parameters and the channels' weights.
-    fn fit(&self, row_weights: Option<&[DVector<f64>]>) -> Fit {
+    fn fit(&self) -> Fit {
         let size: Vec<f64> = self.channels.iter().map(|c| spread(&c.y).max(1e-100)).collect();
         let mut sigma = size.clone();
         // each channel's share of the normal equations stays; only its weight changes
         let shares: Vec<Normal> =
-            (0..self.channels.len()).map(|channel| self.normal_share(channel, row_weights)).collect();
+            (0..self.channels.len()).map(|channel| self.normal_share(channel)).collect();
         let mut fit = Fit { theta: DVector::zeros(0), sigma: Vec::new(), normal: Normal::empty(0) };
         for _ in 0..4 {
             let normal = Normal::weighted(&shares, &sigma, &self.priors);
@@ -113,22 +104,9 @@ impl Problem {
         self.channels.iter().map(|channel| &channel.y - &channel.x * &theta).collect()
     }
 
-    pub(super) fn normal_share(&self, index: usize, row_weights: Option<&[DVector<f64>]>) -> Normal {
-        let channel = &self.channels[index];
-        let z = channel.z.as_ref().unwrap_or(&channel.x);
-        let mut share = Normal::empty(self.parameters());
-        if let Some(weights) = row_weights {
-            let mut z = z.clone();
-            for (mut row, weight) in z.row_iter_mut().zip(weights[index].iter()) {
-                row *= *weight;
-            }
-            share.matrix = z.tr_mul(&channel.x);
-            share.right = z.tr_mul(&channel.y);
-        } else {
-            share.matrix = z.tr_mul(&channel.x);
-            share.right = z.tr_mul(&channel.y);
-        }
-        share
+    pub(super) fn normal_share(&self, index: usize) -> Normal {
+        let Channel { x, y } = &self.channels[index];
+        Normal { matrix: x.tr_mul(x), right: x.tr_mul(y), ..Normal::empty(self.parameters()) }
     }
 
     /// First lag at which the residual autocorrelation of every channel has decayed, at least the kernels' overlap.
@@ -198,17 +176,17 @@ impl Problem {
             let gamma: Vec<f64> = (0..=scaled.lags)
                 .map(|lag| self.autocovariance(&scaled.residuals[index], lag) / scaled.sigma[index].powi(4))
                 .collect();
-            meat += self.meat_of(channel.z.as_ref().unwrap_or(&channel.x), &gamma);
+            meat += self.meat_of(&channel.x, &gamma);
         }
         meat
     }
 
     /// One channel's `sum_|l|<=L gamma(l) sum_t x(t) x(t+l)^T`, as `X^T (gamma * X)`.
-    pub(super) fn meat_of(&self, z: &DMatrix<f64>, gamma: &[f64]) -> DMatrix<f64> {
+    pub(super) fn meat_of(&self, x: &DMatrix<f64>, gamma: &[f64]) -> DMatrix<f64> {
         let lags = gamma.len().saturating_sub(1);
-        let mut smeared = DMatrix::<f64>::zeros(z.nrows(), z.ncols());
+        let mut smeared = DMatrix::<f64>::zeros(x.nrows(), x.ncols());
         for run in &self.runs {
-            for (mut out, column) in smeared.column_iter_mut().zip(z.column_iter()) {
+            for (mut out, column) in smeared.column_iter_mut().zip(x.column_iter()) {
                 for t in run.clone() {
                     let first = t.saturating_sub(lags).max(run.start);
                     let last = (t + lags).min(run.end - 1);
@@ -216,7 +194,7 @@ impl Problem {
                 }
             }
         }
-        z.tr_mul(&smeared)
+        x.tr_mul(&smeared)
     }
 
     fn meat_of_scores(&self, scaled: &Scaled<'_>) -> DMatrix<f64> {
@@ -224,12 +202,12 @@ impl Problem {
         let count = self.runs.last().map_or(0, |run| run.end);
         let mut score = DMatrix::<f64>::zeros(parameters, count);
         for (index, channel) in self.channels.iter().enumerate() {
-            let z = channel.z.as_ref().unwrap_or(&channel.x);
+            let x = &channel.x;
             let weight = scaled.sigma[index].powi(-2);
             for row in 0..count {
                 let factor = weight * scaled.residuals[index][row];
                 for parameter in 0..parameters {
-                    score[(parameter, row)] += factor * z[(row, parameter)];
+                    score[(parameter, row)] += factor * x[(row, parameter)];
                 }
             }
         }
@@ -337,14 +315,6 @@ impl Normal {
         let singular = scaled.singular_values();
         (singular.max() / singular.min().max(f64::MIN_POSITIVE)).sqrt()
     }
-}
-
-/// Correction of the weighted normal matrix in place of the slope of the scores, which is zero for every row with
-/// reduced weight: the matrix is too large by the mean weight over the share of rows with full weight (Huber 1973).
-fn held_back_inflation(weights: &[DVector<f64>]) -> f64 {
-    let all = || weights.iter().flat_map(|weights| weights.iter());
-    let full = all().filter(|weight| **weight >= 1.0).count() as f64;
-    if full > 0.0 { (all().sum::<f64>() / full).powi(2) } else { 1.0 }
 }
 
 /// Root mean square about zero.

@@ -14,7 +14,7 @@ fn intervals_hold_under_coloured_noise() {
     for _ in 0..trials {
         let n = 1000;
         let (mut noise, mut slow) = (0.0, [0.0, 0.0]);
-        let mut channel = Channel { y: DVector::zeros(n), x: DMatrix::zeros(n, 2), z: None };
+        let mut channel = Channel { y: DVector::zeros(n), x: DMatrix::zeros(n, 2) };
         for t in 0..n {
             let mut draw = || -> f64 { StandardNormal.sample(&mut generator) };
             noise = 0.7 * noise + draw();
@@ -30,7 +30,7 @@ fn intervals_hold_under_coloured_noise() {
             priors: vec![],
             overlap: 1,
         };
-        let solution = problem.solve(None);
+        let solution = problem.solve();
         let error = (solution.theta[0] - 2.0).abs();
         covered += i32::from(error < 1.96 * solution.covariance[(0, 0)].sqrt());
         let inverse = (problem.channels[0].x.transpose() * &problem.channels[0].x).try_inverse().unwrap();
@@ -45,12 +45,12 @@ fn an_empty_column_is_not_a_number() {
     let x = DMatrix::from_fn(50, 2, |t, j| if j == 0 { (t as f64).sin() } else { 0.0 });
     let y = x.column(0) * 3.0;
     let problem = Problem {
-        channels: vec![Channel { y, x, z: None }],
+        channels: vec![Channel { y, x }],
         runs: std::iter::once(0..50).collect(),
         priors: vec![],
         overlap: 1,
     };
-    let solution = problem.solve(None);
+    let solution = problem.solve();
     assert!((solution.theta[0] - 3.0).abs() < 1e-9);
     assert!(solution.theta[1].is_nan());
 }

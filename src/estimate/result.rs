@@ -138,7 +138,7 @@ impl MethodResult {
 
 impl MethodResult {
     /// Emits each parameter as a tracing event.
-    pub(super) fn emit(&self) {
+    pub fn emit(&self) {
         let method = self.method.name();
         for Parameter { name, unit, finding } in &self.parameters {
             match finding {

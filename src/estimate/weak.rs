@@ -74,25 +74,12 @@ pub struct WeakEstimate {
     pub channels: Vec<&'static str>,
     /// share of each channel's variance that the rigid body explains, same order (-)
     pub explained: Vec<f64>,
-    /// share of rows with reduced robust weights
-    pub held_back: f64,
-}
-
-/// Weights of the rows, and instruments.
-#[derive(Debug, Clone, Copy)]
-pub enum WeakMethod<'a> {
-    /// weighted least squares
-    LeastSquares,
-    /// Huber weights, tuned to 95 % efficiency
-    Robust,
-    /// rows of the commanded trajectory as instruments
-    Instruments(&'a [WeakRows]),
 }
 
 /// Solves the weak form of one or several flights of a vehicle. `None` without a single row.
 #[must_use]
-pub fn solve_weak(flights: &[WeakRows], start: &Theta, method: WeakMethod<'_>) -> Option<WeakEstimate> {
-    solve_with(flights, start, method, false)
+pub fn solve_weak(flights: &[WeakRows], start: &Theta) -> Option<WeakEstimate> {
+    solve_with(flights, start, false)
 }
 
 /// Expected covariance of the weak form's `Theta` over repeated flights, with all nuisances, for known and independent
@@ -103,7 +90,7 @@ pub fn expected_covariance(
     theta: &Theta,
     noise: &[NoiseTerm],
 ) -> Option<ThetaCovariance> {
-    let problem = assemble(flights, theta, WeakMethod::LeastSquares, false);
+    let problem = assemble(flights, theta, false);
     let measured: Vec<usize> = (0..CHANNELS).filter(|&c| is_measured(flights, c)).collect();
     let place = |channel: usize| measured.iter().position(|other| *other == channel);
     let noise: Vec<NoiseTerm> = noise
@@ -124,28 +111,20 @@ pub fn expected_covariance(
 /// measured.
 const PASSES: usize = 4;
 
-fn solve_with(
-    flights: &[WeakRows],
-    start: &Theta,
-    method: WeakMethod<'_>,
-    curvature: bool,
-) -> Option<WeakEstimate> {
+fn solve_with(flights: &[WeakRows], start: &Theta, curvature: bool) -> Option<WeakEstimate> {
     let nothing_measured = (0..CHANNELS).all(|channel| !is_measured(flights, channel));
     if nothing_measured || flights.iter().all(|rows| rows.time_s.is_empty()) {
         return None;
     }
     let mut theta = *start;
     for _ in 1..PASSES {
-        let estimate = assemble(flights, &theta, method, curvature).estimate(None);
+        let estimate = assemble(flights, &theta, curvature).estimate();
         for (value, new) in theta.iter_mut().zip(estimate.iter()).filter(|(_, new)| **new != 0.0) {
             *value = *new;
         }
     }
-    let problem = assemble(flights, &theta, method, curvature);
-    let (solution, held_back) = match method {
-        WeakMethod::Robust => huber(&problem),
-        _ => (problem.solve(None), 0.0),
-    };
+    let problem = assemble(flights, &theta, curvature);
+    let solution = problem.solve();
     Some(WeakEstimate {
         theta: Theta::from_fn(|i, _| solution.theta[i]),
         covariance: solution.covariance.fixed_view::<THETA, THETA>(0, 0).into(),
@@ -155,7 +134,6 @@ fn solve_with(
         channels: measured_channels(flights),
         explained: explained(&problem, &solution),
         solution,
-        held_back,
     })
 }
 
@@ -163,7 +141,7 @@ fn solve_with(
 /// `d^2/2 F''`. The coefficients c1, c2 of both together give `d = c1 - sqrt(c1^2 - 2 c2)`.
 #[must_use]
 pub fn latency(flights: &[WeakRows], start: &Theta) -> Option<Latency> {
-    let estimate = solve_with(flights, start, WeakMethod::LeastSquares, true)?;
+    let estimate = solve_with(flights, start, true)?;
     let solution = &estimate.solution;
     let (c1, c2) = (solution.theta[LATENCY], solution.theta[CURVATURE]);
     let (s1, s2) =
@@ -185,14 +163,10 @@ pub fn latency(flights: &[WeakRows], start: &Theta) -> Option<Latency> {
 }
 
 /// Stacks the flights into one problem; columns are not scaled here (the solver scales them).
-fn assemble(flights: &[WeakRows], theta: &Theta, method: WeakMethod<'_>, curvature: bool) -> Problem {
+fn assemble(flights: &[WeakRows], theta: &Theta, curvature: bool) -> Problem {
     let rows: usize = flights.iter().map(|flight| flight.time_s.len()).sum();
     let columns = if curvature { CURVATURE + 1 } else { CURVATURE };
     let theta = theta.map(|value| if value.is_finite() { value } else { 0.0 });
-    let instruments = match method {
-        WeakMethod::Instruments(instruments) => Some(instruments),
-        _ => None,
-    };
     let mut channels = Vec::new();
     for channel in 0..CHANNELS {
         if !is_measured(flights, channel) {
@@ -203,8 +177,7 @@ fn assemble(flights: &[WeakRows], theta: &Theta, method: WeakMethod<'_>, curvatu
             rows,
             flights.iter().flat_map(|flight| flight.output.iter().map(|output| output[channel])),
         );
-        let z = instruments.map(|rows_of| design(rows_of, &theta, channel, (rows, columns)));
-        channels.push(Channel { y, x, z });
+        channels.push(Channel { y, x });
     }
     let mut runs = Vec::new();
     let mut before = 0;
@@ -291,28 +264,4 @@ fn measured_channels(flights: &[WeakRows]) -> Vec<&'static str> {
 
 fn dot_row(phi: &SMatrix<f64, CHANNELS, THETA>, row: usize, theta: &SVector<f64, THETA>) -> f64 {
     (0..THETA).map(|i| phi[(row, i)] * theta[i]).sum()
-}
-
-/// Robust solution with iterated Huber weights, and the share of rows with reduced weights.
-fn huber(problem: &Problem) -> (Solution, f64) {
-    /// Huber's constant for 95 % efficiency with normal noise.
-    const TUNING: f64 = 1.345;
-    const ITERATIONS: usize = 6;
-    let mut theta = problem.estimate(None);
-    let mut weights = Vec::new();
-    for _ in 0..ITERATIONS {
-        weights = problem
-            .residuals(&theta)
-            .iter()
-            .map(|residual| {
-                let mut sizes: Vec<f64> = residual.iter().map(|r| r.abs()).collect();
-                let sigma = crate::stats::normal_sigma(&mut sizes).max(f64::MIN_POSITIVE);
-                residual.map(|r| (TUNING * sigma / r.abs().max(f64::MIN_POSITIVE)).min(1.0))
-            })
-            .collect();
-        theta = problem.estimate(Some(&weights));
-    }
-    let total: usize = weights.iter().map(DVector::len).sum();
-    let held_back = weights.iter().flat_map(|w| w.iter()).filter(|w| **w < 0.5).count();
-    (problem.solve(Some(&weights)), held_back as f64 / total.max(1) as f64)
 }

@@ -5,7 +5,7 @@
 //! A window of twice the width weighs lower frequencies, so a comparison of both tells the two apart.
 
 use super::theta::Theta;
-use super::weak::{WeakEstimate, WeakMethod, solve_weak};
+use super::weak::{WeakEstimate, solve_weak};
 use crate::regression::{WeakMotion, WeakRows, weak_rows};
 use crate::signals::{Signals, WeakKernel};
 
@@ -27,6 +27,6 @@ pub(super) fn by_wider_window(
             weak_rows(signals, &motion, &kernel)
         })
         .collect();
-    let wide = solve_weak(&rows, nominal, WeakMethod::LeastSquares);
+    let wide = solve_weak(&rows, nominal);
     MOMENTS.map(|index| wide.as_ref().map_or(f64::NAN, |wide| wide.theta[index] / narrow.theta[index]))
 }

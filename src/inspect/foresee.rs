@@ -3,8 +3,8 @@
 use crate::diagnose::{ExpectedError, expected_errors};
 use crate::draft::{Given, draft};
 use crate::estimate::{
-    Contradiction, Estimated, GuessedCurve, IdentifySettings, WeakInformation, WeakMethod, apply_anchor,
-    contradictions, identify, solve_weak, theta_of,
+    Contradiction, Estimated, GuessedCurve, IdentifySettings, WeakInformation, apply_anchor, contradictions,
+    identify, solve_weak, theta_of,
 };
 use crate::recording::{Quantity, Recording};
 use crate::regression::{WeakMotion, weak_rows};
@@ -132,6 +132,6 @@ fn information(signals: &Signals, vehicle: &Vehicle) -> Option<WeakInformation> 
     let kernel = WeakKernel::new(ConditionSettings::default().weak_half_width_s, signals.grid.step_s);
     let motion = WeakMotion::measured(signals, &kernel, vehicle.gravity_m_s2);
     let rows = weak_rows(signals, &motion, &kernel);
-    let estimate = solve_weak(&[rows], &theta_of(&vehicle.body), WeakMethod::LeastSquares)?;
+    let estimate = solve_weak(&[rows], &theta_of(&vehicle.body))?;
     Some(WeakInformation::of(&estimate))
 }

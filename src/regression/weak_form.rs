@@ -12,8 +12,8 @@
 //! `F_command = F + tau F'` exactly, a pure delay gives it to first order.
 
 use super::filtered::{RATE_PAIRS, gyroscopic_from_products, momentum_regressor};
-use crate::signals::{Grid, Reference, Series, Signals, WeakKernel, stride};
-use nalgebra::{SMatrix, UnitQuaternion, Vector3, Vector4};
+use crate::signals::{Grid, Series, Signals, WeakKernel, stride};
+use nalgebra::{SMatrix, Vector3, Vector4};
 
 /// Fz, `tau_x`, `tau_y`, `tau_z`.
 pub const CHANNELS: usize = 4;
@@ -69,43 +69,6 @@ impl WeakMotion {
             vertical: VerticalMotion::measured(signals, kernel, gravity_m_s2),
         }
     }
-
-    /// From the commanded trajectory alone, `delay_s` later: it holds none of the measurement's noise.
-    /// The attitude follows from acceleration and yaw as in (26), (27).
-    #[must_use]
-    pub fn commanded(reference: &Reference, step_s: f64, delay: usize, gravity_m_s2: f64) -> Self {
-        let count = reference.yaw.len();
-        let late = |i: usize| i.saturating_sub(delay);
-        let attitude: Vec<UnitQuaternion<f64>> = (0..count)
-            .map(|i| attitude_of(&reference.acceleration[late(i)], reference.yaw[late(i)], gravity_m_s2))
-            .collect();
-        let mut omega = vec![Vector3::zeros(); count];
-        for i in 1..count.saturating_sub(1) {
-            let turned = attitude[i - 1].inverse() * attitude[i + 1];
-            omega[i] = turned.scaled_axis() / (2.0 * step_s);
-        }
-        let specific_force_z = (0..count)
-            .map(|i| (reference.acceleration[late(i)] + Vector3::new(0.0, 0.0, gravity_m_s2)).norm())
-            .collect();
-        Self {
-            omega: Some(omega.into()),
-            vertical: Some(VerticalMotion {
-                specific_force_z: Some(specific_force_z),
-                kinematic: None,
-                accelerometer_share: 1.0,
-                accelerometer_bias: None,
-            }),
-        }
-    }
-}
-
-/// Thrust along `a + g e_z`, nose along the yaw.
-fn attitude_of(acceleration: &Vector3<f64>, yaw_rad: f64, gravity_m_s2: f64) -> UnitQuaternion<f64> {
-    let (s, c) = yaw_rad.sin_cos();
-    let vertical = acceleration.z + gravity_m_s2;
-    let pitch = ((c * acceleration.x + s * acceleration.y) / vertical).atan(); // (26)
-    let roll = (pitch.cos() * (s * acceleration.x - c * acceleration.y) / vertical).atan(); // (27)
-    UnitQuaternion::from_euler_angles(roll, pitch, yaw_rad)
 }
 
 impl VerticalMotion {

@@ -48,7 +48,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     // a first description of a vehicle, from parameters, weight and a flight
     ("draft", &["units", "autopilot", "vehicle", "recording", "signals"]),
     ("regression", &["signals"]),
-    ("estimate", &["note", "stats", "vehicle", "physics", "signals", "regression"]),
+    ("estimate", &["note", "vehicle", "physics", "signals", "regression"]),
     // never estimate
     ("simulate", &["units", "vehicle", "trajectory", "physics", "recording"]),
     ("config", &["units", "text", "vehicle", "trajectory", "recording", "log"]),

@@ -27,7 +27,6 @@ pub struct IdentificationDocument {
     scaled_condition_number: f64,
     latency: Option<LatencyValue>,
     trim_torque: TrimTorque,
-    weak_rotor: Option<WeakRotorValue>,
     filter: Filter,
     data_quality: DataQuality,
     history: BTreeMap<&'static str, HistoryColumns>,
@@ -41,6 +40,8 @@ struct Best {
     method: &'static str,
     why: String,
     made_physical: bool,
+    /// effects that were estimated together with them
+    beside: Vec<&'static str>,
     parameters: BTreeMap<&'static str, Value>,
     /// names in the order of rows and columns
     correlation_of: [&'static str; THETA],
@@ -66,13 +67,6 @@ struct TrimTorque {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct WeakRotorValue {
-    rotor: String,
-    factor: f64,
-    std: f64,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize)]
 struct Filter {
     cutoff_hz: f64,
     highest_harmonic_hz: Option<f64>,
@@ -85,7 +79,6 @@ struct DataQuality {
     flights: Vec<FlightQuality>,
     residual: BTreeMap<&'static str, f64>,
     explained: BTreeMap<&'static str, f64>,
-    instrument_f: Option<f64>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -137,6 +130,7 @@ impl IdentificationDocument {
                 method: best.method.name(),
                 why: best.why.clone(),
                 made_physical: best.made_physical,
+                beside: study.beside.clone(),
                 parameters: values(&best.result),
                 correlation_of: NAMES,
                 correlation: study.method_correlation().rows,
@@ -146,11 +140,6 @@ impl IdentificationDocument {
             scaled_condition_number: identification.scaled_condition_number,
             latency: latency_value(identification),
             trim_torque: trim_torque(identification),
-            weak_rotor: identification.weak_rotor.as_ref().map(|weak| WeakRotorValue {
-                rotor: weak.name.clone(),
-                factor: weak.factor,
-                std: weak.std,
-            }),
             filter: Filter {
                 cutoff_hz: identification.cutoff_hz,
                 highest_harmonic_hz: identification.highest_harmonic_hz,
@@ -206,7 +195,6 @@ fn data_quality(study: &IdentifyStudy) -> DataQuality {
         flights: flights.map(|(flight, bias)| flight_quality(&flight.quality, *bias)).collect(),
         residual: channels.clone().zip(identification.residual.iter().copied()).collect(),
         explained: channels.zip(identification.explained.iter().copied()).collect(),
-        instrument_f: identification.instrument_f,
     }
 }
 

@@ -20,6 +20,7 @@ pub use next::stored_trajectory;
 pub use predicted::{Predicted, QUANTITIES};
 pub use readers::for_readers;
 pub use request::ExplainRequest;
+pub(super) use result::BY_CONTROL;
 pub use result::{AxisFit, BodyParameter, Estimate, ExplainStudy, Given};
 pub use run::explain;
 pub use shown_on::ShownOn;

@@ -123,7 +123,7 @@ pub struct AxisFit {
 }
 
 /// Why moments of inertia are not determined where the excitation is too small.
-const BY_CONTROL: &str = "hardly anything but the controller's answer to the noise of the gyroscopes turned the vehicle; fly an \
+pub(in crate::study) const BY_CONTROL: &str = "hardly anything but the controller's answer to the noise of the gyroscopes turned the vehicle; fly an \
                           identification trajectory, which excites the rotation";
 
 impl ExplainStudy {
@@ -202,10 +202,7 @@ impl ExplainStudy {
         let weighed_kg = fitted.base.weighed_kg?;
         // with the stated thrust the flight would show this mass
         let stated = &self.given.vehicle.propulsion;
-        let of_stated = stated.full_thrust_n() / fitted.base.vehicle.propulsion.full_thrust_n();
-        let mut estimated = fitted.rigid_body();
-        estimated.theta *= of_stated;
-        estimated.covariance *= of_stated.powi(2);
+        let estimated = fitted.with_stated_thrust(stated);
         let mass = scaling_mass(&self.guessing(estimated, fitted), &Nominal::of(&self.given.vehicle));
         Some(ThrustScale::of(mass, weighed_kg, stated))
     }

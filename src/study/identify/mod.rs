@@ -1,5 +1,6 @@
 //! Mass, inertia and, where asked for, effects from recorded flights.
 
+mod beside;
 mod recorded;
 mod request;
 mod result;

@@ -95,6 +95,16 @@ impl IdentifyRequest {
         }
     }
 
+    /// Signals for the rigid body with what is found beside it, as `explain` takes them.
+    pub(super) fn conditioning_beside(&self) -> ConditionSettings {
+        let best = if self.by_commands { ThrustPreference::Commands } else { ThrustPreference::BestSampled };
+        ConditionSettings {
+            transient_s: Some(self.transient_s.unwrap_or(ExplainRequest::TRANSIENT_S)),
+            thrust: best,
+            ..ConditionSettings::default()
+        }
+    }
+
     /// Signals for the rigid body with effects: the rows on which `explain` would find them.
     pub(super) fn conditioning_with(&self, wanted: &RequestedEffects) -> ConditionSettings {
         ConditionSettings {

@@ -1,5 +1,6 @@
 //! The result of identifying: what went in, the estimates, and what is to be known of them.
 
+use super::beside::{Beside, beside};
 use crate::diagnose::CHANNEL_NAMES;
 use crate::diagnose::joint::JointEstimate;
 use crate::draft::Draft;
@@ -22,8 +23,10 @@ pub struct IdentifyStudy {
     pub flights: Vec<Signals>,
     /// their files
     pub inputs: Vec<InputFile>,
-    /// the rigid body alone
+    /// by each method; the recommended one has what the flights show beside mass and inertia in its model
     pub identification: Identification,
+    /// identifiers of the effects that the recommended method has in its model
+    pub beside: Vec<&'static str>,
     /// where the mass was weighed
     pub scale: Option<ThrustScale>,
     /// effects that were identified together with the rigid body
@@ -73,7 +76,8 @@ impl WithEffects {
 }
 
 impl IdentifyStudy {
-    /// The rigid body from signals and the files that they came from.
+    /// Mass and inertia from signals and the files that they came from. `explained` are the same flights as `explain` conditions
+    /// them.
     ///
     /// # Errors
     /// [`EstimateError`] where no method can run.
@@ -82,8 +86,17 @@ impl IdentifyStudy {
         inputs: Vec<InputFile>,
         vehicle: Vehicle,
         settings: &IdentifySettings,
+        explained: &[Signals],
     ) -> Result<Self, EstimateError> {
         let mut identification = identify(&flights, &vehicle, settings)?;
+        let alone = &identification.best.result.estimated;
+        let found = beside(explained, &vehicle, alone);
+        let effects = found.map(|Beside { best, effects }| {
+            identification.methods.push(best.result.clone());
+            identification.best = best;
+            effects
+        });
+        identification.best.result.emit();
         let scale = apply_anchor(&mut identification, &vehicle);
         let disagree = identification.notes.iter().any(Note::is_warning);
         let contradictions = contradictions(&identification.best.result, &vehicle, scale.as_ref());
@@ -94,6 +107,7 @@ impl IdentifyStudy {
             flights,
             inputs,
             identification,
+            beside: effects.unwrap_or_default(),
             scale,
             with: None,
             notes: Vec::new(),

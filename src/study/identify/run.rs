@@ -6,13 +6,15 @@ use crate::diagnose::ExplainSettings;
 use crate::diagnose::joint::{RequestedEffects, identify_jointly};
 use crate::note::Note;
 use crate::recording::Recording;
-use crate::signals::other_settings;
+use crate::signals::{ConditionSettings, Signals, other_settings};
 use crate::study::flight::Flight;
 use crate::study::flights::{IDENTIFIED, Prepared, load_all, names, prepare, refuse_twins};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{InputFile, Progress, Stage, StudyError, effects_of};
 use crate::text;
+use crate::vehicle::Vehicle;
+use std::path::Path;
 
 /// Estimates mass and inertia from logs, and the effects that are asked for together with them.
 ///
@@ -33,6 +35,7 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     let with = wanted.map(|wanted| with_effects(request, (&logs, &known), &wanted));
     let with = with.transpose().map_err(or_unflown)?;
     let vehicle = (&known.loaded.vehicle, known.origin.as_path());
+    let explained = conditioned(&logs, vehicle, &request.conditioning_beside()).unwrap_or_default();
     let Prepared { recordings, signals, inputs } =
         prepare(logs, vehicle, &request.conditioning()).map_err(or_unflown)?;
     let apart = settings_apart(&recordings);
@@ -41,8 +44,9 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     // memory for the work that begins
     drop(recordings);
     let lost: Vec<String> = inputs.iter().flat_map(InputFile::losses).map(str::to_owned).collect();
-    let study = IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings())
-        .map_err(|error| StudyError::of_estimate(error, &lost))?;
+    let study =
+        IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings(), &explained)
+            .map_err(|error| StudyError::of_estimate(error, &lost))?;
     Ok(IdentifyStudy { with, notes, drafted: known.draft, ..study })
 }
 
@@ -51,6 +55,24 @@ fn settings_apart(flights: &[Recording]) -> Vec<Note> {
     let Some((first, others)) = flights.split_first() else { return Vec::new() };
     let others = others.iter().enumerate();
     others.filter_map(|(index, other)| other_settings((first, 1), (other, index + 2))).collect()
+}
+
+/// The flights that can be used. The first reason where a log has none.
+fn conditioned(
+    logs: &[Vec<Flight>],
+    vehicle: (&Vehicle, &Path),
+    settings: &ConditionSettings,
+) -> Result<Vec<Signals>, StudyError> {
+    let mut flights = Vec::new();
+    for log in logs {
+        let made = log.iter().map(|flight| flight.conditioned(vehicle, settings));
+        let (usable, refused): (Vec<_>, Vec<_>) = made.partition(Result::is_ok);
+        if let (true, Some(Err(why))) = (usable.is_empty(), refused.into_iter().next()) {
+            return Err(why);
+        }
+        flights.extend(usable.into_iter().flatten());
+    }
+    Ok(flights)
 }
 
 /// The named effects together with the rigid body, on the rows on which `explain` would find them.
@@ -64,16 +86,7 @@ fn with_effects(
     wanted
         .check_wind(&effects)
         .map_err(|error| StudyError::Setting { name: "with", why: error.to_string() })?;
-    let settings = request.conditioning_with(wanted);
-    let mut flights = Vec::new();
-    for log in logs {
-        let made = log.iter().map(|flight| flight.conditioned((vehicle, &known.origin), &settings));
-        let (usable, refused): (Vec<_>, Vec<_>) = made.partition(Result::is_ok);
-        if let (true, Some(Err(why))) = (usable.is_empty(), refused.into_iter().next()) {
-            return Err(why);
-        }
-        flights.extend(usable.into_iter().flatten());
-    }
+    let flights = conditioned(logs, (vehicle, &known.origin), &request.conditioning_with(wanted))?;
     let half_width_s = ExplainSettings::default().half_width_s;
     let together = identify_jointly(&flights, (vehicle, &effects), wanted, half_width_s)
         .map_err(|source| StudyError::Joint { logs: names(&request.logs), source })?;

@@ -1,0 +1,66 @@
+//! Mass and inertia together with what the flights show beside them: the estimator of `explain`.
+
+use crate::diagnose::{ExplainSettings, Explanation, Verdict, explain};
+use crate::estimate::{Estimated, Finding, Nominal, Recommendation, THETA, moved_by_guessed_curve};
+use crate::physics::{Effect, effects::ThrustCurve};
+use crate::signals::Signals;
+use crate::study::explain::BY_CONTROL;
+use crate::vehicle::Vehicle;
+
+/// The recommended estimate, and what was estimated beside mass and inertia.
+#[derive(Debug)]
+pub(super) struct Beside {
+    pub(super) best: Recommendation,
+    /// identifiers of effects
+    pub(super) effects: Vec<&'static str>,
+}
+
+/// Searches the flights for effects and takes mass and inertia from the final fit. `alone` is the estimate of the rigid body alone,
+/// with what a wider window says of it. `None` where the flights are too short, or lack what a search needs.
+pub(super) fn beside(flights: &[Signals], vehicle: &Vehicle, alone: &Estimated) -> Option<Beside> {
+    let found = match explain(flights, vehicle, &ExplainSettings::default()) {
+        Ok(found) => found,
+        Err(why) => {
+            tracing::info!(%why, "no effects beside mass and inertia searched");
+            return None;
+        }
+    };
+    let unexplained = found.verdict == Verdict::Unexplained;
+    // what serves as no explanation is not in the model
+    let fitted = if unexplained { &found.search.before } else { &found.search.after };
+    let mut estimated = fitted.with_stated_thrust(&vehicle.propulsion);
+    estimated.by_wider_window = alone.by_wider_window;
+    if !fitted.base.estimates(|term| term.id() == ThrustCurve.id()) {
+        let moved = moved_by_guessed_curve(flights, vehicle).map(|by| by.on(&estimated.theta));
+        estimated = estimated.with_guessed_curve(moved);
+    }
+    let effects: Vec<&'static str> = found.named.iter().map(|named| named.id).collect();
+    let mut best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(&found));
+    if found.turned_by_control {
+        for index in 1..THETA {
+            best.result.parameters[index].finding = Finding::NotDetermined { reason: BY_CONTROL.to_owned() };
+        }
+    }
+    Some(Beside { best, effects })
+}
+
+/// The reason for the user.
+fn why(found: &Explanation) -> String {
+    let names: Vec<String> = found.named.iter().map(|named| named.id.replace('_', " ")).collect();
+    match (found.verdict, names.join(", ")) {
+        (Verdict::Unexplained, _) => {
+            "mass and inertia alone: something acts in these flights that no known effect explains, and \
+                                      `mavid explain` shows where"
+                .to_owned()
+        }
+        (_, names) if names.is_empty() => {
+            "these flights show nothing beside mass and inertia; the error of the residual torque \
+                                           is in the standard errors"
+                .to_owned()
+        }
+        (_, names) => format!(
+            "mass and inertia are estimated together with what these flights show beside them: {names} (`mavid explain` tells \
+             their sizes)"
+        ),
+    }
+}
