@@ -201,6 +201,13 @@ impl Weighted {
         (theta, covariance)
     }
 
+    /// Squared norm of the part of a column that no other column explains, weighted; the columns as in [`Self::coefficients`].
+    pub(super) fn own(&self, index: usize) -> Option<f64> {
+        let mut unit = DVector::zeros(self.nuisances.len());
+        unit[index] = 1.0;
+        Some(self.normal.as_ref()?.solve(&unit)[index].recip())
+    }
+
     /// Coefficients of the nuisances and of the base's effects in the projection of a weighted column.
     pub(super) fn part_in(&self, column: &DVector<f64>) -> DVector<f64> {
         let part = self.nuisances.transposed_times(column.as_slice());

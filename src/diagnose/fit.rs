@@ -67,7 +67,7 @@ impl Fitted {
 
     /// Share of the variance of the torques about body x, y, z that the inertia explains, without the part of nuisances and
     /// effects.
-    pub(super) fn explained_torques(&self) -> [f64; 3] {
+    fn explained_torques(&self) -> [f64; 3] {
         let theta = theta_of(&self.base.vehicle.body);
         std::array::from_fn(|axis| {
             let channel = 3 + axis;

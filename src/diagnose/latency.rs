@@ -11,6 +11,7 @@ use super::fed_back::{UNCONFIRMED_S, is_fed_back};
 use super::fit::{Fitted, Newton, evaluate, fit};
 use super::flight_rows::residuals;
 use super::hausman::{contradict, differ};
+use super::left_over::{of_left_over, of_tested};
 use super::rows::Rows;
 use super::signature::EffectTerm;
 use super::signatures::{ALL, BENT_THRUST};
@@ -81,15 +82,17 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         let both = against_lag > REFUSED && against_delay > REFUSED && (0.0..total_s).contains(&delay_s);
         // fed back, the gyroscopes' noise moves commands and motion together, and the second order with them
         let fed_back = is_fed_back(flights);
-        // of two kinds that both serve, the one that the description states
+        // of two kinds that both serve, the one that the description states; where it states none, motors have a lag
         let uneven = stated_uneven(&fitted.base.vehicle);
-        let states_lag = fitted.base.vehicle.propulsion.time_constant_down_s.is_some();
+        let propulsion = &fitted.base.vehicle.propulsion;
+        let has_lag =
+            propulsion.time_constant_down_s.is_some() || propulsion.mean_time_constant_s().is_none();
         latency = if fed_back {
             lag_of(flights, total_s, uneven)
         } else if both {
             let split = ActuationLatency { delay_s, lag_s: total_s - delay_s, uneven };
             not_refuted(split, lag_of(flights, total_s, uneven), flights, &fitted)?
-        } else if against_lag < against_delay || (states_lag && against_lag < REFUSED) {
+        } else if against_lag < against_delay || (has_lag && against_lag < REFUSED) {
             lag_of(flights, total_s, uneven)
         } else {
             // behind the lag that is stated
@@ -199,7 +202,8 @@ pub fn finding_of(fitted: &Fitted) -> LatencyFinding {
     let index = fitted.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Latency);
     let std_s = index
         .filter(|_| fitted.rows.compares_torques)
-        .map_or(f64::INFINITY, |index| fitted.covariance[(index, index)].max(0.0).sqrt());
+        .map_or(f64::INFINITY, |index| fitted.covariance[(index, index)].max(0.0).sqrt())
+        .hypot(index.map_or(0.0, |index| of_left_over(&fitted.weighted, index).sqrt()));
     LatencyFinding {
         total_s: fitted.base.latency.total_s(),
         std_s,
@@ -300,9 +304,11 @@ fn second_order(flights: &[Trace], fitted: &Fitted) -> Result<Option<(f64, f64, 
         // -K(M'')
         turning(trace, &base, 2, ActuationLatency::default())
     });
-    let Some(evidence) = Weighted::new(&rows).test(&[first, second]) else { return Ok(None) };
+    let weighted = Weighted::new(&rows);
+    let Some(evidence) = weighted.test(&[first, second]) else { return Ok(None) };
     let (c1, c2) = (evidence.theta[0], evidence.theta[1]);
-    let (s1, s2) = (evidence.std(0), evidence.std(1));
+    let left_over = of_tested(&weighted, &evidence, 1);
+    let (s1, s2) = (evidence.std(0), evidence.std(1).hypot(left_over));
     // c2 - c1^2/2 takes its error from both
     let spread = (s2 * s2 + c1 * c1 * s1 * s1 - 2.0 * c1 * evidence.covariance[(0, 1)]).max(1e-30).sqrt();
     let delay_s = held_s + c1 - (c1 * c1 - 2.0 * c2).max(0.0).sqrt();

@@ -26,7 +26,8 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
         return None;
     }
     let unsure_s = traces.iter().map(|trace| trace.inertial_unsure_s).fold(0.0, f64::max);
-    let std_s = std_s.hypot(unsure_s);
+    // what every vehicle has beside it is known no better than that
+    let std_s = std_s.hypot(unsure_s).hypot(ORDINARY_STD_S);
     let is_lag = parts.lag_s > parts.delay_s && !is_delay(parts, vehicle);
     let (lag, delay) = (latency_signature(LatencyKind::Lag)?, latency_signature(LatencyKind::Delay)?);
     let (kind, other) = if is_lag { (lag, delay) } else { (delay, lag) };

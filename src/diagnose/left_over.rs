@@ -1,43 +1,59 @@
-//! What the torque that a fit leaves over may do to its moments of inertia.
+//! What the torque that a fit leaves over may do to parameters that only torques tell.
 //!
 //! Statistics of one flight take what is left over for noise that has nothing to do with the motion. A controller answers the motion,
 //! and what the model lacks goes with it, so a part of what is left over goes with the angular acceleration and is taken for
-//! inertia. With a correlation r of both, a moment is wrong by `r sqrt((1 - R2) / R2)` of itself, where R2 is the share of the
-//! torque's variance that the inertia explains.
+//! inertia. With a correlation r of what is left over and a parameter's column, the parameter is wrong by r times the ratio of
+//! their norms. Of a moment of inertia that is about `r sqrt((1 - R2) / R2)` of itself, where R2 is the share of the torque's variance
+//! that the inertia explains.
 
-use super::channels::Nuisance;
+use super::channels::{AXES, Nuisance};
+use super::evidence::{Evidence, Weighted};
 use super::fit::Fitted;
+use super::recorded::Need;
 
 /// Standard deviation of this correlation. Of 48 flights with an estimator in the loop (`cargo bench --bench blind -- --realistic
 /// --write DIR --flights 48 --seed 91125001`) moments were wrong by .7 % rms at 1 - R2 = .002, 1.6 % at .007, 2.4 % at .027, 3.0 %
 /// at .045 and 4.0 % at .11.
 const CORRELATION: f64 = 0.12;
 
-/// Places of Ixx, Iyy and Izz among the entries of the inertia.
-const MOMENTS: [usize; 3] = [0, 3, 5];
-
-/// Variance that this adds to the moments of inertia about body x, y, z, kg^2 m^4.
-pub(super) fn of_left_over(fitted: &Fitted) -> [f64; 3] {
-    let explained = fitted.explained_torques();
-    std::array::from_fn(|axis| {
-        let share = explained[axis].clamp(LEAST_EXPLAINED, 1.0);
-        let moment = fitted.base.vehicle.body.inertia_kg_m2[(axis, axis)];
-        (CORRELATION * moment).powi(2) * (1.0 - share) / share
-    })
+/// Variance that this adds to a coefficient of a fit, in its unit squared.
+pub(super) fn of_left_over(weighted: &Weighted, place: usize) -> f64 {
+    // weighted, what is left over has the norm of the number of rows
+    let rows = weighted.count_of(AXES - 1) as f64;
+    weighted.own(place).map_or(0.0, |own| CORRELATION.powi(2) * rows / own)
 }
 
-/// Least share that is reckoned with: below it, no inertia is stated anyway.
-const LEAST_EXPLAINED: f64 = 0.1;
+/// Standard deviation that it adds to one of the coefficients of tested columns, in its unit.
+pub(super) fn of_tested(weighted: &Weighted, evidence: &Evidence, index: usize) -> f64 {
+    let squares = |channel: usize| {
+        let rms = evidence.unit_rms[index][channel] / weighted.sigma[channel];
+        weighted.count_of(channel) as f64 * rms.powi(2)
+    };
+    let own: f64 = (0..AXES).filter(|&channel| weighted.sigma[channel] > 0.0).map(squares).sum();
+    if own > 0.0 { CORRELATION * (weighted.count_of(AXES - 1) as f64 / own).sqrt() } else { 0.0 }
+}
 
-/// Adds it to the covariance of a fit by least squares.
+/// Adds it to the covariance of a fit by least squares: to the inertia, and to effects that need torques.
 pub(super) fn add_left_over(fitted: &mut Fitted) {
-    let added = of_left_over(fitted);
-    for (index, column) in fitted.rows.nuisances.iter().enumerate() {
-        let Nuisance::Inertia(entry) = column.nuisance else { continue };
-        let Some(axis) = MOMENTS.iter().position(|moment| *moment == entry) else { continue };
+    let of_nuisances = fitted.rows.nuisances.iter();
+    let mut places: Vec<usize> = of_nuisances
+        .enumerate()
+        .filter(|(_, column)| matches!(column.nuisance, Nuisance::Inertia(_)))
+        .map(|(place, _)| place)
+        .collect();
+    let mut place = fitted.rows.nuisances.len();
+    for term in &fitted.base.present {
+        for slot in &term.free {
+            places.extend(
+                (term.signature.needs.contains(&Need::Torques) && term.is_amount(*slot)).then_some(place),
+            );
+            place += 1;
+        }
+    }
+    for place in places {
         // what no row bears on stays undetermined
-        if fitted.covariance[(index, index)] > 0.0 {
-            fitted.covariance[(index, index)] += added[axis];
+        if fitted.covariance[(place, place)] > 0.0 {
+            fitted.covariance[(place, place)] += of_left_over(&fitted.weighted, place);
         }
     }
 }

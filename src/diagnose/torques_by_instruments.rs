@@ -33,12 +33,14 @@ pub(super) fn torques_by_instruments(
         by.covariance += &brings * brings.transpose() * latency_std_s.powi(2);
     }
     let (plain, told) = (fitted.rigid_body(), by.rigid_body());
-    let left_over = of_left_over(fitted);
-    let contradicts = |(at, left_over): (usize, f64)| {
+    let contradicts = |at: usize| {
         let variance = |body: &Estimated| body.covariance[(at, at)];
+        let moment = Nuisance::Inertia(at - 1);
+        let place = fitted.rows.nuisances.iter().position(|column| column.nuisance == moment);
+        let left_over = place.map_or(0.0, |place| of_left_over(&fitted.weighted, place));
         differ(told.theta[at] - plain.theta[at], variance(&plain) + left_over, variance(&told))
     };
-    if !MOMENTS.into_iter().zip(left_over).any(contradicts) {
+    if !MOMENTS.into_iter().any(contradicts) {
         return Ok(false);
     }
     let places: Vec<usize> =

@@ -9,7 +9,6 @@ use crate::diagnose::signature::EffectTerm;
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::text::compact;
-use nalgebra::DVector;
 
 /// Why a parameter is not estimated.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,9 +119,7 @@ pub(super) fn estimates(fitted: &Fitted, place: usize) -> Vec<(usize, f64, f64, 
 /// is zero.
 fn own_share(weighted: &Weighted, index: usize) -> Option<f64> {
     let plain = weighted.nuisances.norm_squared(index);
-    let mut unit = DVector::zeros(weighted.nuisances.len());
-    unit[index] = 1.0;
-    let own = weighted.normal.as_ref()?.solve(&unit)[index].recip();
+    let own = weighted.own(index)?;
     (plain > 0.0).then(|| own / plain)
 }
 

@@ -10,7 +10,7 @@ use super::gust::{GustFound, gust};
 use super::localisation::Localisation;
 use super::redness::{Quantity, Redness, beside_harmonics, red_fit, red_quantities, redness, scale};
 use super::view::{Followed, View};
-use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_TORQUE};
+use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_SIDEWAYS, UNNAMED_TORQUE};
 use nalgebra::Vector3;
 
 /// A slow trend.
@@ -183,7 +183,11 @@ fn trend(traces: &[Trace], fitted: &Fitted, view: &View) -> Option<Trend> {
             let evidence = fitted.weighted.test(&column)?;
             let per_min = evidence.theta[0];
             let relative = per_min.abs() * longest_s / 60.0 / scale(fitted, of).max(f64::MIN_POSITIVE);
-            let least = if matches!(of, Quantity::Torque(_)) { UNNAMED_TORQUE } else { UNNAMED_FORCE };
+            let least = match of {
+                Quantity::Torque(_) => UNNAMED_TORQUE,
+                Quantity::World(_) => UNNAMED_SIDEWAYS,
+                Quantity::Lift | Quantity::BodyZ => UNNAMED_FORCE,
+            };
             let certain = evidence.z > TREND_Z && relative > least && may_feel(fitted, &column, &evidence);
             Some(Trend { of, per_min, std_per_min: evidence.std(0), z: evidence.z, relative, certain })
         })

@@ -8,7 +8,7 @@ use super::super::channels::{AXES, CHANNELS, Channels, channels};
 use super::super::felt::may_feel;
 use super::super::fit::Fitted;
 use super::super::trace::Trace;
-use crate::diagnose::materiality::UNNAMED_FORCE;
+use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_SIDEWAYS};
 use crate::stats::quantile;
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
@@ -101,7 +101,7 @@ pub fn field_test(
     })?;
     let (where_m, extent_m, force_n) =
         bump(traces, after, (component, along), ranges[along]).unwrap_or((0.0, 0.0, 0.0));
-    let least_n = UNNAMED_FORCE * after.weight_n();
+    let least_n = if component < 2 { UNNAMED_SIDEWAYS } else { UNNAMED_FORCE } * after.weight_n();
     let certain = evidence.z > FIELD_Z
         && evidence.gain >= FIELD_GAIN
         && force_n.abs() >= least_n
