@@ -5,7 +5,7 @@
 //! because a lag also smooths noise and has the smaller residual for that reason.
 
 use super::base::Base;
-use super::channels::{Channels, Nuisance, SECOND, append, channels, nothing, per_step};
+use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, append, channels, nothing, per_step};
 use super::evidence::Weighted;
 use super::fed_back::{UNCONFIRMED_S, is_fed_back};
 use super::fit::{Fitted, Newton, evaluate, fit};
@@ -138,7 +138,7 @@ pub(super) fn with_latency(
         LatencyFinding { std_s: finding.std_s.hypot(unsure_s), ..finding }
     };
     let Some(by) = fit_by_instruments(flights, &plain, newton)? else { return Ok((plain, unsure(None))) };
-    let told = finding_of(&by);
+    let told = of_covariance(&by);
     // without such noise least squares has nothing against it but a contradiction
     let refutes = if is_fed_back(flights) { differ } else { contradict };
     if !refutes(told.total_s - finding.total_s, finding.std_s.powi(2), told.std_s.powi(2)) {
@@ -199,11 +199,19 @@ fn look_alikes(flights: &[Trace]) -> Vec<EffectTerm> {
 /// seldom that what lies between two of them is no straight line, and the force follows it as little as the torque does.
 #[must_use]
 pub fn finding_of(fitted: &Fitted) -> LatencyFinding {
+    let finding = of_covariance(fitted);
+    let latency = |column: &NuisanceColumn| column.nuisance == Nuisance::Latency;
+    let place = fitted.rows.nuisances.iter().position(latency);
+    let left_over = place.map_or(0.0, |place| of_left_over(&fitted.weighted, place));
+    LatencyFinding { std_s: finding.std_s.hypot(left_over.sqrt()), ..finding }
+}
+
+/// The same without what the torque that is left over may do to it.
+fn of_covariance(fitted: &Fitted) -> LatencyFinding {
     let index = fitted.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Latency);
     let std_s = index
         .filter(|_| fitted.rows.compares_torques)
-        .map_or(f64::INFINITY, |index| fitted.covariance[(index, index)].max(0.0).sqrt())
-        .hypot(index.map_or(0.0, |index| of_left_over(&fitted.weighted, index).sqrt()));
+        .map_or(f64::INFINITY, |index| fitted.covariance[(index, index)].max(0.0).sqrt());
     LatencyFinding {
         total_s: fitted.base.latency.total_s(),
         std_s,
