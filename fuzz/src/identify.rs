@@ -30,7 +30,11 @@ pub fn run(data: &[u8], seeded: bool) {
         "the seeded bug: two kinds of damage in one flight"
     );
     let (vehicle, settings) = (flight.vehicle.clone(), IdentifySettings::default());
-    let Ok(study) = IdentifyStudy::of_signals(vec![signals], Vec::new(), vehicle, &settings) else { return };
+    let Ok(study) =
+        IdentifyStudy::of_signals(vec![signals.clone()], Vec::new(), vehicle, &settings, &[signals])
+    else {
+        return;
+    };
     is_readable(&identification_text(&study));
     is_readable(&identification_html(&study));
     let _ = IdentificationDocument::new(&study);

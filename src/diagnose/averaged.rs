@@ -9,7 +9,8 @@ const AVERAGED_S: f64 = 2.0;
 
 /// Each row's mean with those of the run around it, N m, body. Rows are `apart_s` apart.
 pub(super) fn averaged(torque: [Vec<f64>; 3], runs: &[Range<usize>], apart_s: f64) -> [Vec<f64>; 3] {
-    let half = if apart_s > 0.0 { (0.5 * AVERAGED_S / apart_s).round() as usize } else { 0 };
+    let is_within = |rows: &i32| apart_s > 0.0 && f64::from(*rows) * apart_s <= 0.5 * AVERAGED_S;
+    let half = (1..).take_while(is_within).count();
     torque.map(|axis| running_mean(&axis, runs, half))
 }
 
@@ -40,6 +41,6 @@ mod tests {
         let values = [1.0, 2.0, 3.0, 4.0, 100.0, 50.0];
         assert_eq!(running_mean(&values, &[0..4, 4..6], 1), [1.5, 2.0, 3.0, 3.5, 75.0, 75.0]);
         // what belongs to no run is nothing
-        assert_eq!(running_mean(&values, &[0..2], 5), [1.5, 1.5, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(running_mean(&values, &[0..1, 1..2], 5), [1.0, 2.0, 0.0, 0.0, 0.0, 0.0]);
     }
 }
