@@ -20,6 +20,7 @@ use mavid::config::parse_vehicle;
 use mavid::diagnose::{ExplainSettings, Explanation, Verdict, explain};
 use mavid::log::{self, OpenOptions};
 use mavid::signals::{ConditionSettings, ThrustPreference, condition};
+use mavid::study::{self, ExplainRequest, ReadSettings, Silent, VehicleGiven};
 use nalgebra::Vector3;
 
 fn craft() -> Craft {
@@ -215,6 +216,33 @@ fn realistic_flights_are_the_same_again_and_tell_what_is_believed() {
         .values()
         .map(|stream| stream.time_s.last().unwrap_or(&0.0) - stream.time_s.first().unwrap_or(&0.0));
     close(longest.fold(0.0, f64::max), 30.0, 0.3);
+}
+
+/// From the first of these flights alone, damping of the rotation would be named, and there is none. With it the second one is
+/// predicted worse.
+#[test]
+fn a_name_that_the_hold_out_refutes_is_withdrawn() {
+    let (case, flown) = RealCase::flown(20_310_166, &[]).unwrap();
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("blind_refuted");
+    std::fs::create_dir_all(&folder).unwrap();
+    let put = |name: &str, bytes: &[u8]| std::fs::write(folder.join(name), bytes).unwrap();
+    put("vehicle.toml", case.case.craft.file("refuted").as_bytes());
+    put("first.tlog", &case.log(&flown[0], 0));
+    put("second.tlog", &case.log(&flown[1], 1));
+    let request = ExplainRequest {
+        logs: vec![folder.join("first.tlog")],
+        vehicle: VehicleGiven::File(folder.join("vehicle.toml")),
+        holdout: vec![folder.join("second.tlog")],
+        read: ReadSettings::default(),
+        transient_s: ExplainRequest::TRANSIENT_S,
+        design_next: false,
+    };
+    let study = study::explain(&request, &Silent).unwrap();
+    assert!(study.effects.is_empty() && study.closest.is_empty(), "{:?}", study.effects);
+    assert_eq!(study.verdict(), Verdict::NothingMissing);
+    assert!(study.effects_of_model().is_empty());
+    let why = study.notes.iter().find(|note| note.text.contains("so it gets none")).unwrap();
+    assert!(why.is_warning() && why.text.contains("damping of the rotation"), "{why}");
 }
 
 /// As `mavid prove` reads and explains a case.

@@ -1,6 +1,7 @@
 //! Result of an explanation.
 
 use super::harmonics::LackOfFit;
+use super::latency::finding_of;
 use super::locate::{Aperiodic, FieldTest, Localisation};
 use super::named::{DetectionLimit, Named};
 use super::slight::Slight;
@@ -33,6 +34,24 @@ impl Verdict {
 }
 
 impl Explanation {
+    /// Without its names, which flights that were not used refute: the model is the rigid body alone. What the names left is left
+    /// without them, too.
+    #[must_use]
+    pub fn refuted(mut self) -> Self {
+        self.verdict = match self.verdict {
+            Verdict::NothingMissing | Verdict::Explained => Verdict::NothingMissing,
+            Verdict::PartlyExplained | Verdict::Unexplained => Verdict::Unexplained,
+        };
+        let names = std::mem::take(&mut self.named);
+        self.closest = if self.verdict == Verdict::Unexplained { names } else { Vec::new() };
+        self.slight.clear();
+        self.located_after.clone_from(&self.located_before);
+        self.search.after = self.search.before.clone();
+        self.search.latency = finding_of(&self.search.before);
+        self.search.steps.clear();
+        self
+    }
+
     /// Emits it as tracing events: each name with its evidence and sizes, the remaining deviations, and the verdict.
     pub(super) fn emit(&self) {
         self.named.iter().for_each(|named| named.emit());

@@ -2,15 +2,16 @@
 
 use super::result::ExplainStudy;
 use super::shown_on::ShownOn;
-use crate::diagnose::Empirical;
 use crate::diagnose::holdout::{
     Explained, HeldOut, HoldoutError, HoldoutSettings, IdentificationFit, Split, differing, on_holdout,
     on_identification, split_last_periods,
 };
+use crate::diagnose::{Empirical, brief};
 use crate::note::{About, Note};
 use crate::signals::{Signals, clock_offset};
 use crate::study::flights::{Prepared, shared};
 use crate::study::{Predicted, StudyError};
+use crate::text::significant;
 
 /// What a law of the rates is.
 const BY_RATE_LAW: &str = "over 0.5 s these flights' body rates or attitude are predicted better by no change at all than by the torques \
@@ -95,6 +96,23 @@ impl ExplainStudy {
                 self.notes.push(Note::warning(About::Estimate, text));
             }
         }
+    }
+
+    /// What speaks against the names: with them, flights that were not used are predicted worse. `None` where they help, and where
+    /// the hold-out is of another vehicle.
+    pub(super) fn refuted_by_holdout(&self) -> Option<String> {
+        let named = self.explanation.named.iter();
+        let worse = -self.holdout.as_ref()?.work_of_effects()?;
+        let names: Vec<String> = named.map(|named| brief(named, &self.given.vehicle, true)).collect();
+        let refuted = worse > 0.0 && !names.is_empty() && self.other_vehicle().is_none();
+        refuted.then(|| {
+            format!(
+                "the flights explained alone would give a name to {}; with it, errors over 0.5 s are {} % larger in the mean on the \
+                 hold-out, so it gets none",
+                names.join(", "),
+                significant(worse, 2)
+            )
+        })
     }
 
     /// What predicts.

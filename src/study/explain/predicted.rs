@@ -53,6 +53,20 @@ impl Predicted {
         QUANTITIES.into_iter().zip(worse).filter(|(_, worse)| *worse).map(|((name, _), _)| name).collect()
     }
 
+    /// Mean over the quantities of what the effects lower the rigid body's errors by, percent. That a state which does not change
+    /// predicts better does not count.
+    #[must_use]
+    pub fn work_of_effects(&self) -> Option<f64> {
+        let each: Vec<f64> = self
+            .half_second()
+            .into_iter()
+            .flatten()
+            .map(|Compared { before, after, .. }| improvement_percent(before.value, after.value))
+            .filter(|percent| percent.is_finite())
+            .collect();
+        (!each.is_empty()).then(|| each.iter().sum::<f64>() / each.len() as f64)
+    }
+
     /// Mean improvement over the quantities, percent.
     #[must_use]
     pub fn improvement(&self) -> Option<f64> {
@@ -71,3 +85,38 @@ impl From<&HoldoutFit> for Predicted {
 /// Names of the quantities of [`OpenLoop::quantities`] in their order.
 pub const QUANTITIES: [(&str, &str); 4] =
     [("position", "m"), ("velocity", "m/s"), ("attitude", "rad"), ("body rate", "rad/s")];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_work_of_effects_is_against_the_rigid_body_whatever_no_change_would_predict() {
+        let alone = |value| Interval { value, range: None };
+        let of = |before, after| {
+            Some(Compared {
+                before: alone(before),
+                after: alone(after),
+                unchanged: Some(alone(0.1)),
+                floor: None,
+                improvement_percent: alone(-900.0),
+                at_end: None,
+            })
+        };
+        let predicted = |position_m, velocity_m_s| Predicted {
+            open_loop: vec![OpenLoop {
+                window_s: 0.5,
+                windows: 10,
+                position_m,
+                velocity_m_s,
+                attitude_rad: None,
+                rates_rad_s: None,
+            }],
+            improvement_percent: None,
+        };
+        // 50 % less and 25 % more
+        let found = predicted(of(2.0, 1.0), of(4.0, 5.0)).work_of_effects().unwrap();
+        assert!((found - 12.5).abs() < 1e-12, "{found}");
+        assert_eq!(predicted(None, None).work_of_effects(), None);
+    }
+}

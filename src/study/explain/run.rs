@@ -7,7 +7,7 @@ use super::shown_on::ShownOn;
 use crate::config::LoadedVehicle;
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{ExplainSettings, Trace, Verdict};
+use crate::diagnose::{ExplainSettings, Explanation, Trace, Verdict};
 use crate::estimate::{Contradiction, inertia_by_wider_window, moved_by_guessed_curve};
 use crate::note::{About, Note};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference};
@@ -109,14 +109,30 @@ impl Task<'_> {
             settings,
             transient_s: self.request.transient_s,
         };
+        self.progress.stage(Stage::Predicting);
+        let study = self.shown(given, explanation, flights, (held, back, shown_on.clone()));
+        let Some(why) = study.refuted_by_holdout() else { return Ok(study) };
+        let ExplainStudy { given, explanation, .. } = study;
+        let mut study = self.shown(given, explanation.refuted(), flights, (held, back, shown_on));
+        study.notes.push(Note::warning(About::HoldOut, why));
+        Ok(study)
+    }
+
+    /// An explanation with what it does on the flights explained and on those held out.
+    fn shown(
+        &self,
+        given: Given,
+        explanation: Explanation,
+        flights: &Prepared,
+        (held, back, shown_on): (&Prepared, Option<&Signals>, ShownOn),
+    ) -> ExplainStudy {
         let mut study = ExplainStudy::new(given, explanation);
         study.notes.extend_from_slice(self.notes);
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
-        self.progress.stage(Stage::Predicting);
         study.show_explained(flights);
         study.show_held_out(held, back, shown_on);
-        Ok(study)
+        study
     }
 
     /// The whole last flight instead of its part, if that shows a change which the part does not.
