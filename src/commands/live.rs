@@ -17,6 +17,8 @@ use super::{CommandError, Outcome, network, output};
 
 /// From the signal, or from the end of what must be waited for, to that of the program.
 const GRACE: Duration = Duration::from_secs(5);
+/// The signal of somebody at the keyboard, as [`network::Signals`] names it.
+const INTERRUPT: &str = "Ctrl-C";
 /// Between two looks at the clock.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -27,24 +29,69 @@ enum Phase {
     Before,
     /// a vehicle depends on it
     Flying,
+    /// it fetches what it can do without
+    Fetching,
     /// it ends by itself, soon
     Ending,
 }
 
+/// What is known of a verb.
+#[derive(Debug, Clone, Copy)]
+struct Told {
+    phase: Phase,
+    /// a signal has ended what it fetched
+    fetch_ended: bool,
+}
+
 /// What a running verb tells those that watch over it. Clones tell the same.
 #[derive(Debug, Clone)]
-pub struct Work(Arc<watch::Sender<Phase>>);
+pub struct Work(Arc<watch::Sender<Told>>);
 
 impl Work {
+    fn enters(&self, phase: Phase) {
+        self.0.send_modify(|told| told.phase = phase);
+    }
+
     /// A vehicle depends on it: it alone knows when it may end.
     pub fn flies(&self) {
-        self.0.send_replace(Phase::Flying);
+        self.enters(Phase::Flying);
+    }
+
+    /// It fetches what it can do without, and hears of signals: the first Ctrl-C ends the download and not the program.
+    pub fn fetches(&self) {
+        self.enters(Phase::Fetching);
+    }
+
+    /// The download is over; whether a signal ended it. From now on it ends itself.
+    pub fn fetched(&self, by_signal: bool) {
+        self.0.send_replace(Told { phase: Phase::Ending, fetch_ended: by_signal });
     }
 
     /// It hears of signals, or has ended what had to be; by an end soon after one nothing is lost but words and what can
     /// be worked out again.
     pub fn ends_itself(&self) {
-        self.0.send_replace(Phase::Ending);
+        self.enters(Phase::Ending);
+    }
+}
+
+/// What the signals that came ask for.
+#[derive(Debug, Default)]
+struct Signalled {
+    /// the signal by which the program ends
+    asked: Option<String>,
+    /// one that ended a download alone has come
+    spared: bool,
+}
+
+impl Signalled {
+    /// A signal came. It may be heard of here only after the download has ended by it.
+    fn hear(&mut self, name: String, told: Told) {
+        let of_download = told.phase == Phase::Fetching || told.fetch_ended;
+        if of_download && name == INTERRUPT && !self.spared && self.asked.is_none() {
+            self.spared = true;
+        } else {
+            self.asked.get_or_insert(name);
+        }
     }
 }
 
@@ -53,9 +100,9 @@ pub fn run(
     verb: impl FnOnce(&Work) -> Result<Outcome, CommandError> + Send + 'static,
 ) -> Result<Outcome, CommandError> {
     panics_do_not_wait();
-    let (signals, signalled) = channel();
-    watch_signals(signals)?;
-    let (told, phase) = watch::channel(Phase::Before);
+    let (sender, signalled) = channel();
+    watch_signals(sender)?;
+    let (told, phase) = watch::channel(Told { phase: Phase::Before, fetch_ended: false });
     let work = Work(Arc::new(told));
     let (done, outcome) = channel();
     let thread = thread::Builder::new().name("verb".into()).spawn(move || {
@@ -64,7 +111,7 @@ pub fn run(
         let _ = done.send(ended);
     });
     thread.map_err(|error| CommandError::Failure(format!("cannot start a thread: {error}")))?;
-    let mut asked: Option<String> = None;
+    let mut signals = Signalled::default();
     let mut since: Option<Instant> = None;
     loop {
         match outcome.recv_timeout(LOOK) {
@@ -74,14 +121,16 @@ pub fn run(
             Err(RecvTimeoutError::Timeout) => {}
         }
         if let Ok(name) = signalled.try_recv() {
-            asked.get_or_insert(name);
+            signals.hear(name, *phase.borrow());
         }
-        let Some(name) = &asked else { continue };
-        let text = match *phase.borrow() {
+        let Some(name) = &signals.asked else { continue };
+        let text = match phase.borrow().phase {
             Phase::Before => format!("mavid: ended by {name} before it began"),
             Phase::Flying => continue,
-            Phase::Ending if since.get_or_insert_with(Instant::now).elapsed() < GRACE => continue,
-            Phase::Ending => format!(
+            Phase::Fetching | Phase::Ending if since.get_or_insert_with(Instant::now).elapsed() < GRACE => {
+                continue;
+            }
+            Phase::Fetching | Phase::Ending => format!(
                 "mavid: ended {} s after {name}, before all output was written: standard output, standard error or a \
                  disk accepts no data, or the flight was being analysed; what was recorded is in its file",
                 GRACE.as_secs()
@@ -135,4 +184,40 @@ fn panics_do_not_wait() {
             let _ = writeln!(std::io::stderr().lock(), "{text}");
         });
     }));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the program ends by after these signals, each with what was known of the verb when it was heard of.
+    fn asked(signals: &[(&str, Phase, bool)]) -> Option<String> {
+        let mut heard = Signalled::default();
+        for (name, phase, fetch_ended) in signals {
+            heard.hear((*name).to_owned(), Told { phase: *phase, fetch_ended: *fetch_ended });
+        }
+        heard.asked
+    }
+
+    #[test]
+    fn the_first_interrupt_of_a_download_ends_it_and_the_second_the_program() {
+        let interrupted = Some(INTERRUPT.to_owned());
+        assert_eq!(asked(&[(INTERRUPT, Phase::Fetching, false)]), None);
+        // heard of when the download had ended by it
+        assert_eq!(asked(&[(INTERRUPT, Phase::Ending, true)]), None);
+        for first in [(INTERRUPT, Phase::Fetching, false), (INTERRUPT, Phase::Ending, true)] {
+            for second in [(INTERRUPT, Phase::Fetching, false), (INTERRUPT, Phase::Ending, true)] {
+                assert_eq!(asked(&[first, second]), interrupted);
+            }
+        }
+        // during the analysis of a flight whose download came to its end, and before any download
+        assert_eq!(asked(&[(INTERRUPT, Phase::Ending, false)]), interrupted);
+        assert_eq!(
+            asked(&[(INTERRUPT, Phase::Flying, false), (INTERRUPT, Phase::Fetching, false)]),
+            interrupted
+        );
+        // nobody at a keyboard asks for the analysis
+        let terminated = Some("SIGTERM".to_owned());
+        assert_eq!(asked(&[("SIGTERM", Phase::Fetching, false)]), terminated);
+    }
 }

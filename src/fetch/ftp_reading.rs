@@ -103,6 +103,12 @@ impl FtpReading {
         }
     }
 
+    /// Of the file at `path` of which all `size` bytes are there: its checksum, and whether the vehicle wrote on.
+    pub(super) fn sum_of(peer: Peer, path: &str, size: u64) -> Self {
+        let step = Step::Sum(Question::new(operation::CRC, 0, path));
+        Self { step, window: Some(Window::new(size, size)), ..Self::new(peer, path, size) }
+    }
+
     pub(super) fn window(&mut self) -> Option<&mut Window> {
         self.window.as_mut()
     }

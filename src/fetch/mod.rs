@@ -9,13 +9,16 @@
 //! ```
 
 mod asked;
+mod chosen;
 mod dialogue;
 mod download;
 mod error;
+mod faster;
 mod fetched;
 mod ftp;
 mod ftp_list;
 mod ftp_reading;
+mod gauge;
 mod list;
 mod log_list;
 mod log_reading;
@@ -32,6 +35,7 @@ mod survey;
 mod uptime;
 mod window;
 
+pub use chosen::{Chosen, OtherWay};
 pub use dialogue::Dialogue;
 pub use download::Download;
 pub use error::FetchError;

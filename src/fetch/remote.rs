@@ -22,6 +22,15 @@ impl Protocol {
             Self::Log => "log",
         }
     }
+
+    /// In a sentence.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Ftp => "file transfer",
+            Self::Log => "log messages",
+        }
+    }
 }
 
 /// Where a log is on the vehicle.

@@ -46,6 +46,17 @@ pub fn toml_string(text: &str) -> String {
     toml::Value::String(clean(text)).to_string()
 }
 
+/// One word of a command for a POSIX shell: in quotes where a character in it may mean something else to the shell.
+#[must_use]
+pub fn shell_word(text: &str) -> String {
+    let text = clean(text);
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./:=,@%+".contains(letter);
+    if !text.is_empty() && text.chars().all(is_plain) {
+        return text;
+    }
+    format!("'{}'", text.replace('\'', "'\\''"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -56,6 +67,18 @@ mod tests {
         assert_eq!(markup("<a href='x'>\"&\n"), "&lt;a href=&#39;x&#39;&gt;&quot;&amp;\\n");
         assert_eq!(markup_comment("a ---> b-"), "<!-- a - - -> b- -->");
         assert_eq!(line_comment("#", "x\nimport os"), "# x\\nimport os\n");
+    }
+
+    #[test]
+    fn a_word_of_a_command_is_quoted_where_a_shell_would_read_more_into_it() {
+        for plain in ["udpin:0.0.0.0:14550", "serial:/dev/ttyUSB0:57600", "logs/a-b_1.ulg"] {
+            assert_eq!(shell_word(plain), plain);
+        }
+        assert_eq!(shell_word("serial:/dev/my port:57600"), "'serial:/dev/my port:57600'");
+        assert_eq!(shell_word("a;rm *"), "'a;rm *'");
+        assert_eq!(shell_word("it's"), r"'it'\''s'");
+        assert_eq!(shell_word("[::1]:5760"), "'[::1]:5760'");
+        assert_eq!(shell_word(""), "''");
     }
 
     proptest! {

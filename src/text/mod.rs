@@ -13,7 +13,7 @@ mod number;
 
 pub use escape::{clean, clean_lines, is_command};
 pub use excerpt::{excerpt, listed, path};
-pub use format::{line_comment, markup, markup_comment, toml_string};
+pub use format::{line_comment, markup, markup_comment, shell_word, toml_string};
 pub use json::{json_line, json_pretty};
 pub(crate) use number::rounded;
 pub use number::{chance, compact, significant, spoken, with_error};

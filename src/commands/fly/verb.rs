@@ -66,7 +66,7 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
     let fetching = if record.outcome.ending == Ending::Landed { Fetching::of(args) } else { Fetching::Not };
     // each line when it is due: how long a download takes is said before it
-    let onboard = log::after_flight(args, record.system, fetching, &mut |note| said.say(vec![note]));
+    let onboard = log::after_flight((args, work), record.system, fetching, &mut |note| said.say(vec![note]));
     let flown = (&*args.out, landed, onboard.as_deref());
     let analysis = Analysis::of(flown, &file_of(args), record.system, &mut |note| notes.push(note));
     said.say(notes);

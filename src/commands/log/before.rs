@@ -6,6 +6,7 @@ use mavid::autopilot::LogAwaited;
 use mavid::fetch::Noted;
 use mavid::wire::SystemId;
 
+use super::hint;
 use super::prepare::{agreed, changes_page, earlier, put_back_page, restart_now};
 use super::session::Session;
 use super::{preparing, state};
@@ -80,16 +81,15 @@ async fn set(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     if preparing::needs_restart(&session, &names) {
         return Err(CommandError::Failure(format!(
             "not flown: {what} is set and counts after a restart of the autopilot: restart it, then give the same command \
-             again (mavid does not restart it). Without a flight, mavid log prepare --connect {} --restore puts it back",
-            args.connect
+             again (mavid does not restart it). Without a flight, {} puts it back",
+            hint::restore(&link)
         )));
     }
     if !prepared.awaited.is_empty() {
         return Err(CommandError::Failure(format!(
-            "not flown: {}. Then give the same command again. Without a flight, mavid log prepare --connect {} --restore \
-             puts it back",
+            "not flown: {}. Then give the same command again. Without a flight, {} puts it back",
             restart_now(&prepared.awaited),
-            args.connect
+            hint::restore(&link)
         )));
     }
     if !prepared.unsure.is_empty() {
@@ -116,7 +116,7 @@ async fn reminded(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     if noted.is_empty() {
         return Ok(before);
     }
-    output::message(&earlier(&noted));
+    output::message(&earlier(&link, &noted));
     if agreed("restore", "put it back now, before the flight")? {
         let put_back = preparing::put_back(&mut session, &notes).await?;
         put_back_page(&put_back).lines().for_each(output::message);
@@ -131,8 +131,8 @@ pub fn put_back(args: &FlyArgs, before: &BeforeFlight, tell: &mut impl FnMut(Wor
     if before.noted.is_empty() {
         return;
     }
+    let link = link_of(args, before.system);
     let done = network::block_on(async {
-        let link = link_of(args, before.system);
         let mut session = Session::open_as(&link, SystemId(args.station_id), AFTER).await?;
         let offer = session.offer().await?;
         let notes = state::notes(&session.known_as(&offer))?;
@@ -144,8 +144,7 @@ pub fn put_back(args: &FlyArgs, before: &BeforeFlight, tell: &mut impl FnMut(Wor
             let word = if whole { Word::Message } else { Word::Warning };
             page.lines().for_each(|line| tell(word(format!("logging: {line}"))));
             if !whole {
-                let later = format!("later: mavid log prepare --connect {} --restore", args.connect);
-                tell(Word::Warning(later));
+                tell(Word::Warning(format!("later: {}", hint::restore(&link))));
             }
         }
         Err(error) => {
@@ -154,9 +153,9 @@ pub fn put_back(args: &FlyArgs, before: &BeforeFlight, tell: &mut impl FnMut(Wor
                 .iter()
                 .map(|noted| format!("{} is {} and was {} before", noted.name, noted.set, noted.found));
             tell(Word::Warning(format!(
-                "the logging is not put back: {error}; {}; later: mavid log prepare --connect {} --restore",
+                "the logging is not put back: {error}; {}; later: {}",
                 values.collect::<Vec<_>>().join(", "),
-                args.connect
+                hint::restore(&link)
             )));
         }
     }

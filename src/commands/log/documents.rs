@@ -7,7 +7,9 @@ use mavid::text;
 use serde::Serialize;
 
 use super::fetching::{Done, next, words};
+use super::hint::link_options;
 use super::session::Session;
+use crate::cli::VehicleLinkArgs;
 
 /// The document of `mavid log list`.
 #[derive(Debug, Serialize)]
@@ -74,7 +76,7 @@ impl ListDocument {
     }
 
     /// For people.
-    pub fn page(&self) -> String {
+    pub fn page(&self, link: &VehicleLinkArgs) -> String {
         let mut lines = vec![format!(
             "system {}, {}: {}",
             self.system,
@@ -97,7 +99,7 @@ impl ListDocument {
         }
         if let Some(last) = self.logs.last() {
             let id = last.id.map_or_else(|| "--last".to_owned(), |id| format!("--id {id}"));
-            lines.push(format!("next: mavid log fetch --connect ADDRESS {id}"));
+            lines.push(format!("next: mavid log fetch {} {id}", link_options(link)));
         }
         lines.join("\n")
     }
@@ -105,7 +107,7 @@ impl ListDocument {
 
 impl FetchDocument {
     /// Of a log that was fetched.
-    pub fn new(session: &Session, protocol: &'static str, log: &RemoteLog, done: &Done) -> Self {
+    pub fn new(session: &Session, log: &RemoteLog, done: &Done) -> Self {
         let (checked, crc32) = match done.checked {
             Checked::Sum(sum) => ("crc32", Some(sum)),
             Checked::Length | Checked::NoAnswer => ("length", None),
@@ -115,7 +117,7 @@ impl FetchDocument {
             schema: 1,
             system: session.vehicle.system.0,
             autopilot: session.stack.id,
-            protocol,
+            protocol: done.protocol.id(),
             id: log.id,
             log: text::path(&done.path),
             bytes: done.bytes,
@@ -136,9 +138,10 @@ pub fn page(done: &Done) -> String {
         bytes => format!(" after {:.2} MB of an earlier download", bytes as f64 / 1e6),
     };
     format!(
-        "{}: {:.2} MB in {seconds:.1} s, {rate_kb_s:.0} kB/s{resumed}\n{}\n{}",
+        "{}: {:.2} MB in {seconds:.1} s by {}, {rate_kb_s:.0} kB/s{resumed}\n{}\n{}",
         text::path(&done.path),
         done.bytes as f64 / 1e6,
+        done.protocol.words(),
         words(done.checked),
         next(Path::new(&done.path))
     )
@@ -151,12 +154,15 @@ mod tests {
     #[test]
     fn one_log_is_one_log() {
         let log = |id| LogLine { id: Some(id), name: None, bytes: 2_000_000, time_utc_s: None };
+        let connect = "udpin:0.0.0.0:14550".to_owned();
+        let link = VehicleLinkArgs { connect, system_id: None, signing_key_file: None };
         let page = |logs: Vec<LogLine>| {
             let (schema, system, autopilot, protocol) = (1, 1, "px4", "ftp");
-            ListDocument { schema, system, autopilot, protocol, logs, left_out: 0 }.page()
+            ListDocument { schema, system, autopilot, protocol, logs, left_out: 0 }.page(&link)
         };
         assert!(page(vec![log(7)]).starts_with("system 1, px4: 1 log\n"), "{}", page(vec![log(7)]));
         let two = page(vec![log(7), log(8)]);
         assert!(two.starts_with("system 1, px4: 2 logs, oldest first\n"), "{two}");
+        assert!(two.ends_with("next: mavid log fetch --connect udpin:0.0.0.0:14550 --id 8"), "{two}");
     }
 }

@@ -4,14 +4,29 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use mavid::autopilot::Autopilot;
-use mavid::fetch::{Begun, Checked, Download, List, Offer, Part, PartError, Protocol, RemoteLog, Wanted};
+use mavid::fetch::{
+    Begun, Checked, Chosen, Download, List, Offer, Part, PartError, Protocol, RemoteLog, Wanted,
+};
 use mavid::text;
 
 use super::session::{Flow, Session};
 use crate::commands::{CommandError, output};
 
-/// Whom a download is told to while it goes on: bytes that there are, and of how many.
-pub type Watch<'a> = &'a mut dyn FnMut(u64, u64) -> Flow;
+/// How far a download is.
+#[derive(Debug, Clone)]
+pub struct Progress {
+    /// bytes that there are
+    pub bytes: u64,
+    /// and of how many
+    pub of: u64,
+    /// bytes a second, once they were measured by the way that stays
+    pub bytes_s: Option<f64>,
+    /// which way stays and why, once, where there was a choice
+    pub chosen: Option<Chosen>,
+}
+
+/// Whom a download is told to while it goes on.
+pub type Watch<'a> = &'a mut dyn FnMut(Progress) -> Flow;
 
 /// A log that was fetched.
 #[derive(Debug)]
@@ -26,6 +41,8 @@ pub struct Done {
     pub resumed: u64,
     /// time of this download
     pub took: Duration,
+    /// the way by which its end came
+    pub protocol: Protocol,
 }
 
 /// The logs of a vehicle. Where the file transfer was not asked for by name and does not work, by log messages.
@@ -61,10 +78,11 @@ fn ending(autopilot: Autopilot) -> &'static str {
     if autopilot == Autopilot::Px4 { ".ulg" } else { ".bin" }
 }
 
-/// Fetches a log into a folder. `None` where `watch` had enough: what came stays beside its place.
+/// Fetches a log into a folder: by the protocol that listed it if one was asked for, by the faster one otherwise. `None`
+/// where `watch` had enough: what came stays beside its place.
 pub async fn fetch(
     session: &mut Session,
-    offer: &Offer,
+    (offer, asked): (&Offer, Option<Protocol>),
     log: &RemoteLog,
     (out, watch): (&Path, Watch<'_>),
 ) -> Result<Option<Done>, CommandError> {
@@ -76,12 +94,20 @@ pub async fn fetch(
         Begun::After(bytes) => bytes,
     };
     let began = session.elapsed();
-    let download = Download::new(session.vehicle, log, part.length());
+    let download = match asked {
+        Some(_) => Download::new(session.vehicle, log, part.length()),
+        None => Download::by_the_faster(session.vehicle, log, part.length()),
+    };
     let mut download = download.map_err(|error| CommandError::Failure(error.to_string()))?;
     let ended = session
         .talk(&mut download, |download| {
             part.append(&download.ready()).map_err(of_part)?;
-            Ok(watch(part.length(), download.size().unwrap_or(log.size)))
+            Ok(watch(Progress {
+                bytes: part.length(),
+                of: download.size().unwrap_or(log.size),
+                bytes_s: download.bytes_s(),
+                chosen: download.chosen(),
+            }))
         })
         .await;
     let flow = match ended {
@@ -90,7 +116,7 @@ pub async fn fetch(
             session.say(&download.farewell(session.elapsed())).await;
             return Err(match error {
                 CommandError::Ended(why) => CommandError::Ended(format!(
-                    "{why}; {} of {} bytes are kept, and the same command goes on with them",
+                    "{why}; {} of {} bytes are kept, and the next download into the same folder goes on with them",
                     part.length(),
                     download.size().unwrap_or(log.size)
                 )),
@@ -105,7 +131,8 @@ pub async fn fetch(
     let took = session.elapsed().saturating_sub(began);
     let checked = part.check(&fetched).map_err(of_part)?;
     let path = part.finish().map_err(of_part)?;
-    Ok(Some(Done { path, checked, bytes: fetched.size, resumed, took }))
+    let protocol = download.protocol();
+    Ok(Some(Done { path, checked, bytes: fetched.size, resumed, took, protocol }))
 }
 
 fn of_part(error: PartError) -> CommandError {

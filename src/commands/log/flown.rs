@@ -7,14 +7,14 @@ use mavid::fetch::Wanted;
 use mavid::wire::SystemId;
 
 use super::before::{AFTER, link_of};
-use super::fetching::{self, words};
+use super::fetching::{self, Progress, words};
+use super::hint;
 use super::session::{Flow, Session};
 use crate::cli::{FlyArgs, VehicleLinkArgs};
+use crate::commands::live::Work;
 use crate::commands::words::Word;
 use crate::commands::{CommandError, network};
 
-/// The speed of the link is measured for this long.
-const MEASURED: Duration = Duration::from_secs(2);
 /// A download without `--fetch-log` is made only if it takes no longer than this.
 const AT_MOST: Duration = Duration::from_secs(60);
 
@@ -41,8 +41,9 @@ impl Fetching {
 }
 
 /// Fetches the log of the flight into its folder. Nothing of it makes a flight a failure: why there is no log is told.
+/// The first Ctrl-C meanwhile ends the download alone, and the work after it goes on.
 pub fn after_flight(
-    args: &FlyArgs,
+    (args, work): (&FlyArgs, &Work),
     system: Option<SystemId>,
     fetching: Fetching,
     tell: &mut impl FnMut(Word),
@@ -52,16 +53,38 @@ pub fn after_flight(
     }
     let link = link_of(args, system.map(|system| system.0));
     let station = SystemId(args.station_id);
+    work.fetches();
     let fetched = network::block_on(fetched((&link, station), &args.out, fetching, tell));
+    let is_ended = matches!(fetched, Err(CommandError::Ended(_)));
+    work.fetched(is_ended);
     fetched.unwrap_or_else(|error| {
-        let why = format!("the vehicle's own log is not fetched: {error}; {}", later(&link));
+        let later = later(&link, &args.out);
+        let why = format!("the vehicle's own log is not fetched: {error}; {later}");
         tell(if fetching == Fetching::Always { Word::Warning(why) } else { Word::Message(why) });
+        if is_ended {
+            let goes_on = "the flight is analysed without it; Ctrl-C once more ends the program";
+            tell(Word::Message(goes_on.to_owned()));
+        }
         None
     })
 }
 
-fn later(link: &VehicleLinkArgs) -> String {
-    format!("later: mavid log fetch --connect {} --last", link.connect)
+fn later(link: &VehicleLinkArgs, folder: &Path) -> String {
+    format!("later: {}", hint::fetch_last(link, folder))
+}
+
+/// What is said of a download at this speed: that it goes on, or that it would take too long.
+fn judged(progress: &Progress, bytes_s: f64, fetching: Fetching) -> Result<String, String> {
+    let left = progress.of.saturating_sub(progress.bytes);
+    let left_s = if bytes_s > 0.0 { left as f64 / bytes_s } else { f64::INFINITY };
+    let time = if left_s.is_finite() { format!("about {left_s:.0} s") } else { "no end in sight".to_owned() };
+    let size = format!("{:.1} MB at {:.0} kB/s", progress.of as f64 / 1e6, bytes_s / 1e3);
+    if fetching == Fetching::IfFast && left_s > AT_MOST.as_secs_f64() {
+        return Err(format!(
+            "the vehicle's own log would take too long ({size}: {time}): it is not fetched without --fetch-log"
+        ));
+    }
+    Ok(format!("fetching the vehicle's own log, {size}: {time}"))
 }
 
 async fn fetched(
@@ -77,37 +100,32 @@ async fn fetched(
     match logs.last() {
         None => tell(Word::Message("the vehicle wrote no log of its own".to_owned())),
         Some(log) => {
-            let (began, mut first, mut told) = (session.elapsed(), None, false);
-            let clock = session.clock();
-            let mut watch = |bytes: u64, of: u64| {
-                let now = clock.elapsed();
-                let first = *first.get_or_insert(bytes);
-                let passed = now.saturating_sub(began);
-                if told || passed < MEASURED {
-                    return Flow::On;
+            let mut told = false;
+            let mut watch = |progress: Progress| {
+                if let Some(chosen) = &progress.chosen {
+                    tell(Word::Message(format!("the vehicle's own log: {chosen}")));
                 }
+                let Some(bytes_s) = progress.bytes_s.filter(|_| !told) else { return Flow::On };
                 told = true;
-                let rate = (bytes - first) as f64 / passed.as_secs_f64();
-                let left_s = if rate > 0.0 { (of - bytes.min(of)) as f64 / rate } else { f64::INFINITY };
-                let is_slow = fetching == Fetching::IfFast && left_s > AT_MOST.as_secs_f64();
-                let size = format!("{:.1} MB at {:.0} kB/s", of as f64 / 1e6, rate / 1e3);
-                if is_slow {
-                    tell(Word::Message(format!(
-                        "the vehicle's own log would take {left_s:.0} s ({size}): it is not fetched without --fetch-log; {}",
-                        later(link)
-                    )));
-                    return Flow::Stop;
+                match judged(&progress, bytes_s, fetching) {
+                    Ok(words) => {
+                        tell(Word::Message(words));
+                        Flow::On
+                    }
+                    Err(words) => {
+                        tell(Word::Message(format!("{words}; {}", later(link, folder))));
+                        Flow::Stop
+                    }
                 }
-                tell(Word::Message(format!("fetching the vehicle's own log, {size}: about {left_s:.0} s")));
-                Flow::On
             };
-            let done = fetching::fetch(&mut session, &offer, log, (folder, &mut watch)).await?;
+            let done = fetching::fetch(&mut session, (&offer, None), log, (folder, &mut watch)).await?;
             if let Some(done) = done {
                 let took = done.took.as_secs_f64();
                 tell(Word::Message(format!(
-                    "the vehicle's own log: {}, {:.1} MB in {took:.1} s; {}",
+                    "the vehicle's own log: {}, {:.1} MB in {took:.1} s by {}; {}",
                     mavid::text::path(&done.path),
                     done.bytes as f64 / 1e6,
+                    done.protocol.words(),
                     words(done.checked)
                 )));
                 path = Some(done.path);
@@ -115,4 +133,21 @@ async fn fetched(
         }
     }
     Ok(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_download_that_takes_longer_than_a_minute_is_made_only_where_it_is_asked_for() {
+        let progress = Progress { bytes: 0, of: 7_000_000, bytes_s: None, chosen: None };
+        let slow = judged(&progress, 1e5, Fetching::IfFast).unwrap_err();
+        assert!(slow.contains("7.0 MB at 100 kB/s: about 70 s"), "{slow}");
+        assert!(judged(&progress, 1e5, Fetching::Always).is_ok());
+        let fast = judged(&progress, 2e5, Fetching::IfFast).unwrap();
+        assert_eq!(fast, "fetching the vehicle's own log, 7.0 MB at 200 kB/s: about 35 s");
+        let never = judged(&progress, 0.0, Fetching::IfFast).unwrap_err();
+        assert!(never.contains("no end in sight"), "{never}");
+    }
 }

@@ -4,6 +4,7 @@ mod before;
 mod documents;
 mod fetching;
 mod flown;
+mod hint;
 mod parameters;
 mod prepare;
 mod preparing;

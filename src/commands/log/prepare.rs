@@ -7,10 +7,11 @@ use mavid::fetch::Noted;
 use mavid::text;
 use serde::Serialize;
 
+use super::hint;
 use super::preparing::{self, Prepared, PutBack};
 use super::session::Session;
 use super::state;
-use crate::cli::LogPrepareArgs;
+use crate::cli::{LogPrepareArgs, VehicleLinkArgs};
 use crate::commands::{CommandError, Outcome, output};
 
 /// The word that agrees at a terminal.
@@ -84,7 +85,7 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
         output::text(&says(&session, &prepared))?;
     }
     if !prepared.noted.is_empty() {
-        output::message(&earlier(&prepared.noted));
+        output::message(&earlier(&args.link, &prepared.noted));
     }
     let set = !changes.is_empty() && (args.set_logging || !json && agreed(YES, "set this")?);
     if set {
@@ -115,7 +116,7 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
             restart: restart || !prepared.awaited.is_empty(),
         })?;
     } else if set {
-        output::text(&set_page(&place, restart))?;
+        output::text(&set_page(&args.link, &place, restart))?;
     } else if !changes.is_empty() {
         output::text("nothing is changed; --set-logging sets it")?;
     }
@@ -126,10 +127,9 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
 }
 
 /// What was set, for people.
-fn set_page(place: &str, restart: bool) -> String {
-    let mut page = format!(
-        "set; what was found stands in {place}\nafter the flight: mavid log prepare --connect ADDRESS --restore puts it back"
-    );
+fn set_page(link: &VehicleLinkArgs, place: &str, restart: bool) -> String {
+    let restore = hint::restore(link);
+    let mut page = format!("set; what was found stands in {place}\nafter the flight: {restore} puts it back");
     if restart {
         page.push_str("\nrestart the autopilot now: until then it logs as before. mavid does not restart it");
     }
@@ -194,11 +194,12 @@ pub fn changes_page(changes: &[LogChange]) -> String {
 }
 
 /// What is said where an earlier run changed something that is not put back.
-pub fn earlier(noted: &[Noted]) -> String {
+pub fn earlier(link: &VehicleLinkArgs, noted: &[Noted]) -> String {
     let list = noted.iter().map(|noted| format!("{} from {} to {}", noted.name, noted.found, noted.set));
     format!(
-        "an earlier run changed {} on this vehicle: mavid log prepare --connect ADDRESS --restore puts it back",
-        list.collect::<Vec<_>>().join(", ")
+        "an earlier run changed {} on this vehicle: {} puts it back",
+        list.collect::<Vec<_>>().join(", "),
+        hint::restore(link)
     )
 }
 

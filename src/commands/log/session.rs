@@ -217,11 +217,6 @@ impl Session {
         offer.uid.iter().fold(name, |name, uid| format!("{name}-{uid}"))
     }
 
-    /// Its clock.
-    pub fn clock(&self) -> Instant {
-        self.start
-    }
-
     /// Since the link was opened.
     pub fn elapsed(&self) -> Duration {
         self.start.elapsed()

@@ -3,9 +3,10 @@
 use mavid::fetch::{Offer, RemoteLog, Wanted};
 
 use super::documents::{FetchDocument, ListDocument, page};
+use super::fetching::Progress;
 use super::session::{Flow, Session};
 use super::{fetching, prepare, state};
-use crate::cli::{LogArgs, LogFetchArgs, LogListArgs, LogVerb};
+use crate::cli::{LogArgs, LogFetchArgs, LogListArgs, LogVerb, VehicleLinkArgs};
 use crate::commands::progress::bytes_bar;
 use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, live, network, output};
@@ -29,14 +30,14 @@ pub fn run(json: bool, stderr: &StandardError, args: &LogArgs) -> Result<Outcome
 async fn list(json: bool, args: &LogListArgs) -> Result<Outcome, CommandError> {
     let mut session = Session::open(&args.link).await?;
     let offer = session.offer().await?;
-    remind(&session, &offer);
+    remind(&args.link, &session, &offer);
     let asked = args.protocol.map(Into::into);
     let (protocol, logs, left_out) = fetching::list(&mut session, (&offer, asked), Wanted::All).await?;
     let document = ListDocument::new(&session, protocol.id(), &logs, left_out);
     if json {
         output::json(&document)?
     } else {
-        output::text(&document.page())?
+        output::text(&document.page(&args.link))?
     }
     Ok(Outcome::Done)
 }
@@ -44,24 +45,27 @@ async fn list(json: bool, args: &LogListArgs) -> Result<Outcome, CommandError> {
 async fn fetch(json: bool, stderr: &StandardError, args: &LogFetchArgs) -> Result<Outcome, CommandError> {
     let mut session = Session::open(&args.link).await?;
     let offer = session.offer().await?;
-    remind(&session, &offer);
+    remind(&args.link, &session, &offer);
     let wanted = if args.id.is_some() { Wanted::All } else { Wanted::Last };
     let asked = args.protocol.map(Into::into);
-    let (protocol, logs, _) = fetching::list(&mut session, (&offer, asked), wanted).await?;
+    let (_, logs, _) = fetching::list(&mut session, (&offer, asked), wanted).await?;
     let log = chosen(&logs, args.id)?;
     let bar = stderr.bar(bytes_bar(log.size));
-    let mut watch = |bytes, of| {
-        bar.set_length(of);
-        bar.set_position(bytes);
+    let mut watch = |progress: Progress| {
+        bar.set_length(progress.of);
+        bar.set_position(progress.bytes);
+        if let Some(chosen) = progress.chosen {
+            output::message(&chosen.to_string());
+        }
         Flow::On
     };
-    let fetched = fetching::fetch(&mut session, &offer, log, (&args.out, &mut watch)).await;
+    let fetched = fetching::fetch(&mut session, (&offer, asked), log, (&args.out, &mut watch)).await;
     bar.finish_and_clear();
     let Some(done) = fetched? else {
         return Err(CommandError::Failure("the download did not come to its end".to_owned()));
     };
     if json {
-        output::json(&FetchDocument::new(&session, protocol.id(), log, &done))?;
+        output::json(&FetchDocument::new(&session, log, &done))?;
     } else {
         output::text(&page(&done))?;
     }
@@ -69,11 +73,11 @@ async fn fetch(json: bool, stderr: &StandardError, args: &LogFetchArgs) -> Resul
 }
 
 /// Says what an earlier run changed on the vehicle and did not put back.
-fn remind(session: &Session, offer: &Offer) {
+fn remind(link: &VehicleLinkArgs, session: &Session, offer: &Offer) {
     let noted = state::notes(&session.known_as(offer)).map(|notes| notes.read());
     // where there is no folder for notes there are none
     match noted {
-        Ok(Ok(noted)) if !noted.is_empty() => output::message(&prepare::earlier(&noted)),
+        Ok(Ok(noted)) if !noted.is_empty() => output::message(&prepare::earlier(link, &noted)),
         Ok(Err(error)) => output::warning(&error.to_string()),
         _ => {}
     }

@@ -3,10 +3,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
-#[path = "support/ground.rs"]
+#[path = "../support/ground.rs"]
 mod ground;
-
+#[path = "../support/mod.rs"]
 mod support;
+
+mod faster;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
