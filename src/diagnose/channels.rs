@@ -47,6 +47,8 @@ pub enum Nuisance {
     LateralLatency,
     /// rad, thrust axis about body x, y
     Tilt(usize),
+    /// N m/(m/s), about body x, y, of the air in averaged torques
+    AirMoment(usize),
     /// share of the commands' jitter that the rotors do not follow, less one half
     Jitter,
     /// m/s^2, on body x, y, z of the accelerometer
@@ -107,7 +109,8 @@ pub(super) fn force_channels(trace: &Trace, force: [Vec<f64>; 3]) -> Channels {
 /// Whether a flight measures a channel. The others are zero.
 pub(super) fn measures(trace: &Trace, channel: usize) -> bool {
     match channel {
-        0..AXES => true,
+        0..3 => true,
+        3..AXES => trace.compares_torques(),
         _ => trace.reads_force_twice(),
     }
 }

@@ -23,6 +23,8 @@ pub struct Weighted {
     /// the same at which each channel is measured
     pub(super) measured: [Vec<Range<usize>>; CHANNELS],
     pub(super) rows: usize,
+    /// torques are averaged: their residual is correlated by that
+    averaged_torques: bool,
     /// residual standard deviation of each channel, N and N m
     pub sigma: [f64; CHANNELS],
     /// nuisances and the base's own effects, weighted
@@ -129,6 +131,7 @@ impl Weighted {
             runs: rows.runs.clone(),
             measured: rows.measured.clone(),
             rows: rows.len(),
+            averaged_torques: !rows.compares_torques,
             sigma: *sigma,
             nuisances,
             prior_meat: priors.meat,
@@ -171,6 +174,9 @@ impl Weighted {
         let gammas = self.gammas(&self.left);
         let used: Vec<f64> = gammas
             .iter()
+            .enumerate()
+            .filter(|(channel, _)| !(self.averaged_torques && (3..AXES).contains(channel)))
+            .map(|(_, gamma)| gamma)
             .filter(|gamma| gamma[0] > 0.0)
             .map(|gamma| (gamma[0] + 2.0 * gamma[1..].iter().sum::<f64>()).max(gamma[0]))
             .collect();

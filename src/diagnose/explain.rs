@@ -194,7 +194,7 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
     }
     let a_field = field.as_ref().is_some_and(|field| field.certain);
     // what is large only of a torque that hardly anything took, or that commands too far apart give, is noise
-    let by_forces = too_little_excitation || !found.after.rows.compares_torques;
+    let by_forces = too_little_excitation || traces.iter().any(|trace| !trace.torques);
     let (axes, aperiodic) = if by_forces { (0..3, aperiodic.of_forces()) } else { (0..AXES, aperiodic) };
     let lacking = lack.as_ref().is_some_and(|lack| is_lacking(lack, &found.after, axes))
         || a_field

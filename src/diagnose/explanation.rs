@@ -1,7 +1,7 @@
 //! Result of an explanation.
 
 use super::harmonics::LackOfFit;
-use super::latency::finding_of;
+use super::latency::{LatencyFinding, finding_of};
 use super::locate::{Aperiodic, FieldTest, Localisation};
 use super::named::{DetectionLimit, Named};
 use super::slight::Slight;
@@ -47,7 +47,9 @@ impl Explanation {
         self.slight.clear();
         self.located_after.clone_from(&self.located_before);
         self.search.after = self.search.before.clone();
-        self.search.latency = finding_of(&self.search.before);
+        let unsure_s = self.search.latency.std_s;
+        let alone = finding_of(&self.search.before);
+        self.search.latency = LatencyFinding { std_s: alone.std_s.max(unsure_s), ..alone };
         self.search.steps.clear();
         self
     }

@@ -10,6 +10,13 @@ pub(super) fn differ(apart: f64, precise_variance: f64, robust_variance: f64) ->
     apart.powi(2) > DEVIATE.powi(2) * (robust_variance - precise_variance)
 }
 
+/// Whether the second of two estimates holds, where the first is efficient but for an error of its own of variance `bias_variance`: the
+/// second is the more certain one, or the difference is more than both errors allow.
+pub(super) fn holds(apart: f64, precise_variance: f64, bias_variance: f64, robust_variance: f64) -> bool {
+    robust_variance < precise_variance + bias_variance
+        || apart.powi(2) > DEVIATE.powi(2) * (robust_variance - precise_variance + bias_variance)
+}
+
 /// Whether they differ by more than the greater one of their variances allows: a contradiction whichever is the more precise.
 pub(super) fn contradict(apart: f64, one_variance: f64, other_variance: f64) -> bool {
     apart.powi(2) > DEVIATE.powi(2) * one_variance.max(other_variance)
@@ -24,6 +31,8 @@ mod tests {
         assert!(!differ(2.0, 1.0, 2.0));
         assert!(differ(3.0, 1.0, 2.0));
         assert!(differ(0.1, 2.0, 1.0), "the second is the more precise one");
+        // 0.5^2 + 1^2: an error of its own excuses more, and yields to who is more certain
+        assert!(holds(2.0, 1.0, 0.0, 1.5) && !holds(2.0, 1.0, 1.0, 2.5) && holds(0.1, 1.0, 2.0, 2.5));
         assert!(!contradict(0.1, 2.0, 1.0) && !contradict(3.0, 2.0, 1.0) && contradict(4.0, 2.0, 1.0));
     }
 }

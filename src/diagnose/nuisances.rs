@@ -61,6 +61,9 @@ pub(super) fn nuisances(
         let values = channels(trace, [none(), none(), channel(0)], torques);
         out.push(column(Nuisance::Jitter, Some(JITTER_STD), values));
     }
+    if !trace.torques && trace.known.velocity && trace.known.attitude {
+        out.extend(air_moments(trace));
+    }
     out.extend(sensor_nuisances(trace, mass_kg, base.stands_for(Nuisance::Level(0))));
     out
 }
@@ -100,6 +103,25 @@ fn latencies(trace: &Trace, base: &Base, thrust_n: &[f64]) -> Vec<NuisanceColumn
     let unsure_s = if is_fed_back(std::slice::from_ref(trace)) { UNCONFIRMED_S } else { 0.0 };
     out.push(column(Nuisance::ForceLatency, Some(FORCE_LATENCY_STD_S.hypot(unsure_s)), late));
     out
+}
+
+/// The moment of the air about the centre of mass, in averaged torques: what acts at the hubs, what at the centre, and the hub moment
+/// itself are not told apart there, and a flight with a mean airspeed must not show them as a centre of mass.
+fn air_moments(trace: &Trace) -> [NuisanceColumn; 2] {
+    let across: Vec<Vector3<f64>> = trace
+        .states
+        .iter()
+        .map(|state| {
+            let along = state.attitude.inverse_transform_vector(&state.velocity_m_s);
+            Vector3::new(along.y, along.x, 0.0)
+        })
+        .collect();
+    let [about_x, about_y, none] = trace.weak_vector(0, &across);
+    let of = |torque| channels(trace, nothing(trace), torque);
+    [
+        column(Nuisance::AirMoment(0), None, of([about_x, none.clone(), none.clone()])),
+        column(Nuisance::AirMoment(1), None, of([none.clone(), about_y, none])),
+    ]
 }
 
 /// A column of the whole flight.

@@ -51,6 +51,9 @@ pub(super) fn settle(
         add_left_over(&mut found.after);
     }
     add_floors(&mut found.after);
+    // the model where nothing serves
+    add_left_over(&mut found.before);
+    add_floors(&mut found.before);
     found.latency.std_s = found.latency.std_s.hypot(FORM * found.latency.total_s);
     make_physical(traces, vehicle, &mut found.before)?;
     make_physical(traces, vehicle, &mut found.after)

@@ -7,7 +7,7 @@ use super::channels::{AXES, CHANNELS, Channels, Nuisance};
 use super::columns::Columns;
 use super::evidence::weighted;
 use super::fit::{CONVERGED, Fitted, Newton, PASSES, linearised, step};
-use super::hausman::differ;
+use super::hausman::holds;
 use super::left_over::of_left_over;
 use super::trace::Trace;
 use crate::estimate::Estimated;
@@ -38,7 +38,7 @@ pub(super) fn torques_by_instruments(
         let moment = Nuisance::Inertia(at - 1);
         let place = fitted.rows.nuisances.iter().position(|column| column.nuisance == moment);
         let left_over = place.map_or(0.0, |place| of_left_over(&fitted.weighted, place));
-        differ(told.theta[at] - plain.theta[at], variance(&plain) + left_over, variance(&told))
+        holds(told.theta[at] - plain.theta[at], variance(&plain), left_over, variance(&told))
     };
     if !MOMENTS.into_iter().any(contradicts) {
         return Ok(false);

@@ -1,7 +1,6 @@
 //! One flight for the weak form: measured states, and the rotor thrusts in two versions, from commands and from the
 //! motion.
 
-use super::averaged::averaged;
 use super::instruments::{Instruments, instruments};
 use super::momentum::momentum_rows;
 use super::rotors::{OfRotors, RotorMotion, felt, filtered};
@@ -181,15 +180,6 @@ impl Trace {
     /// Measured specific force, m/s^2, body; `None` without an accelerometer.
     pub(super) fn specific_force_m_s2(&self) -> Option<&Series<Vector3<f64>>> {
         self.specific_force_m_s2.as_ref()
-    }
-
-    /// Torques as they are compared, N m, body: row by row, or averaged where commands or body rates are slow.
-    pub(super) fn torque_rows(&self, torque: [Vec<f64>; 3]) -> [Vec<f64>; 3] {
-        if self.torques {
-            return torque;
-        }
-        let apart = self.centers.windows(2).map(|pair| pair[1] - pair[0]).min().unwrap_or_default();
-        averaged(torque, &self.runs, apart as f64 * self.grid.step_s)
     }
 
     /// Number of weak-form rows.

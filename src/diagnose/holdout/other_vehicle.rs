@@ -5,7 +5,7 @@ use super::loading::COM_M;
 use super::ready::{Ready, trace_of};
 use super::settings::{HeldOut, HoldoutSettings};
 use super::weak::Weak;
-use crate::diagnose::channels::{CHANNEL_NAMES, CHANNELS, Nuisance};
+use crate::diagnose::channels::{AXES, CHANNEL_NAMES, CHANNELS, Nuisance};
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::fit::{Fitted, evaluate};
 use crate::diagnose::signature::EffectTerm;
@@ -124,7 +124,9 @@ pub(super) fn judged(
         );
         OtherVehicle { by: Difference::Parameter(different[0].clone()), reason }
     });
-    Ok((all, by_parameters.or_else(|| by_what_is_left(identified, weak, whose))))
+    // averaged torques leave less than those of each row
+    let alike = ready.iter().all(|ready| ready.trace.torques == identified.rows.compares_torques);
+    Ok((all, by_parameters.or_else(|| by_what_is_left(identified, (weak, alike), whose))))
 }
 
 /// Reason why flights should not have been explained together: the own linear step of each at the common model,
@@ -191,8 +193,13 @@ pub enum Difference {
 
 /// A difference that no parameter of the model explains: the residual of these flights is far larger than that of the
 /// identified ones.
-fn by_what_is_left(identified: &Fitted, weak: &Weak, whose: &str) -> Option<OtherVehicle> {
-    let ratios = (0..CHANNELS).filter_map(|channel| {
+fn by_what_is_left(
+    identified: &Fitted,
+    (weak, torques_alike): (&Weak, bool),
+    whose: &str,
+) -> Option<OtherVehicle> {
+    let compared = |channel: &usize| torques_alike || !(3..AXES).contains(channel);
+    let ratios = (0..CHANNELS).filter(compared).filter_map(|channel| {
         let ratio = weak.own_rms[channel] / identified.weighted.sigma[channel];
         (ratio.is_finite() && ratio > LEFT_RATIO).then_some((channel, ratio))
     });

@@ -95,6 +95,7 @@ fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
             // a model without drag has no column for the velocity's error: neither model is given one
             Nuisance::Mass | Nuisance::Inertia(_) | Nuisance::Latency | Nuisance::VelocityError => continue,
             Nuisance::AccelerometerBias(_)
+            | Nuisance::AirMoment(_)
             | Nuisance::Level(_)
             | Nuisance::KinematicLatency
             | Nuisance::LateralLatency => own.coefficients[index],

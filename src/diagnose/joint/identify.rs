@@ -11,6 +11,7 @@ use crate::diagnose::base::Base;
 use crate::diagnose::evidence::LEAST_ROWS;
 use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::latency::{LatencyFinding, finding_of};
+use crate::diagnose::left_over::add_left_over;
 use crate::diagnose::recorded::Recorded;
 use crate::diagnose::trace::Trace;
 use crate::estimate::{
@@ -56,6 +57,9 @@ pub fn identify_jointly(
     let (after, mut settled) = of_file.settle(&traces, base, &chosen, newton)?;
     let (mut after, split) = latency::split(&traces, after, wanted)?;
     swing::allow_for_noise(&traces, &mut after, &mut settled)?;
+    let mut before = before;
+    add_left_over(&mut before);
+    add_left_over(&mut after);
     let fits = Fits { before, after, settled, split, first };
     let by_curve = moved_by_guessed_curve(flights, vehicle);
     let estimate = put_together(&traces, (vehicle, &kept), (wanted, by_curve), fits);

@@ -8,7 +8,9 @@ use super::super::signature::EffectTerm;
 use super::super::trace::Trace;
 use super::gust::{GustFound, gust};
 use super::localisation::Localisation;
-use super::redness::{Quantity, Redness, beside_harmonics, red_fit, red_quantities, redness, scale};
+use super::redness::{
+    Quantity, Redness, beside_harmonics, least_unnamed, red_fit, red_quantities, redness, scale,
+};
 use super::view::{Followed, View};
 use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_SIDEWAYS, UNNAMED_TORQUE};
 use nalgebra::Vector3;
@@ -183,12 +185,8 @@ fn trend(traces: &[Trace], fitted: &Fitted, view: &View) -> Option<Trend> {
             let evidence = fitted.weighted.test(&column)?;
             let per_min = evidence.theta[0];
             let relative = per_min.abs() * longest_s / 60.0 / scale(fitted, of).max(f64::MIN_POSITIVE);
-            let least = match of {
-                Quantity::Torque(_) => UNNAMED_TORQUE,
-                Quantity::World(_) => UNNAMED_SIDEWAYS,
-                Quantity::Lift | Quantity::BodyZ => UNNAMED_FORCE,
-            };
-            let certain = evidence.z > TREND_Z && relative > least && may_feel(fitted, &column, &evidence);
+            let certain =
+                evidence.z > TREND_Z && relative > least_unnamed(of) && may_feel(fitted, &column, &evidence);
             Some(Trend { of, per_min, std_per_min: evidence.std(0), z: evidence.z, relative, certain })
         })
         .max_by(|a, b| a.certain.cmp(&b.certain).then(a.z.total_cmp(&b.z)))
@@ -241,7 +239,9 @@ fn state_lack(view: &View, fitted: &Fitted, located: &Localisation) -> Option<St
         .collect();
     let count = tested.len() as f64;
     let least = |channel: usize| {
-        if channel < 3 {
+        if channel < 2 {
+            UNNAMED_SIDEWAYS * fitted.weight_n()
+        } else if channel < 3 {
             UNNAMED_FORCE * fitted.weight_n()
         } else {
             UNNAMED_TORQUE * fitted.rows.torque_rms[channel - 3]

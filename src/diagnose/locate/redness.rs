@@ -4,7 +4,7 @@ use super::super::fit::Fitted;
 use super::lateral_drag::{axial_drag_n_s_m, lateral_drag};
 use super::spectrum::{Ordinate, VELOCITY_SCALE_S2, noise_shapes, periodogram};
 use super::view::View;
-use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_TORQUE};
+use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_SIDEWAYS, UNNAMED_TORQUE};
 use crate::stats::{Whittle, whittle};
 use std::f64::consts::TAU;
 
@@ -49,12 +49,21 @@ pub(super) fn red_quantities(view: &View) -> Vec<(Quantity, Vec<f64>)> {
     out
 }
 
+/// Least size that matters without a name, as a share of what the quantity is measured by.
+pub(super) fn least_unnamed(of: Quantity) -> f64 {
+    match of {
+        Quantity::Torque(_) => UNNAMED_TORQUE,
+        Quantity::World(_) => UNNAMED_SIDEWAYS,
+        Quantity::Lift | Quantity::BodyZ => UNNAMED_FORCE,
+    }
+}
+
 pub(super) fn redness(view: &View, fitted: &Fitted, of: Quantity, series: &[f64]) -> Option<Redness> {
     let ordinates = beside_harmonics(view, series);
     let (correlation_s, fit, statistic) = red_fit(view, &ordinates)?;
     let rms = fit.coefficients[2].sqrt();
     let relative = rms / scale(fitted, of).max(f64::MIN_POSITIVE);
-    let least = if matches!(of, Quantity::Torque(_)) { UNNAMED_TORQUE } else { UNNAMED_FORCE };
+    let least = least_unnamed(of);
     let of_velocity_n = force_of_velocity_error_n(view, fitted, (of, correlation_s));
     let of_jitter =
         matches!(of, Quantity::Torque(_)) && correlation_s < OF_JITTER * fitted.base.latency.lag_s;

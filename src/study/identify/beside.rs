@@ -1,7 +1,9 @@
 //! Mass and inertia together with what the flights show beside them: the estimator of `explain`.
 
-use crate::diagnose::{ExplainSettings, Explanation, Verdict, explain};
-use crate::estimate::{Estimated, Finding, Nominal, Recommendation, THETA, moved_by_guessed_curve};
+use crate::diagnose::{ExplainError, ExplainSettings, Explanation, Verdict, explain};
+use crate::estimate::{
+    Estimated, Finding, MethodResult, Nominal, Recommendation, THETA, moved_by_guessed_curve,
+};
 use crate::physics::{Effect, effects::ThrustCurve};
 use crate::signals::Signals;
 use crate::study::explain::BY_CONTROL;
@@ -13,18 +15,28 @@ pub(super) struct Beside {
     pub(super) best: Recommendation,
     /// identifiers of effects
     pub(super) effects: Vec<&'static str>,
+    /// hardly anything but the controller turned the vehicle
+    pub(super) turned_by_control: bool,
+}
+
+/// Takes the moments of inertia out of a result that rests on the controller's answer to noise.
+pub(super) fn without_inertia(result: &mut MethodResult) {
+    for index in 1..THETA {
+        result.parameters[index].finding = Finding::NotDetermined { reason: BY_CONTROL.to_owned() };
+    }
 }
 
 /// Searches the flights for effects and takes mass and inertia from the final fit. `alone` is the estimate of the rigid body alone,
-/// with what a wider window says of it. `None` where the flights are too short, or lack what a search needs.
-pub(super) fn beside(flights: &[Signals], vehicle: &Vehicle, alone: &Estimated) -> Option<Beside> {
-    let found = match explain(flights, vehicle, &ExplainSettings::default()) {
-        Ok(found) => found,
-        Err(why) => {
-            tracing::info!(%why, "no effects beside mass and inertia searched");
-            return None;
-        }
-    };
+/// with what a wider window says of it.
+///
+/// # Errors
+/// [`ExplainError`] where the flights are too short, or lack what a search needs.
+pub(super) fn beside(
+    flights: &[Signals],
+    vehicle: &Vehicle,
+    alone: &Estimated,
+) -> Result<Beside, ExplainError> {
+    let found = explain(flights, vehicle, &ExplainSettings::default())?;
     let unexplained = found.verdict == Verdict::Unexplained;
     // what serves as no explanation is not in the model
     let fitted = if unexplained { &found.search.before } else { &found.search.after };
@@ -35,13 +47,8 @@ pub(super) fn beside(flights: &[Signals], vehicle: &Vehicle, alone: &Estimated) 
         estimated = estimated.with_guessed_curve(moved);
     }
     let effects: Vec<&'static str> = found.named.iter().map(|named| named.id).collect();
-    let mut best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(&found));
-    if found.turned_by_control {
-        for index in 1..THETA {
-            best.result.parameters[index].finding = Finding::NotDetermined { reason: BY_CONTROL.to_owned() };
-        }
-    }
-    Some(Beside { best, effects })
+    let best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(&found));
+    Ok(Beside { best, effects, turned_by_control: found.turned_by_control })
 }
 
 /// The reason for the user.
@@ -53,11 +60,7 @@ fn why(found: &Explanation) -> String {
                                       `mavid explain` shows where"
                 .to_owned()
         }
-        (_, names) if names.is_empty() => {
-            "these flights show nothing beside mass and inertia; the error of the residual torque \
-                                           is in the standard errors"
-                .to_owned()
-        }
+        (_, names) if names.is_empty() => "these flights show nothing beside mass and inertia".to_owned(),
         (_, names) => format!(
             "mass and inertia are estimated together with what these flights show beside them: {names} (`mavid explain` tells \
              their sizes)"

@@ -1,14 +1,14 @@
 //! The result of identifying: what went in, the estimates, and what is to be known of them.
 
-use super::beside::{Beside, beside};
+use super::beside::{Beside, beside, without_inertia};
 use crate::diagnose::CHANNEL_NAMES;
 use crate::diagnose::joint::JointEstimate;
 use crate::draft::Draft;
 use crate::estimate::{
-    Contradiction, EstimateError, Identification, IdentifySettings, MethodResult, ThrustScale, apply_anchor,
-    contradictions, identify, rests_on_guessed_curve,
+    Contradiction, EstimateError, Identification, IdentifySettings, Method, MethodResult, ThrustScale,
+    apply_anchor, contradictions, identify, rests_on_guessed_curve,
 };
-use crate::note::Note;
+use crate::note::{About, Note};
 use crate::signals::{Quality, Signals};
 use crate::study::doubts::{TWO_VEHICLES, doubts};
 use crate::study::{Correlation, InputFile};
@@ -90,14 +90,27 @@ impl IdentifyStudy {
     ) -> Result<Self, EstimateError> {
         let mut identification = identify(&flights, &vehicle, settings)?;
         let alone = &identification.best.result.estimated;
-        let found = beside(explained, &vehicle, alone);
-        let effects = found.map(|Beside { best, effects }| {
-            identification.methods.push(best.result.clone());
-            identification.best = best;
-            effects
-        });
+        let (mut effects, mut turned_by_control) = (Vec::new(), false);
+        match beside(explained, &vehicle, alone) {
+            Ok(Beside { best, effects: found, turned_by_control: by_control }) => {
+                identification.methods.push(best.result.clone());
+                identification.best = best;
+                (effects, turned_by_control) = (found, by_control);
+            }
+            Err(why) => {
+                let text = format!(
+                    "mass and inertia of a rigid body alone, without a search of effects beside them: {why}"
+                );
+                identification.notes.push(Note::remark(About::Estimate, text));
+            }
+        }
         identification.best.result.emit();
         let scale = apply_anchor(&mut identification, &vehicle);
+        if turned_by_control {
+            let joint = |result: &&mut MethodResult| result.method == Method::Joint;
+            identification.methods.iter_mut().filter(joint).for_each(without_inertia);
+            without_inertia(&mut identification.best.result);
+        }
         let disagree = identification.notes.iter().any(Note::is_warning);
         let contradictions = contradictions(&identification.best.result, &vehicle, scale.as_ref());
         identification.notes.extend(contradictions.iter().map(Contradiction::note));
@@ -107,7 +120,7 @@ impl IdentifyStudy {
             flights,
             inputs,
             identification,
-            beside: effects.unwrap_or_default(),
+            beside: effects,
             scale,
             with: None,
             notes: Vec::new(),
