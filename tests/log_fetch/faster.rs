@@ -4,9 +4,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use mavid::autopilot::Autopilot;
-use mavid::fetch::{
-    Begun, Checked, Chosen, Dialogue, Download, Fetched, OtherWay, Part, Protocol, RemoteLog, Sum,
-};
+use mavid::fetch::{Begun, Checked, Chosen, Download, Fetched, OtherWay, Part, Protocol, RemoteLog, Sum};
 use mavid::sitl::Firmware;
 use mavid::wire::Frame;
 use mavid::wire::file_transfer::FileSum;
