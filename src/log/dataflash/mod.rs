@@ -7,6 +7,7 @@ mod damage;
 mod definition;
 mod definitions;
 mod format;
+mod forms;
 mod identity;
 mod join;
 mod known;
