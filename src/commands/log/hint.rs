@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use mavid::text::shell_word;
+use mavid::text::{path, shell_word};
 
 use crate::cli::VehicleLinkArgs;
 
@@ -13,7 +13,7 @@ pub fn link_options(link: &VehicleLinkArgs) -> String {
         options.push_str(&format!(" --system-id {system}"));
     }
     if let Some(key) = &link.signing_key_file {
-        options.push_str(&format!(" --signing-key-file {}", shell_word(&key.to_string_lossy())));
+        options.push_str(&format!(" --signing-key-file {}", shell_word(&path(key))));
     }
     options
 }
@@ -25,7 +25,7 @@ pub fn restore(link: &VehicleLinkArgs) -> String {
 
 /// Fetches the last log of this vehicle into a folder.
 pub fn fetch_last(link: &VehicleLinkArgs, folder: &Path) -> String {
-    format!("mavid log fetch {} --last --out {}", link_options(link), shell_word(&folder.to_string_lossy()))
+    format!("mavid log fetch {} --last --out {}", link_options(link), shell_word(&path(folder)))
 }
 
 #[cfg(test)]
