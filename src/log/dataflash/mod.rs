@@ -10,6 +10,7 @@ mod format;
 mod forms;
 mod identity;
 mod join;
+mod jumps;
 mod known;
 mod letter;
 mod message;
