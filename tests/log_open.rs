@@ -78,6 +78,7 @@ fn a_file_of_no_known_format_is_named_with_what_to_do() {
         ),
         (b"\x1f\x8b\x08\0\0\0", "a gzip archive", "unpack"),
         (b"PK\x03\x04\x14\0", "a zip archive", "unpack"),
+        (b"ULog\x01", "the first bytes of a PX4 log (.ulg)", "the whole log"),
         (b"ULog\x02", "binary data that begins with 55 4c 6f 67 02", "the log itself"),
         (b"PK\x05\x06\0\0\0\0", "an empty zip archive", "pack the log again"),
         (b"7z\xbc\xaf\x27\x1c\0\x04", "a 7z archive", "unpack"),

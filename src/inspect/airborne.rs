@@ -113,12 +113,17 @@ pub(super) fn airborne(recording: &Recording, commands: Option<&Stream>, before:
             let streams = || recording.streams.values();
             let first = streams().filter_map(|s| s.time_s.first()).copied().fold(f64::INFINITY, f64::min);
             let last = streams().filter_map(|s| s.time_s.last()).copied().fold(f64::NEG_INFINITY, f64::max);
-            let from = if recording.autopilot == Autopilot::Unknown {
-                "nothing: all of it is taken as flight"
-            } else {
-                "moving"
-            };
-            Airborne::when(&[first, last], &said, from, |_| true)
+            match recording.autopilot {
+                Autopilot::Unknown => {
+                    let from = "nothing: all of it is taken as flight";
+                    Airborne::when(&[first, last], &said, from, |_| true)
+                }
+                // nothing else tells: before it moves first and after it has moved last it stood
+                _ => {
+                    let (first, last) = moving_span(recording).unwrap_or((first, last));
+                    Airborne::when(&[first, last], &said, "moving", |_| true)
+                }
+            }
         }
     };
     // a table's maker says that it is a flight, and an autopilot that it has not landed
@@ -161,12 +166,29 @@ impl Airborne {
             known.iter().any(inside) || began_before && first_s == Some(*start_s)
         };
         self.flown_s.retain(is_flight);
+        // words of landing may be lost
+        if let Some((first_s, last_s)) = moving_span(recording).filter(|_| recording.is_damaged) {
+            let within = |(start_s, end_s): &(f64, f64)| (start_s.max(first_s), end_s.min(last_s));
+            self.flown_s = self.flown_s.iter().map(within).collect();
+            self.free_s = self.free_s.iter().map(within).collect();
+            self.flown_s.retain(|(start_s, end_s)| end_s - start_s > SHORTEST_S);
+        }
         let flown_s = &self.flown_s;
         self.free_s.retain(|(start_s, end_s)| {
             flown_s.iter().any(|(from_s, to_s)| from_s <= start_s && end_s <= to_s)
         });
         self
     }
+}
+
+/// From the first time to the last at which a vehicle moves; `None` where nothing tells how it moves.
+fn moving_span(recording: &Recording) -> Option<(f64, f64)> {
+    let times_s = [Quantity::AngularRate, Quantity::Velocity].into_iter().filter_map(|quantity| {
+        best(recording, quantity, |stream| stream.width == 3).map(|(_, stream)| moving_times(stream))
+    });
+    let spans = times_s.filter(|times_s| times_s.len() >= LEAST_MOVING);
+    let spans = spans.filter_map(|times_s| Some((*times_s.first()?, *times_s.last()?)));
+    spans.reduce(|(first, last), (from_s, to_s)| (f64::min(first, from_s), f64::max(last, to_s)))
 }
 
 /// When a rate or velocity is more than that of a vehicle that stands.

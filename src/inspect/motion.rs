@@ -77,6 +77,7 @@ impl Motion {
             resets_s: &recording.clock_resets_s,
             command: command.as_ref(),
             rate: rate.as_deref(),
+            is_damaged: recording.is_damaged,
         };
         let (mask, used) = usable(&grid, &evidence, transient_s);
         let thrust = thrust(specific_force.as_deref(), world_acceleration.as_deref());

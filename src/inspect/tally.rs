@@ -94,19 +94,21 @@ pub fn inspect<'a>(
         return Ok(inspect_recording(&log::open(input, options)?, vehicle));
     }
     let mut options = options.clone();
-    let mut first = Pass::run(input, &options, (vehicle, Parameters::default()), progress);
+    let mut first = Pass::run(input, &options, (vehicle, Parameters::default(), false), progress);
     if let Some(system) = first.as_ref().err().and_then(instead).filter(|_| options.system.is_none()) {
         options.system = Some(system);
-        first = Pass::run(input, &options, (vehicle, Parameters::default()), progress);
+        first = Pass::run(input, &options, (vehicle, Parameters::default(), false), progress);
     }
     let first = first?;
     if is_disordered(&first.tally.streams.summary()) {
         // windows need the order of time
         return Ok(inspect_recording(&log::open(input, &options)?, vehicle));
     }
-    // commands become thrust by the autopilot's parameters: windows before they came are looked at again
-    let pass = if first.parameters_late && vehicle.is_some() {
-        Pass::run(input, &options, (vehicle, first.tally.parameters.read_again()), progress)?
+    // commands become thrust by the autopilot's parameters: windows before they came are looked at again; and all of them
+    // where the log turns out to be damaged
+    let is_damaged = first.report.is_damaged();
+    let pass = if first.parameters_late && vehicle.is_some() || is_damaged {
+        Pass::run(input, &options, (vehicle, first.tally.parameters.read_again(), is_damaged), progress)?
     } else {
         first
     };
@@ -138,10 +140,10 @@ impl Pass {
     fn run(
         input: Input<'_>,
         options: &OpenOptions,
-        (vehicle, parameters): (Option<&Vehicle>, Parameters),
+        (vehicle, parameters, is_damaged): (Option<&Vehicle>, Parameters, bool),
         progress: &mut dyn FnMut(u64),
     ) -> Result<Self, LogError> {
-        let mut recorder = WindowRecorder::default();
+        let mut recorder = WindowRecorder::new(is_damaged);
         let mut tally = Tally { parameters, ..Tally::default() };
         let (mut parameters_late, mut windows, mut events) = (false, 0_usize, 0_u32);
         // a window is assessed while the next one is read; the channel holds none, so at most two exist
@@ -174,7 +176,7 @@ impl Pass {
             drop(finished);
             let assessment = worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             let mut report = read?;
-            report.losses.extend(recorder.impossible());
+            report.losses.extend(recorder.losses());
             Ok(Self { tally, assessment, report, parameters_late, numbers_held_max: recorder.numbers_max() })
         })
     }

@@ -17,11 +17,20 @@ pub(super) struct WindowRecorder {
     start_s: Option<f64>,
     numbers_max: usize,
     impossible: u64,
+    /// the log is damaged, and has no checksums
+    is_damaged: bool,
+    /// samples that leap, left out of the windows
+    leaps: u64,
     /// last word on armed and landed: the next window begins with it
     states: Vec<(StreamKey, Vec<f64>)>,
 }
 
 impl WindowRecorder {
+    /// Of a log that is known to be damaged, or not.
+    pub(super) fn new(is_damaged: bool) -> Self {
+        Self { is_damaged, ..Self::default() }
+    }
+
     /// Adds an event; gives the window before it where that is full. Parameters and texts are kept elsewhere.
     pub(super) fn add(&mut self, event: Event<'_>) -> Option<Recording> {
         match event {
@@ -70,14 +79,19 @@ impl WindowRecorder {
         self.start_s.take()?;
         let mut builder = std::mem::take(&mut self.builder);
         builder.add(Event::Autopilot(self.autopilot));
-        let (window, repairs) = builder.finish();
+        let (mut window, repairs) = builder.finish();
         self.impossible += repairs.values().map(|repair| repair.impossible).sum::<u64>();
+        if self.is_damaged {
+            self.leaps += window.leave_out_leaps();
+        }
         Some(window)
     }
 
-    /// Samples with a value that no vehicle has, left out of the windows.
-    pub(super) fn impossible(&self) -> Option<Loss> {
-        (self.impossible > 0).then_some(Loss::Impossible { count: self.impossible })
+    /// Samples that were left out of the windows.
+    pub(super) fn losses(&self) -> impl Iterator<Item = Loss> {
+        let impossible = Loss::Impossible { count: self.impossible };
+        let counted = [(self.impossible, impossible), (self.leaps, Loss::Leaps { count: self.leaps })];
+        counted.into_iter().filter_map(|(count, loss)| (count > 0).then_some(loss))
     }
 
     /// Most numbers that were held at once.
@@ -133,6 +147,7 @@ fn cut(recording: &Recording, from_s: f64, to_s: f64) -> Recording {
         autopilot: recording.autopilot,
         clock_resets_s: recording.clock_resets_s.iter().copied().filter(inside).collect(),
         estimator_resets_s: recording.estimator_resets_s.iter().copied().filter(inside).collect(),
+        is_damaged: recording.is_damaged,
         texts: Vec::new(),
     }
 }

@@ -305,6 +305,7 @@ fn cut(recording: &Recording, (from_s, to_s): (f64, f64)) -> Option<LogFlight> {
         autopilot: recording.autopilot,
         clock_resets_s: events(&recording.clock_resets_s),
         estimator_resets_s: events(&recording.estimator_resets_s),
+        is_damaged: recording.is_damaged,
         texts: texts.map(|(time_s, text)| (time_s - start_s, text.clone())).collect(),
     };
     Some(LogFlight { recording, part_s: Some((start_s, end_s)) })

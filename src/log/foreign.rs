@@ -33,6 +33,7 @@ const fn begins(signature: &'static [u8], what: &'static str, advice: &'static s
 /// Kinds of files by their first bytes.
 const KNOWN: &[Foreign] = &[
     begins(b"\xa3\x95\x80\x80\x59FMT", "the first bytes of an ArduPilot log (.bin)", "give the whole log"),
+    begins(b"ULog\x01", "the first bytes of a PX4 log (.ulg)", "give the whole log"),
     begins(b"\xa3\x95\x80", "a PX4 log of the format before ULog (sdlog2, .px4log)", SDLOG2),
     begins(
         b"\xa3\x95",

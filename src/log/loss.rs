@@ -81,6 +81,11 @@ pub enum Loss {
         /// how many
         count: u64,
     },
+    /// samples of a damaged log that leap away from those around them and back, left out
+    Leaps {
+        /// how many
+        count: u64,
+    },
     /// the log holds more flight than is kept in memory
     NotHeld {
         /// time in the air that is left out, s
@@ -120,8 +125,17 @@ impl Loss {
             Self::RepeatedTimes { first_line, .. } | Self::NoRotations { first_line, .. } => {
                 Some(Position::Line(*first_line))
             }
-            Self::StrayStamps { .. } | Self::Impossible { .. } | Self::NotHeld { .. } => None,
+            Self::StrayStamps { .. }
+            | Self::Impossible { .. }
+            | Self::Leaps { .. }
+            | Self::NotHeld { .. } => None,
         }
+    }
+
+    /// Bytes of the file are others than were written: what can still be read may be wrong as well.
+    #[must_use]
+    pub fn is_damage(&self) -> bool {
+        matches!(self, Self::Skipped { .. } | Self::Unreadable { .. } | Self::Impossible { .. })
     }
 }
 
@@ -160,6 +174,10 @@ impl fmt::Display for Loss {
             Self::Impossible { count } => {
                 write!(f, "{count} samples with a value that no vehicle has were left out")
             }
+            Self::Leaps { count } => write!(
+                f,
+                "{count} samples that leap away from those around them and back were left out: the log is damaged"
+            ),
             Self::NotHeld { seconds } => write!(
                 f,
                 "{seconds:.0} s of flight at the end are left out: the log holds more than is analysed at once; cut it to \

@@ -52,8 +52,9 @@ pub fn open<'a>(log: impl Into<Input<'a>>, options: &OpenOptions) -> Result<Open
         };
         Ok((report, builder))
     })?;
-    let (recording, repairs) = builder.finish();
+    let (mut recording, repairs) = builder.finish();
     report.repaired(repairs);
+    report.leave_out_leaps(&mut recording);
     Ok(Opened { recording, report })
 }
 
@@ -102,8 +103,9 @@ pub fn open_flights<'a>(
             within(format, &input, &OpenOptions { system, ..options.clone() }, plan.as_ref())?
         }
     };
-    let (recording, repairs) = builder.finish();
+    let (mut recording, repairs) = builder.finish();
     report.repaired(repairs);
+    report.leave_out_leaps(&mut recording);
     let flights = Flights::by_plan(recording, plan.as_ref());
     if flights.left_out_s > 0.0 {
         report.losses.push(Loss::NotHeld { seconds: flights.left_out_s });

@@ -7,7 +7,7 @@ use super::loss::{Loss, Oddity, Position};
 use super::onboard::OnboardReport;
 use super::tlog::TlogReport;
 use crate::autopilot::VehicleKind;
-use crate::recording::{StreamKey, StreamRepair};
+use crate::recording::{Recording, StreamKey, StreamRepair};
 use crate::wire::{SystemId, Vehicle};
 
 /// Share of a log's bytes without which it is damaged so much that streams may be gone, and that which is most of it. Chosen;
@@ -61,6 +61,21 @@ impl ReadReport {
         let count = streams.values().map(|repair| repair.impossible).sum();
         self.losses.extend((count > 0).then_some(Loss::Impossible { count }));
         self.streams = streams;
+    }
+
+    /// The vehicle wrote the log itself and it is damaged: it has no checksums, and what is read of it may be wrong.
+    #[must_use]
+    pub fn is_damaged(&self) -> bool {
+        self.onboard().is_some() && self.losses.iter().any(Loss::is_damage)
+    }
+
+    /// Leaves the samples out of the recording of a damaged log that leap.
+    pub(super) fn leave_out_leaps(&mut self, recording: &mut Recording) {
+        if !self.is_damaged() {
+            return;
+        }
+        let count = recording.leave_out_leaps();
+        self.losses.extend((count > 0).then_some(Loss::Leaps { count }));
     }
 
     /// Frames, stamps and senders, where it is a telemetry log.

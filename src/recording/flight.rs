@@ -2,6 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use rayon::prelude::*;
+
+use super::leaps::{leave_out, leave_out_strays};
 use super::stream::{Stream, StreamKey};
 use crate::autopilot::Autopilot;
 
@@ -35,11 +38,22 @@ pub struct Recording {
     pub clock_resets_s: Vec<f64>,
     /// times at which the position estimate jumped (ODOMETRY.reset_counter)
     pub estimator_resets_s: Vec<f64>,
+    /// its log is damaged and has no checksums: a word of it may be missing or wrong
+    pub is_damaged: bool,
     /// what the vehicle said
     pub texts: Vec<(f64, String)>,
 }
 
 impl Recording {
+    /// Of a damaged log: leaves out the samples that leap away from those around them and back; how many these are.
+    pub fn leave_out_leaps(&mut self) -> u64 {
+        self.is_damaged = true;
+        let strays = leave_out_strays(&mut self.streams);
+        let streams: Vec<_> = self.streams.iter_mut().collect();
+        let leaps: u64 = streams.into_par_iter().map(|(key, stream)| leave_out(key.quantity, stream)).sum();
+        strays + leaps
+    }
+
     /// Adds the streams of another log of the same flight, its stamps brought to this recording's clock by `to_own_s` (s to s).
     /// Of streams and parameters that both have, its own stay. Times of resets are in order, those of both logs.
     pub fn add_log(&mut self, other: Recording, to_own_s: impl Fn(f64) -> f64) {

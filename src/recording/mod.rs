@@ -8,6 +8,7 @@ mod builder;
 mod event;
 mod flight;
 mod growing;
+mod leaps;
 mod overlap;
 mod possible;
 mod quantity;

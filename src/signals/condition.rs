@@ -164,7 +164,8 @@ fn mask(
     // the vehicle's clock restarted, or its estimator jumped
     let resets_s = [recording.clock_resets_s.as_slice(), &recording.estimator_resets_s].concat();
     let command = actuation.command();
-    let evidence = Evidence { streams: &streams, airborne_s, resets_s: &resets_s, command, rate };
+    let is_damaged = recording.is_damaged;
+    let evidence = Evidence { streams: &streams, airborne_s, resets_s: &resets_s, command, rate, is_damaged };
     usable(grid, &evidence, transient_s)
 }
 

@@ -8,7 +8,13 @@ pub struct Said<'a> {
     landed: Option<&'a Stream>,
     armed: Option<&'a Stream>,
     asks: bool,
+    /// a word counts this long before and after, s
+    margin_s: f64,
 }
+
+/// In a damaged log the word that ends a flight may be lost, and a later one ends it: at both ends so much is left out, s.
+/// Measured on copies of two flights with 1 % of their bytes wrong, six seeds: they came out 0.7 s too long at most.
+const DAMAGED_S: f64 = 1.0;
 
 impl<'a> Said<'a> {
     /// What a recording holds of it.
@@ -24,7 +30,8 @@ impl<'a> Said<'a> {
         let asks = armed.is_some()
             || thrusts().next().is_none()
             || thrusts().any(|thrust| thrust.values.iter().any(|value| *value != 0.0));
-        Self { landed: streams(Quantity::LandedState).next(), armed, asks }
+        let margin_s = if recording.is_damaged { DAMAGED_S } else { 0.0 };
+        Self { landed: streams(Quantity::LandedState).next(), armed, asks, margin_s }
     }
 
     /// The autopilot tells when it has landed.
@@ -59,6 +66,13 @@ impl<'a> Said<'a> {
     }
 
     fn may_be(&self, t_s: f64, states: &[f64]) -> bool {
+        let margin_s = self.margin_s;
+        self.may_be_at(t_s, states)
+            && (margin_s == 0.0
+                || [t_s - margin_s, t_s + margin_s].iter().all(|t_s| self.may_be_at(*t_s, states)))
+    }
+
+    fn may_be_at(&self, t_s: f64, states: &[f64]) -> bool {
         let armed = self.armed.and_then(|armed| last_word(armed, t_s)).is_none_or(|armed| armed > 0.5);
         let landed = self.landed.and_then(|landed| last_word(landed, t_s));
         self.asks
@@ -115,6 +129,16 @@ mod tests {
         assert!(said.tells_landed() && !said.never_armed());
         let idle = recording(&[(Quantity::Armed, stream(&[0.0, 1.0], &[0.0, 0.0]))]);
         assert!(Said::of(&idle).never_armed() && !Said::of(&Recording::default()).never_armed());
+    }
+
+    #[test]
+    fn a_damaged_log_flies_no_longer_than_its_words_are_certain() {
+        let landed = stream(&[0.0, 3.0, 9.0], &[1.0, 2.0, 1.0]);
+        let mut damaged = recording(&[(Quantity::LandedState, landed)]);
+        let at = |recording: &Recording| [3.5, 4.5, 7.5, 8.5].map(|t_s| Said::of(recording).may_fly(t_s));
+        assert_eq!(at(&damaged), [true; 4]);
+        damaged.is_damaged = true;
+        assert_eq!(at(&damaged), [false, true, true, false]);
     }
 
     #[test]

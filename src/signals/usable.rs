@@ -77,6 +77,8 @@ pub struct Evidence<'a> {
     pub command: Option<&'a Stream>,
     /// rad/s, body, on the grid
     pub rate: Option<&'a [Vector3<f64>]>,
+    /// the log is damaged: rates that are wrong excite nothing
+    pub is_damaged: bool,
 }
 
 /// Spans in the air, s: the rotors carry the vehicle, and the autopilot says neither that it is disarmed nor that it has landed.
@@ -137,8 +139,10 @@ pub fn usable(grid: &Grid, evidence: &Evidence<'_>, transient_s: Option<f64>) ->
         let candidates: Vec<bool> = (0..grid.count)
             .map(|i| !(grounded[i] || transient[i] || gap[i] || heed_saturation && saturated[i]))
             .collect();
-        let idle =
-            evidence.rate.map_or_else(|| vec![false; grid.count], |rate| idle(grid, rate, &candidates));
+        let idle = evidence.rate.map_or_else(
+            || vec![false; grid.count],
+            |rate| idle(grid, (rate, evidence.is_damaged), &candidates),
+        );
         let mask: Vec<bool> = candidates.iter().zip(&idle).map(|(c, idle)| *c && !idle).collect();
         (candidates, idle, mask)
     };
@@ -255,7 +259,8 @@ fn gaps(grid: &Grid, evidence: &Evidence<'_>) -> Vec<bool> {
 }
 
 /// Instants before the first and after the last excited window: hover gives no information about inertia.
-fn idle(grid: &Grid, rate: &[Vector3<f64>], candidates: &[bool]) -> Vec<bool> {
+/// Of a damaged log, the outermost windows count as idle too: what is left of the damage may have made them lively.
+fn idle(grid: &Grid, (rate, is_damaged): (&[Vector3<f64>], bool), candidates: &[bool]) -> Vec<bool> {
     let mut window = 1;
     while (window as f64) * grid.step_s < EXCITATION_WINDOW_S {
         window += 1;
@@ -275,5 +280,7 @@ fn idle(grid: &Grid, rate: &[Vector3<f64>], candidates: &[bool]) -> Vec<bool> {
     let exciting = |&&(_, p): &&(usize, f64)| p >= EXCITATION_SHARE * lively;
     let first = power.iter().find(exciting).map_or(0, |(start, _)| *start);
     let last = power.iter().rev().find(exciting).map_or(grid.count, |(start, _)| start + window);
+    let (first, last) =
+        if is_damaged { (first + window, last.saturating_sub(window)) } else { (first, last) };
     (0..grid.count).map(|i| i < first || i >= last).collect()
 }

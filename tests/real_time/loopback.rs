@@ -146,7 +146,7 @@ fn is_whole(document: &Value, name: &str) {
 }
 
 /// The tolerances of the cases: mass within 0.5 %, moments within 3 %, products within 3 % of `sqrt(Iii Ijj)`.
-fn is_identified(document: &Value, name: &str) {
+pub fn is_identified(document: &Value, name: &str) {
     let truth = load_vehicle(Path::new(&config("x500.toml"))).unwrap().body;
     let found = |parameter: &str| {
         let value = &document["identification"]["best"]["parameters"][parameter]["value"];

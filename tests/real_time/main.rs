@@ -17,6 +17,7 @@ mod stuck;
 mod support;
 
 mod demo;
+mod fetch_interrupted;
 mod log_commands;
 mod loopback;
 mod peers;

@@ -3,7 +3,7 @@
 use super::bootstrap::{Blocks, Compared, Squares};
 use super::ready::{Ready, flown};
 use super::settings::HoldoutSettings;
-use crate::compare::{SIGNALS, TenSignals, autopilot_flight};
+use crate::compare::{SIGNALS, TenSignals, autopilot_flight, divergence};
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
 use crate::stats::white_level_of;
@@ -41,13 +41,19 @@ pub(super) fn flown_again(
         let recorded = TenSignals::of_signals(ready.flight.signals).map_err(|error| named(&error))?;
         let levels = noise_levels(&recorded);
         floors.iter_mut().zip(levels).for_each(|(floor, level)| *floor += level * level);
-        let fly = |base: &Base| -> Result<Vec<(f64, [f64; 10])>, String> {
+        let fly = |name: &str, base: &Base| -> Result<Vec<(f64, [f64; 10])>, String> {
             let model = flown(base).map_err(|error| named(&error))?;
             let again = autopilot_flight(recording, &model, nominal).map_err(|error| named(&error))?;
-            Ok(recorded.square_errors(&again, span_s(ready)))
+            match divergence(&recorded, &again, span_s(ready)) {
+                Some(how) => Err(named(&format!(
+                    "the simulation of the {name} leaves the flight: {how}; its errors would be no predictions"
+                ))),
+                None => Ok(recorded.square_errors(&again, span_s(ready))),
+            }
         };
         let (before, after) = ready.pair.predicting();
-        let (before, after) = rayon::join(|| fly(before), || fly(after));
+        let (before, after) =
+            rayon::join(|| fly("rigid body alone", before), || fly("model with the effects", after));
         for ((time_s, before), (_, after)) in before?.iter().zip(&after?) {
             let squares = Squares { unchanged: None, before, after, count: &[1.0; SIGNALS.len()] };
             blocks.add((index, *time_s), squares);

@@ -16,6 +16,23 @@ pub struct Definitions {
     multipliers: BTreeMap<u8, f64>,
 }
 
+/// What ArduPilot's identifiers of multipliers have stood for in every release (LogStructure.h).
+const WRITTEN: &[(u8, f64)] = &[
+    (b'2', 1e2),
+    (b'1', 1e1),
+    (b'0', 1.0),
+    (b'A', 1e-1),
+    (b'B', 1e-2),
+    (b'C', 1e-3),
+    (b'D', 1e-4),
+    (b'E', 1e-5),
+    (b'F', 1e-6),
+    (b'G', 1e-7),
+    (b'I', 1e-9),
+    (b'!', 3.6),
+    (b'/', 3600.0),
+];
+
 #[derive(Debug, Clone)]
 struct Known {
     definition: Definition,
@@ -100,6 +117,8 @@ impl Definitions {
 
     pub(super) fn learn(&mut self, lesson: Lesson) {
         match lesson {
+            // its number is damaged
+            Lesson::Definition(definition) if definition.number == FMT && definition.name != "FMT" => {}
             Lesson::Definition(definition) => {
                 let known = &mut self.known[usize::from(definition.number)];
                 let same = |known: &Known| {
@@ -128,7 +147,10 @@ impl Definitions {
                 self.units.insert(id, label);
             }
             Lesson::Multiplier(id, value) => {
-                self.multipliers.insert(id, value);
+                let known = WRITTEN.iter().find(|(known, _)| *known == id).map(|(_, value)| *value);
+                // it is in single precision; another value is damage
+                let is_other = |known: &f64| (value - known).abs() > 1e-6 * known;
+                self.multipliers.insert(id, known.filter(is_other).unwrap_or(value));
             }
         }
     }

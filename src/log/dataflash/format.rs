@@ -5,6 +5,7 @@ use std::io::{BufReader, Read};
 use super::damage::DataflashDamage;
 use super::definition::{Definition, FMT, MARKER};
 use super::definitions::Definitions;
+use super::forms;
 use super::message::Message;
 use super::reader::DataflashReader;
 use super::text_reader::DataflashTextReader;
@@ -39,6 +40,8 @@ pub(in crate::log) const TEXT: Format = Format {
 
 /// A definition is this long; text logs have fewer columns in old releases.
 const FMT_BYTES: usize = 89;
+/// Definitions that are ArduPilot's but for damage. Chosen; not measured: one could be of a log that only resembles.
+const LEAST_KNOWN: u32 = 3;
 /// Lines of a text log among which the first definition is.
 const FIRST_LINES: usize = 64;
 
@@ -46,12 +49,14 @@ const FIRST_LINES: usize = 64;
 fn sniff_binary(head: &[u8]) -> Option<Certainty> {
     let begins =
         |message: &&[u8]| message[..2] == MARKER && message[2] == FMT && message[5].is_ascii_graphic();
-    let (mut sound, mut others) = (0, 0);
+    let (mut sound, mut others, mut known) = (0, 0, 0);
     for message in head.windows(FMT_BYTES).filter(begins) {
         let is_sound = Definition::from_message(message).is_some();
         *(if is_sound { &mut sound } else { &mut others }) += 1;
+        known += u32::from(forms::is_known(message));
     }
-    (sound > others).then_some(Certainty::Certain)
+    // most are damaged, but some are those of no other autopilot
+    (sound > others || known >= LEAST_KNOWN).then_some(Certainty::Certain)
 }
 
 /// A line that defines a message.

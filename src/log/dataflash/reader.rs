@@ -6,8 +6,9 @@
 use std::io::Read;
 
 use super::damage::DataflashDamage;
-use super::definition::{Definition, FMT, HEADER_BYTES, MARKER};
+use super::definition::{FMT, HEADER_BYTES, MARKER};
 use super::definitions::{Definitions, Lesson};
+use super::forms::{defined, mended};
 use super::letter::MESSAGE_BYTES;
 use super::message::Message;
 use crate::log::error::LogError;
@@ -25,6 +26,8 @@ pub struct DataflashReader<R: Read> {
     bytes: LookAhead<R>,
     /// bytes of the message that was given out last
     given: usize,
+    /// the message before was a definition, or the log begins
+    defines: bool,
     definitions: Definitions,
     /// where the damage begins that is being skipped
     skipping: Option<u64>,
@@ -37,6 +40,7 @@ impl<R: Read> DataflashReader<R> {
         Self {
             bytes: LookAhead::new(from),
             given: 0,
+            defines: true,
             definitions: Definitions::default(),
             skipping: None,
             damage: DataflashDamage::default(),
@@ -56,11 +60,12 @@ impl<R: Read> DataflashReader<R> {
         let Some((number, bytes)) = self.advance()? else { return Ok(None) };
         let offset = self.bytes.offset();
         self.given = bytes;
+        self.defines = number == FMT;
         self.damage.messages += 1;
         let bytes = &self.bytes.sight()[..bytes];
         if self.definitions.teaches(number) {
             let lesson = match self.definitions.get(number) {
-                _ if number == FMT => Definition::from_message(bytes).map(Lesson::Definition),
+                _ if number == FMT => defined(bytes).map(Lesson::Definition),
                 Some(definition) => Definitions::lesson(&Message::binary(offset, definition, bytes)),
                 None => None,
             };
@@ -106,11 +111,17 @@ impl<R: Read> DataflashReader<R> {
 
     /// The whole message at the reading position, if another follows it.
     fn message(&self) -> Option<(u8, usize)> {
-        let (sight, number) = (self.bytes.sight(), self.number_at(0)?);
+        let sight = self.bytes.sight();
+        let Some(number) = self.number_at(0) else {
+            // a log's definitions stand behind one another: the header of one may be damaged
+            let bytes = self.definitions.bytes(FMT)?;
+            return (self.defines && mended(sight.get(..bytes)?).is_some()).then_some((FMT, bytes));
+        };
         let bytes = self.definitions.bytes(number)?;
         let whole = sight.get(..bytes)?;
-        if number == FMT && Definition::from_message(whole).is_none() {
-            return None;
+        if number == FMT {
+            // what it says speaks for it: nothing else need follow
+            return defined(whole).map(|_| (number, bytes));
         }
         let followed = match self.number_at(bytes) {
             Some(number) => self.skipping.is_none() || self.definitions.bytes(number).is_some(),

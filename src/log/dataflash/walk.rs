@@ -6,6 +6,7 @@ use super::definition::FMT;
 use super::definitions::Definitions;
 use super::identity::Identity;
 use super::join::Join;
+use super::jumps::Jumps;
 use super::message::{Kept, Message};
 use super::outlet::Outlet;
 use super::routes::{AllRoutes, Route, Routes};
@@ -69,7 +70,7 @@ pub(super) fn walk(messages: &mut impl Messages, sink: &mut Sink<'_>) -> Result<
         states: States::default(),
         began_s: None,
         armed_s: None,
-        jumps: Vec::new(),
+        jumps: Jumps::default(),
         origin: None,
         rates_as_now: None,
         walked: Walked::default(),
@@ -101,8 +102,7 @@ struct Walk<'a, 'b> {
     began_s: Option<f64>,
     /// time of the first arming since then, s
     armed_s: Option<f64>,
-    /// by how much the estimate jumped last, by message
-    jumps: Vec<(u8, f64, f64)>,
+    jumps: Jumps,
     /// where on the earth positions are counted from
     origin: Option<Geodetic>,
     /// rates are in the units of now, as far as it is known
@@ -276,7 +276,8 @@ impl Walk<'_, '_> {
             Special::Error => {}
             // of the first core, as the samples that are used
             Special::Jump if instance == 0 => {
-                self.jumped(message.definition.number, number(0), number(1), time_s);
+                let jumped_s = self.jumps.take(message.definition.number, [number(0), number(1)], time_s);
+                jumped_s.into_iter().for_each(|time_s| self.out.give(Event::EstimatorReset { time_s }));
             }
             Special::Jump => {}
             Special::Place => self.place([number(0), number(1)], number(2), time_s),
@@ -321,18 +322,6 @@ impl Walk<'_, '_> {
             self.armed_s.get_or_insert(time_s);
         }
         self.out.sample(quantity, STATES, 0, time_s, &[value]);
-    }
-
-    /// The first word is of before the log began.
-    fn jumped(&mut self, message: u8, north_m: f64, east_m: f64, time_s: f64) {
-        match self.jumps.iter_mut().find(|(of, ..)| *of == message) {
-            Some(last) if (last.1, last.2) == (north_m, east_m) => {}
-            Some(last) => {
-                *last = (message, north_m, east_m);
-                self.out.give(Event::EstimatorReset { time_s });
-            }
-            None => self.jumps.push((message, north_m, east_m)),
-        }
     }
 
     /// Positions are counted from the first place.

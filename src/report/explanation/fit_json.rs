@@ -58,7 +58,8 @@ struct WindowValue {
 #[derive(Debug, Clone, Serialize)]
 struct ShownValue {
     weak_residual: BTreeMap<&'static str, ComparedValue>,
-    closed_loop: BTreeMap<&'static str, ComparedValue>,
+    /// `None` where it was not flown, or left the flight
+    closed_loop: Option<BTreeMap<&'static str, ComparedValue>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     no_closed_loop: Option<String>,
     own_parameters: BTreeMap<String, OwnValue>,
@@ -168,9 +169,9 @@ fn shown(of: &HoldoutFit) -> ShownValue {
         Ok(flown) => {
             let signals = flown.signals.iter().zip(SIGNALS);
             let each = signals.filter_map(|(of, (name, unit))| Some((name, compared(of.as_ref()?, unit))));
-            (each.collect(), None)
+            (Some(each.collect()), None)
         }
-        Err(why) => (BTreeMap::new(), Some(why.clone())),
+        Err(why) => (None, Some(why.clone())),
     };
     ShownValue {
         weak_residual: weak

@@ -110,6 +110,9 @@ fn fit_lines(page: &mut String, study: &ExplainStudy) {
     }
     page.push_str("    unchanged: a state that does not change; better by: than the better one of it and the rigid body\n");
     at_end_lines(page, study.holdout.as_ref().or(study.identify.as_ref()));
+    if let Some(Err(why)) = study.shown.as_ref().map(|shown| &shown.closed_loop) {
+        let _ = writeln!(page, "\n  not simulated in closed loop: {why}");
+    }
 }
 
 fn predicted_lines(page: &mut String, predicted: Option<&Predicted>) {

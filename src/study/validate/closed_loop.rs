@@ -3,7 +3,7 @@
 use super::comparisons::closed_loop_table;
 use super::error_table::ErrorTable;
 use super::model::Contender;
-use crate::compare::{TenSignals, autopilot_flight, recorded_tracking_m, resimulated};
+use crate::compare::{TenSignals, autopilot_flight, divergence, recorded_tracking_m, resimulated};
 use crate::signals::{Signals, ThrustSource};
 use crate::simulate::pid::{PidFlightSettings, PidSettings};
 use crate::study::flight::Flight;
@@ -22,7 +22,7 @@ pub(super) fn closed_loop(
         "Simulated in closed loop with {controller} from the recorded setpoints, {:.0} to {:.0} s",
         span_s.0, span_s.1
     );
-    let flown: Vec<(String, Result<TenSignals, String>)> =
+    let mut flown: Vec<(String, Result<TenSignals, String>)> =
         models.par_iter().map(|model| (model.of.name.clone(), fly(flight, model, models, by_pid))).collect();
     let recorded = match TenSignals::of_signals(signals) {
         Ok(recorded) => recorded,
@@ -32,6 +32,13 @@ pub(super) fn closed_loop(
             return (closed_loop_table(title, &TenSignals::default(), &missing, span_s), Vec::new());
         }
     };
+    for (_, simulated) in &mut flown {
+        let how = simulated.as_ref().ok().and_then(|simulated| divergence(&recorded, simulated, span_s));
+        if let Some(how) = how {
+            *simulated =
+                Err(format!("the simulation leaves the flight: {how}; its errors would be no predictions"));
+        }
+    }
     let table = closed_loop_table(title, &recorded, &flown, span_s);
     if table.shown().is_empty() {
         return (table, Vec::new());
