@@ -12,8 +12,8 @@ use super::fit::Fitted;
 use super::recorded::Need;
 
 /// Standard deviation of this correlation. Of 48 flights with an estimator in the loop (`cargo bench --bench blind -- --realistic
-/// --write DIR --flights 48 --seed 91125001`) moments were wrong by .7 % rms at 1 - R2 = .002, 1.6 % at .007, 2.4 % at .027, 3.0 %
-/// at .045 and 4.0 % at .11.
+/// --write DIR --flights 48 --seed 91125001`) moments were wrong by 0.7 % rms at 1 - R2 = 0.002, 1.6 % at 0.007, 2.4 % at 0.027,
+/// 3.0 % at 0.045 and 4.0 % at 0.11.
 const CORRELATION: f64 = 0.12;
 
 /// Variance that this adds to a coefficient of a fit, in its unit squared.
@@ -33,8 +33,8 @@ pub(super) fn of_tested(weighted: &Weighted, evidence: &Evidence, index: usize) 
     if own > 0.0 { CORRELATION * (weighted.count_of(AXES - 1) as f64 / own).sqrt() } else { 0.0 }
 }
 
-/// Adds it to the covariance of a fit by least squares: to the inertia, and to effects that need torques.
-pub(super) fn add_left_over(fitted: &mut Fitted) {
+/// Adds it to the covariance of a fit: to the inertia, and to effects that need torques, except where `by_instruments` has told them.
+pub(super) fn add_left_over(fitted: &mut Fitted, by_instruments: &[usize]) {
     let of_nuisances = fitted.rows.nuisances.iter();
     let mut places: Vec<usize> = of_nuisances
         .enumerate()
@@ -50,7 +50,7 @@ pub(super) fn add_left_over(fitted: &mut Fitted) {
             place += 1;
         }
     }
-    for place in places {
+    for place in places.into_iter().filter(|place| !by_instruments.contains(place)) {
         // what no row bears on stays undetermined
         if fitted.covariance[(place, place)] > 0.0 {
             fitted.covariance[(place, place)] += of_left_over(&fitted.weighted, place);

@@ -3,7 +3,7 @@
 use super::channels::Nuisance;
 use super::fit::Fitted;
 use super::trace::Trace;
-use crate::estimate::{Theta, inertia_of, is_physical, nearest_physical, theta_of};
+use crate::estimate::{Nominal, THETA, Theta, inertia_of, is_physical, nearest_physical, theta_of};
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
 
@@ -25,7 +25,7 @@ pub(super) fn make_physical(
         return Ok(());
     }
     let nominal = theta_of(&stated.body);
-    let moved = near(fitted, &theta, &nominal);
+    let moved = near(fitted, &theta, &Nominal::of(stated));
     let mut base = fitted.base.clone();
     base.vehicle.body.inertia_kg_m2 = inertia_of(&moved.unwrap_or(nominal));
     let mut after = fitted.moved_to(flights, base)?;
@@ -36,17 +36,22 @@ pub(super) fn make_physical(
             after.covariance.column_mut(place).fill(0.0);
             let moments = [nominal[1], nominal[4], nominal[6]];
             let largest = moments.into_iter().fold(0.0, f64::max);
-            after.covariance[(place, place)] = nominal[1 + entry].abs().max(0.1 * largest).powi(2);
+            let is_moment = matches!(entry, 0 | 3 | 5);
+            let size = if is_moment { nominal[1 + entry].abs().max(0.1 * largest) } else { largest };
+            after.covariance[(place, place)] = size.powi(2);
         }
     }
     *fitted = after;
     Ok(())
 }
 
-/// The nearest possible one, if it lies within the error.
-fn near(fitted: &Fitted, theta: &Theta, nominal: &Theta) -> Option<Theta> {
-    let covariance = fitted.rigid_body().covariance;
-    let nearest = nearest_physical(theta, &covariance, nominal)?;
+/// The nearest possible one, if it lies within the error, that of what the description guesses included.
+fn near(fitted: &Fitted, theta: &Theta, nominal: &Nominal) -> Option<Theta> {
+    let mut covariance = fitted.rigid_body().covariance;
+    for index in 1..THETA {
+        covariance[(index, index)] += (nominal.guessed(index) * theta[index]).powi(2);
+    }
+    let nearest = nearest_physical(theta, &covariance, &nominal.theta)?;
     let by = nearest - theta;
     let wald = by.dot(&covariance.cholesky()?.solve(&by));
     // it is moved along what forbids it: one direction

@@ -36,7 +36,7 @@ pub(super) fn settle(
     found: &mut Search,
 ) -> Result<(), PhysicsError> {
     leave_out_unnamed(traces, found)?;
-    let mut by_instruments = false;
+    let mut by_instruments = Vec::new();
     for left in (0..SETTLINGS).rev() {
         tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, traces, found))?;
         if is_fed_back(traces) {
@@ -47,12 +47,10 @@ pub(super) fn settle(
             break;
         }
     }
-    if !by_instruments {
-        add_left_over(&mut found.after);
-    }
+    add_left_over(&mut found.after, &by_instruments);
     add_floors(&mut found.after);
     // the model where nothing serves
-    add_left_over(&mut found.before);
+    add_left_over(&mut found.before, &[]);
     add_floors(&mut found.before);
     found.latency.std_s = found.latency.std_s.hypot(FORM * found.latency.total_s);
     make_physical(traces, vehicle, &mut found.before)?;

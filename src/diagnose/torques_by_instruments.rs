@@ -19,7 +19,8 @@ use std::ops::Range;
 const MOMENTS: [usize; 3] = [1, 4, 6];
 
 /// Inertia and damping of a model as instruments tell them, where least squares contradicts them or is the less certain. The
-/// latency of the model and its standard error, s, are known. Returns whether the instruments hold.
+/// latency of the model and its standard error, s, are known. Returns the places of the coefficients that
+/// the instruments have told.
 ///
 /// # Errors
 /// [`PhysicsError`] where the base is not physical.
@@ -27,8 +28,8 @@ pub(super) fn torques_by_instruments(
     flights: &[Trace],
     latency_std_s: f64,
     fitted: &mut Fitted,
-) -> Result<bool, PhysicsError> {
-    let Some(mut by) = fit_by_instruments(flights, fitted, Newton::Held)? else { return Ok(false) };
+) -> Result<Vec<usize>, PhysicsError> {
+    let Some(mut by) = fit_by_instruments(flights, fitted, Newton::Held)? else { return Ok(Vec::new()) };
     if let Some(brings) = brought_by_latency(flights, &by).filter(|_| latency_std_s.is_finite()) {
         by.covariance += &brings * brings.transpose() * latency_std_s.powi(2);
     }
@@ -41,7 +42,7 @@ pub(super) fn torques_by_instruments(
         holds(told.theta[at] - plain.theta[at], variance(&plain), left_over, variance(&told))
     };
     if !MOMENTS.into_iter().any(contradicts) {
-        return Ok(false);
+        return Ok(Vec::new());
     }
     let places: Vec<usize> =
         (0..by.covariance.nrows()).filter(|&place| by.covariance[(place, place)] > 0.0).collect();
@@ -55,7 +56,7 @@ pub(super) fn torques_by_instruments(
         }
     }
     *fitted = after;
-    Ok(true)
+    Ok(places)
 }
 
 /// The fit with inertia, latency and what damps the rotation by instruments, iterated; `None` where they cannot be had so.

@@ -35,7 +35,7 @@ pub fn nearest_physical(theta: &Theta, covariance: &ThetaCovariance, nominal: &T
     };
     let floor = 1e-3 * second_moments(&inertia_of(nominal)).trace() / 3.0;
     let unpack = |q: &LogCholesky| unpack(q, floor);
-    let mut q = log_cholesky(nominal, floor)?;
+    let mut q = log_cholesky(nominal, floor).or_else(|| log_cholesky(&thickened(nominal), floor))?;
     let mut cost = whitened(&unpack(&q)).norm_squared();
     let mut damping = 1e-3;
     for _ in 0..200 {
@@ -60,6 +60,13 @@ pub fn nearest_physical(theta: &Theta, covariance: &ThetaCovariance, nominal: &T
         }
     }
     Some(unpack(&q)).filter(is_physical)
+}
+
+/// A body that is thicker in all directions, from which the search can begin where the stated one is flat.
+fn thickened(theta: &Theta) -> Theta {
+    const MOMENTS: [usize; 3] = [1, 4, 6];
+    let by = 0.1 * MOMENTS.iter().map(|&moment| theta[moment]).sum::<f64>() / 3.0;
+    Theta::from_fn(|index, _| if MOMENTS.contains(&index) { theta[index] + by } else { theta[index] })
 }
 
 /// ln m, ln L11, ln L22, ln L33, L21, L31, L32; the off-diagonals in units of the root of the trace.
@@ -133,6 +140,16 @@ mod tests {
         assert!(is_physical(&mended));
         assert!((mended[1] / 0.03 - 1.0).abs() < 0.01, "{mended}");
         assert!((mended[6] / 0.06 - 1.0).abs() < 0.02, "{mended}");
+    }
+
+    #[test]
+    fn a_flat_body_is_no_reason_to_find_none() {
+        let flat: Theta = SVector::from([1.0, 0.044, 0.0, 0.0, 0.044, 0.0, 0.088]);
+        let theta: Theta = SVector::from([1.0, 0.0198, 0.0, 0.0, 0.0200, 0.0, 0.0399]);
+        let deviations = [0.01, 1e-4, 1e-5, 1e-5, 1e-4, 1e-5, 2e-4];
+        let covariance = SMatrix::from_diagonal(&SVector::from(deviations.map(|s: f64| s * s)));
+        let mended = nearest_physical(&theta, &covariance, &flat).unwrap();
+        assert!(is_physical(&mended) && (mended - theta).norm() < 2e-4, "{mended}");
     }
 
     #[test]

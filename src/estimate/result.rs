@@ -228,12 +228,14 @@ pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Findin
     let size = size_of(&estimated.theta, nominal, index);
     let relative = std / size;
     if relative > LARGEST_RELATIVE_STD {
+        let axes = axes_of(index).iter().map(|axis| ["x", "y", "z"][*axis]).collect::<Vec<_>>();
+        let fly = if index == 0 {
+            "weigh the vehicle, or fly climbs and descents".to_owned()
+        } else {
+            format!("fly more angular acceleration about {}", axes.join(" and "))
+        };
         return Finding::NotDetermined {
-            reason: format!(
-                "standard error {:.0} % of its size; fly more angular acceleration about {}",
-                100.0 * relative,
-                axes_of(index).iter().map(|axis| ["x", "y", "z"][*axis]).collect::<Vec<_>>().join(" and ")
-            ),
+            reason: format!("standard error {:.0} % of its size; {fly}", 100.0 * relative),
         };
     }
     if let Some(reason) = unexplained(estimated, index) {

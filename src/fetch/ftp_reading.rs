@@ -289,6 +289,17 @@ impl FtpReading {
     }
 }
 
+/// The checksum in the vehicle's answer.
+fn sum_of(answer: &Answer) -> Sum {
+    match answer {
+        Answer::Data(data) => {
+            let sum = data.first_chunk().copied();
+            sum.map_or(Sum::NotOffered, |sum| Sum::Is(u32::from_le_bytes(sum)))
+        }
+        Answer::Refused(_) => Sum::NotOffered,
+    }
+}
+
 impl Dialogue for FtpReading {
     fn poll(&mut self, now: Duration) -> Result<Option<MavMessage>, FetchError> {
         if let Some(failure) = self.failure.take() {
@@ -312,11 +323,7 @@ impl Dialogue for FtpReading {
             Step::Sum(question) => {
                 let patience = Duration::from_secs(2 + size / SUM_BYTES_A_SECOND);
                 self.sum = match question.answer() {
-                    Some(Answer::Data(data)) => data
-                        .first_chunk()
-                        .copied()
-                        .map_or(Sum::NotOffered, |sum| Sum::Is(u32::from_le_bytes(sum))),
-                    Some(Answer::Refused(_)) => Sum::NotOffered,
+                    Some(answer) => sum_of(&answer),
                     None => match question.poll(now, &mut self.ftp, ("", SUM_TRIES, Some(patience))) {
                         Ok(message) => return Ok(message),
                         Err(_) => Sum::Unanswered,

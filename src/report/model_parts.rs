@@ -20,13 +20,16 @@ pub(super) fn effect_tables(effects: &[ActiveEffect]) -> String {
 
 /// A correlation as names and rows.
 pub(super) fn correlation_lines(correlation: &Correlation) -> String {
-    let row = |row: &Vec<Option<f64>>| {
-        let cells: Vec<String> =
-            row.iter().map(|r| r.map_or_else(|| "nan".to_owned(), |r| format!("{r:.4}"))).collect();
-        format!("  [{}]", cells.join(", "))
+    // what has no error, because it is given or not determined, goes with nothing
+    let has_error = |index: &usize| correlation.rows[*index][*index].is_some();
+    let kept: Vec<usize> = (0..correlation.names.len()).filter(has_error).collect();
+    let row = |i: &usize| {
+        let cell = |j: &usize| format!("{:.4}", correlation.rows[*i][*j].unwrap_or_default());
+        format!("  [{}]", kept.iter().map(cell).collect::<Vec<_>>().join(", "))
     };
-    let rows: Vec<String> = correlation.rows.iter().map(row).collect();
-    format!("correlation_of = {:?}\ncorrelation = [\n{}\n]\n", correlation.names, rows.join(",\n"))
+    let names: Vec<&String> = kept.iter().map(|index| &correlation.names[*index]).collect();
+    let rows: Vec<String> = kept.iter().map(row).collect();
+    format!("correlation_of = {names:?}\ncorrelation = [\n{}\n]\n", rows.join(",\n"))
 }
 
 /// Files by name and hash as an array.

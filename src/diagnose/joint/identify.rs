@@ -58,8 +58,8 @@ pub fn identify_jointly(
     let (mut after, split) = latency::split(&traces, after, wanted)?;
     swing::allow_for_noise(&traces, &mut after, &mut settled)?;
     let mut before = before;
-    add_left_over(&mut before);
-    add_left_over(&mut after);
+    add_left_over(&mut before, &[]);
+    add_left_over(&mut after, &[]);
     let fits = Fits { before, after, settled, split, first };
     let by_curve = moved_by_guessed_curve(flights, vehicle);
     let estimate = put_together(&traces, (vehicle, &kept), (wanted, by_curve), fits);

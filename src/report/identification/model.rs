@@ -23,6 +23,13 @@ pub fn identified_model(study: &IdentifyStudy) -> Result<String, ConfigError> {
     let scale = study.scale.as_ref();
     let mut text = vehicle_to_toml(&identified_vehicle(&study.vehicle, best, scale))?;
     let _ = writeln!(text, "\n[identified]\nmethod = \"{}\"", best.method.name());
+    if !study.beside.is_empty() {
+        let _ = writeln!(
+            text,
+            "# estimated together with these effects, which this file does not hold: `mavid explain` writes them"
+        );
+        let _ = writeln!(text, "beside = {:?}", study.beside);
+    }
     let _ = writeln!(text, "# what the flight did not determine keeps its nominal value in [body]");
     text.push_str(&identified_entries(best, scale));
     text.push_str(&correlation_lines(&study.correlation()));
