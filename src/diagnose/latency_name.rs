@@ -33,7 +33,7 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     let (kind, other) = if is_lag { (lag, delay) } else { (delay, lag) };
     let name = kind.effect.parameters().first()?.name;
     let (value, std) = if is_lag {
-        (parts.lag_s, std_s)
+        (parts.lag_s, std_s.hypot(unseen_delay_s(total_s, (against_lag, against_delay))))
     } else if parts.lag_s > 0.0 {
         (parts.delay_s - held_s(traces), std_s)
     } else {
@@ -80,6 +80,16 @@ fn unstated_motor(behind_s: f64, (against_lag, against_delay): (f64, f64)) -> (f
     let most_s = told_s.min(behind_s).max(0.0);
     if most_s < 2.0 * UNSTATED_MOTOR_S.0 { (0.5 * most_s, most_s / 12_f64.sqrt()) } else { UNSTATED_MOTOR_S }
 }
+
+/// Root mean square of the delay that may be in a latency that goes as a lag, s: from none to what its second order allows.
+fn unseen_delay_s(total_s: f64, (against_lag, against_delay): (f64, f64)) -> f64 {
+    let told =
+        if against_delay > 0.0 { ((against_lag + WITHIN) / against_delay).sqrt() } else { f64::INFINITY };
+    (total_s * told.min(1.0)).min(USUAL_DELAY_S) / 3_f64.sqrt()
+}
+
+/// Delays of ordinary vehicles beside that of sampling are no longer, s. Chosen; not measured.
+const USUAL_DELAY_S: f64 = 0.025;
 
 /// Standard errors by which the second order may be off. Chosen; not measured.
 const WITHIN: f64 = 2.0;

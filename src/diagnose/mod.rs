@@ -41,6 +41,7 @@ mod mounting;
 mod named;
 mod nuisances;
 mod other_forms;
+mod other_law;
 mod physical;
 mod price;
 mod priors;

@@ -8,6 +8,7 @@ use super::floors::{FORM, add_floors};
 use super::left_over::add_left_over;
 use super::limits::is_beyond_showing;
 use super::named::Strength;
+use super::other_law::add_other_laws;
 use super::physical::make_physical;
 use super::reconstructed::reconstruct;
 use super::signature::EffectTerm;
@@ -48,6 +49,7 @@ pub(super) fn settle(
         }
     }
     add_left_over(&mut found.after, &by_instruments);
+    add_other_laws(traces, &found.last, &mut found.after);
     add_floors(&mut found.after);
     // the model where nothing serves
     add_left_over(&mut found.before, &[]);

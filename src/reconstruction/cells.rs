@@ -3,7 +3,8 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::error::ReconstructionError;
-use super::place::{Place, STEP_S};
+use super::place::{Place, STEP_S, cell_of};
+use super::receiver::Received;
 use super::thrusts::CellThrusts;
 use crate::recording::{Quantity, Stream};
 use crate::signals::{Grid, Signals, white_level};
@@ -44,6 +45,8 @@ pub struct Cells {
     pub velocity_m_s: Vec<(usize, f64, Vector3<f64>)>,
     /// velocity at the cells' borders, m/s, where a fit begins
     pub borders_m_s: Vec<Vector3<f64>>,
+    /// what a satellite receiver said of the velocity
+    pub receiver: Received,
     /// of the rotors
     pub thrusts: CellThrusts,
 }
@@ -89,6 +92,9 @@ impl Cells {
             specific_force_m_s2: force_by_cell(force, &time_s),
             accelerometer_noise_m_s2: Vector3::from_fn(noise),
             velocity_m_s: velocity_by_cell(velocity, &time_s),
+            receiver: raw.gps_velocity.as_deref().map_or_else(Received::default, |stream| {
+                Received::of(stream, (&signals.grid, on_grid), &time_s)
+            }),
             borders_m_s: time_s.iter().map(|t| Place::of(&signals.grid, *t).between(on_grid)).collect(),
             thrusts: CellThrusts::of(signals, vehicle, from_s, count),
             time_s,
@@ -100,12 +106,6 @@ impl Cells {
     pub fn len(&self) -> usize {
         self.attitude.len()
     }
-}
-
-/// The cell, among those with these borders (s), that a time lies in.
-fn cell_of(time_s: &[f64], t: f64) -> Option<usize> {
-    let after = time_s.partition_point(|begin| *begin <= t);
-    after.checked_sub(1).filter(|cell| cell + 1 < time_s.len())
 }
 
 /// Mean of the finite samples in each cell, m/s^2, and their number.

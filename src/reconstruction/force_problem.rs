@@ -12,7 +12,7 @@ use super::place::STEP_S;
 use super::places::{BASE, ERROR, TILT, VELOCITY};
 use super::problem::{Problem, Unknown};
 use super::residuals::{Group, Residuals};
-use super::sensors::{Accelerometer, EstimatedVelocity, Mechanization, Start, TiltWalk};
+use super::sensors::{Accelerometer, EstimatedVelocity, Mechanization, ReceiverVelocity, Start, TiltWalk};
 use super::thrusts::LATENESS_S;
 use crate::physics::Airframe;
 use crate::signals::Signals;
@@ -37,6 +37,12 @@ pub struct KnownLag {
 const LATE_STD_S: f64 = 0.002;
 /// Standard deviation of the lateness of the attitude, s.
 const LATE_ATTITUDE_STD_S: f64 = 0.01;
+/// Standard deviation of what stamps leave open of the lateness of the autopilot's velocity, s.
+const LATE_VELOCITY_STD_S: f64 = 0.01;
+/// Standard deviation of the lateness of the receiver's velocity beside the one that the autopilot's velocity tells, s.
+const LATE_RECEIVER_STD_S: f64 = 0.05;
+/// A receiver's velocity has at least this much noise, m/s: its resolution, and what is slow in its errors.
+const RECEIVER_FLOOR_M_S: f64 = 0.03;
 /// Standard deviation of the accelerometer's bias, m/s^2.
 const BIAS_STD_M_S2: f64 = 0.3;
 
@@ -59,6 +65,8 @@ pub fn force_problem(
         unknown("late_force", LATENESS_S + known.delay_s, LATE_STD_S),
         unknown("lag", known.lag_s, known.lag_std_s),
         unknown("late_attitude", 0.0, LATE_ATTITUDE_STD_S),
+        unknown("late_velocity", 0.0, LATE_VELOCITY_STD_S),
+        unknown("late_receiver", 0.0, LATE_RECEIVER_STD_S),
     ];
     debug_assert_eq!(unknowns.len(), BASE);
     for term in &mut terms {
@@ -115,7 +123,10 @@ fn groups(flight: &Arc<Flight>) -> Vec<Group> {
     let driving = Vector3::repeat(if quiet { 0.01 } else { 0.1 } * (2.0 * STEP_S).sqrt());
     let mechanization = group("mechanization", Mechanization(flight.clone()), driving);
     let velocity = EstimatedVelocity { flight: flight.clone(), intervals: seen };
-    vec![
+    let by_receiver = cells.receiver.seen.iter().map(|seen| seen.cell).collect();
+    let receiver = ReceiverVelocity { flight: flight.clone(), intervals: by_receiver };
+    let receiver = group("receiver", receiver, Vector3::repeat(0.1));
+    let mut groups = vec![
         learned(process, Vector3::repeat(0.004), (4, ONWARD)),
         learned(accelerometer, noise * 0.9, (2, 4)),
         learned(drift, Vector3::repeat(1e-4 * root), (4, ONWARD)),
@@ -123,5 +134,9 @@ fn groups(flight: &Arc<Flight>) -> Vec<Group> {
         group("error at the start", Start(ERROR), Vector3::repeat(0.3)),
         learned(mechanization, Vector3::repeat(2e-5), (4, ONWARD)),
         group("velocity", velocity, Vector3::repeat(0.003)),
-    ]
+    ];
+    if !cells.receiver.seen.is_empty() {
+        groups.push(learned(receiver, Vector3::repeat(RECEIVER_FLOOR_M_S), (4, ONWARD)));
+    }
+    groups
 }

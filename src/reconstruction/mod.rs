@@ -14,6 +14,7 @@ mod forces;
 mod place;
 mod places;
 mod problem;
+mod receiver;
 mod residuals;
 mod sensors;
 mod thrusts;

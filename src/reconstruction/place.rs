@@ -58,3 +58,9 @@ impl Place {
         of[self.before].nlerp(&of[self.after], self.share)
     }
 }
+
+/// The cell, among those with these borders (s), that a time lies in.
+pub(super) fn cell_of(time_s: &[f64], t: f64) -> Option<usize> {
+    let after = time_s.partition_point(|begin| *begin <= t);
+    after.checked_sub(1).filter(|cell| cell + 1 < time_s.len())
+}

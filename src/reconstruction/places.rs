@@ -17,5 +17,9 @@ pub(super) const LATE_FORCE: usize = 4;
 pub(super) const LAG: usize = 5;
 /// Lateness of the attitude, s.
 pub(super) const LATE_ATTITUDE: usize = 6;
+/// Lateness of the autopilot's velocity, s.
+pub(super) const LATE_VELOCITY: usize = 7;
+/// Lateness of the receiver's velocity, s.
+pub(super) const LATE_RECEIVER: usize = 8;
 /// How many they are.
-pub(super) const BASE: usize = 7;
+pub(super) const BASE: usize = 9;

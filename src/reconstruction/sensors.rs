@@ -7,7 +7,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::blocks::{Columns, Pair, STATE, State, WIDTH};
 use super::forces::{Flight, part};
 use super::place::STEP_S;
-use super::places::{BIAS, ERROR, LATE_ATTITUDE, TILT, VELOCITY};
+use super::places::{BIAS, ERROR, LATE_ATTITUDE, LATE_RECEIVER, LATE_VELOCITY, TILT, VELOCITY};
+use super::receiver::Seen;
 use super::residuals::{Residuals, Row};
 
 /// Share of the accelerometer that the autopilot's velocity integrates.
@@ -154,10 +155,14 @@ impl Residuals for EstimatedVelocity {
     }
 
     fn parameters(&self) -> &[usize] {
+        &[LATE_VELOCITY]
+    }
+
+    fn shaped_by(&self) -> &[usize] {
         &[]
     }
 
-    fn row(&self, row: usize, a: &State, b: &State, _theta: &[f64]) -> Row {
+    fn row(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> Row {
         let (_, share, seen) = self.flight.cells.velocity_m_s[row];
         let of = |at: usize| part(a, at) * (1.0 - share) + part(b, at) * share;
         let mut by_states = Pair::zeros();
@@ -165,10 +170,41 @@ impl Residuals for EstimatedVelocity {
             put(&mut by_states, at, &(-Matrix3::identity() * (1.0 - share)));
             put(&mut by_states, STATE + at, &(-Matrix3::identity() * share));
         }
-        Row {
-            residual: seen - of(VELOCITY) - of(ERROR),
-            by_states,
-            by_parameters: Columns::<WIDTH>::zeros(0),
-        }
+        let acceleration = (part(b, VELOCITY) - part(a, VELOCITY)) / STEP_S;
+        let mut by_parameters = Columns::<WIDTH>::zeros(1);
+        by_parameters.set_column(0, &acceleration);
+        let residual = seen - of(VELOCITY) - of(ERROR) + acceleration * theta[LATE_VELOCITY];
+        Row { residual, by_states, by_parameters }
+    }
+}
+
+/// A receiver's velocity: the true one, late, m/s.
+#[derive(Debug)]
+pub(super) struct ReceiverVelocity {
+    pub(super) flight: Arc<Flight>,
+    pub(super) intervals: Vec<usize>,
+}
+
+impl Residuals for ReceiverVelocity {
+    fn intervals(&self) -> &[usize] {
+        &self.intervals
+    }
+
+    fn parameters(&self) -> &[usize] {
+        &[LATE_RECEIVER]
+    }
+
+    fn row(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> Row {
+        let Seen { share, velocity_m_s, climbs, .. } = self.flight.cells.receiver.seen[row];
+        let share = share - theta[LATE_RECEIVER] / STEP_S;
+        let told = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, if climbs { 1.0 } else { 0.0 }));
+        let (before, after) = (part(a, VELOCITY), part(b, VELOCITY));
+        let mut by_states = Pair::zeros();
+        put(&mut by_states, VELOCITY, &(-told * (1.0 - share)));
+        put(&mut by_states, STATE + VELOCITY, &(-told * share));
+        let mut by_parameters = Columns::<WIDTH>::zeros(1);
+        by_parameters.set_column(0, &(told * (after - before) / STEP_S));
+        let residual = told * (velocity_m_s - before * (1.0 - share) - after * share);
+        Row { residual, by_states, by_parameters }
     }
 }

@@ -209,6 +209,7 @@ struct Chosen<'a> {
     world_acceleration: Option<(&'static str, &'a Stream)>,
     position: Option<(&'static str, &'a Stream)>,
     velocity: Option<(&'static str, &'a Stream)>,
+    gps_velocity: Option<(&'static str, &'a Stream)>,
     /// body rates of the message that brings the specific force, where the chosen rates come by another
     inertial_rate: Option<&'a Stream>,
 }
@@ -231,12 +232,17 @@ impl<'a> Chosen<'a> {
             world_acceleration: pick(Quantity::WorldAcceleration, 3),
             position: pick(Quantity::Position, 3),
             velocity: pick(Quantity::Velocity, 3),
+            gps_velocity: pick(Quantity::GpsVelocity, 3),
         }
     }
 
     fn as_recorded(&self) -> AsRecorded {
         let kept = |stream: Option<(&'static str, &Stream)>| stream.map(|(_, s)| Arc::new(s.clone()));
-        AsRecorded { specific_force: kept(self.specific_force), velocity: kept(self.velocity) }
+        AsRecorded {
+            specific_force: kept(self.specific_force),
+            velocity: kept(self.velocity),
+            gps_velocity: kept(self.gps_velocity),
+        }
     }
 
     fn list(&self) -> [(Quantity, Option<(&'static str, &'a Stream)>); 6] {

@@ -93,6 +93,8 @@ pub struct AsRecorded {
     pub specific_force: Option<Arc<Stream>>,
     /// m/s, world
     pub velocity: Option<Arc<Stream>>,
+    /// m/s, world, raw from a satellite receiver; NaN along z where the message has no climb
+    pub gps_velocity: Option<Arc<Stream>>,
 }
 
 /// The commanded trajectory on the grid, world NWU.

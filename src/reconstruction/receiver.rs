@@ -1,0 +1,75 @@
+//! The velocity that a satellite receiver measures: raw, beside the autopilot's estimate.
+
+use nalgebra::Vector3;
+
+use super::place::{Place, STEP_S, cell_of};
+use crate::recording::Stream;
+use crate::signals::Grid;
+
+/// Latenesses of a receiver that are tried, s: from the first to the last by the step.
+const TRIED_S: (f64, f64, f64) = (-0.1, 0.4, 0.01);
+/// Fewer samples than this teach no lateness.
+const LEAST_SAMPLES: usize = 20;
+
+/// One sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen {
+    /// in which it was measured
+    pub(super) cell: usize,
+    /// place in the cell, 0 to 1
+    pub(super) share: f64,
+    /// world, m/s
+    pub(super) velocity_m_s: Vector3<f64>,
+    /// whether the message has a climb
+    pub(super) climbs: bool,
+}
+
+/// The receiver's samples in cells, earlier than their stamps by the lateness that the autopilot's velocity tells.
+#[derive(Debug, Default)]
+pub struct Received {
+    /// samples in the air
+    pub(super) seen: Vec<Seen>,
+}
+
+impl Received {
+    /// The samples of a flight; `estimated` is the autopilot's velocity on its grid, m/s.
+    pub(super) fn of(stream: &Stream, estimated: (&Grid, &[Vector3<f64>]), time_s: &[f64]) -> Self {
+        let (Some(first), Some(last)) = (time_s.first(), time_s.last()) else { return Self::default() };
+        let horizontal = |index: &usize| stream.sample(*index)[..2].iter().all(|part| part.is_finite());
+        let flown = |index: &usize| (*first..*last).contains(&stream.time_s[*index]);
+        let samples: Vec<usize> = (0..stream.len()).filter(flown).filter(horizontal).collect();
+        if samples.len() < LEAST_SAMPLES {
+            return Self::default();
+        }
+        let late_s = lateness_s(stream, &samples, estimated);
+        let one = |&index: &usize| {
+            let t = stream.time_s[index] - late_s;
+            let cell = cell_of(time_s, t)?;
+            let mut velocity_m_s = Vector3::from_row_slice(stream.sample(index));
+            let climbs = velocity_m_s.z.is_finite();
+            if !climbs {
+                velocity_m_s.z = 0.0;
+            }
+            Some(Seen { cell, share: (t - time_s[cell]) / STEP_S, velocity_m_s, climbs })
+        };
+        Self { seen: samples.iter().filter_map(one).collect() }
+    }
+}
+
+/// The lateness at which the receiver's horizontal velocity is nearest to the autopilot's, s.
+fn lateness_s(stream: &Stream, samples: &[usize], (grid, velocity): (&Grid, &[Vector3<f64>])) -> f64 {
+    let (first, last, step) = TRIED_S;
+    let apart = |late_s: f64| {
+        let one = |&index: &usize| {
+            let here = Place::of(grid, stream.time_s[index] - late_s).between(velocity);
+            let seen = stream.sample(index);
+            (seen[0] - here.x).powi(2) + (seen[1] - here.y).powi(2)
+        };
+        samples.iter().map(one).sum::<f64>()
+    };
+    let tried = (0..).map(|index| first + f64::from(index) * step).take_while(|late_s| *late_s <= last);
+    tried
+        .map(|late_s| (late_s, apart(late_s)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map_or(0.0, |found| found.0)
+}
