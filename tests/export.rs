@@ -46,6 +46,7 @@ fn px4_has_its_frame_and_the_thrust_of_full_command() {
     assert!((value("MPC_THR_HOVER") * full / hover - 1.0).abs() < 1e-6);
     // 12.5 ms up, 25 ms down
     assert!((value("SIH_T_TAU") - 0.01875).abs() < 1e-9);
+    assert!(value("IMU_GYRO_RATEMAX") == 1000.0 && value("IMU_INTEG_RATE") == 1000.0);
     for told in ["thrust_max", "12.5", "centre of mass"].map(|part| part.replace("12.5", "0.0125")) {
         assert!(exported.left_out.iter().any(|note| note.contains(&told)), "{told}: {:?}", exported.left_out);
     }
