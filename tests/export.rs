@@ -5,7 +5,6 @@
 use mavid::export::{Format, PLACES, export, places};
 use mavid::physics::ActiveEffect;
 use mavid::physics::effects::{ALL, by_id};
-use mavid::units::AIR_DENSITY_KG_M3;
 use mavid::vehicle::{ThrustLaw, Vehicle};
 
 fn vehicle() -> Vehicle {
@@ -28,7 +27,7 @@ fn parameter(text: &str, name: &str) -> f64 {
 }
 
 #[test]
-fn px4_has_its_frame_and_hovers_at_the_same_command() {
+fn px4_has_its_frame_and_the_thrust_of_full_command() {
     let vehicle = vehicle();
     let effects = [effect("linear_drag", &[0.3, 0.3, 0.3]), effect("thrust_tilt", &[0.02, 0.0])];
     let exported = export(&vehicle, &effects, Format::Px4Sih).unwrap();
@@ -37,33 +36,82 @@ fn px4_has_its_frame_and_hovers_at_the_same_command() {
     // y and z turn about: xy changes sign, yz does not
     assert!((value("SIH_IXY") + 0.001).abs() < 1e-9 && (value("SIH_IYZ") - 0.002).abs() < 1e-9);
     assert!((value("SIH_KDV") - 0.3).abs() < 1e-9);
+    // the hubs move as the vehicle turns: 0.3 N/(m/s) at 0.174 m in x and y and 0.0581 m in z
+    let (across, up): (f64, f64) = (0.174, 0.06 - 0.0019);
+    let damping = 0.3 * (2.0 * (across * across + up * up) + 2.0 * across * across) / 3.0;
+    assert!((value("SIH_KDW") - damping).abs() < 1e-7);
+    let full = vehicle.propulsion.full_thrust_n();
+    assert!((value("SIH_T_MAX") / full - 1.0).abs() < 1e-6 && value("THR_MDL_FAC") == 0.0);
     let hover = vehicle.body.mass_kg * vehicle.gravity_m_s2 / 4.0;
-    let command = vehicle.propulsion.command_from_thrust(hover);
-    assert!((value("SIH_T_MAX") * command / hover - 1.0).abs() < 1e-5);
+    assert!((value("MPC_THR_HOVER") * full / hover - 1.0).abs() < 1e-6);
+    // 12.5 ms up, 25 ms down
+    assert!((value("SIH_T_TAU") - 0.01875).abs() < 1e-9);
+    assert!(value("IMU_GYRO_RATEMAX") == 1000.0 && value("IMU_INTEG_RATE") == 1000.0);
+    for told in ["thrust_max", "12.5", "centre of mass"].map(|part| part.replace("12.5", "0.0125")) {
+        assert!(exported.left_out.iter().any(|note| note.contains(&told)), "{told}: {:?}", exported.left_out);
+    }
     assert!(exported.left_out.iter().any(|note| note.contains("thrust_tilt")), "{:?}", exported.left_out);
     assert!(exported.text.contains("# thrust_tilt"));
 }
 
+/// The frame file without its comments.
+fn frame(text: &str) -> serde_json::Value {
+    let clean: String = text.lines().filter(|line| !line.starts_with('#')).collect();
+    serde_json::from_str(&clean).unwrap()
+}
+
 #[test]
-fn ardupilot_drag_comes_back_by_its_own_law() {
-    let vehicle = vehicle();
-    let exported =
-        export(&vehicle, &[effect("linear_drag", &[0.3, 0.3, 0.3])], Format::ArdupilotSitl).unwrap();
-    let clean: String = exported.text.lines().filter(|line| !line.starts_with('#')).collect();
-    let file: serde_json::Value = serde_json::from_str(&clean).unwrap();
+fn ardupilots_frame_has_the_models_forces_by_its_own_laws() {
+    let mut vehicle = vehicle();
+    vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 11.0, expo: 0.5 };
+    let effects = [
+        effect("linear_drag", &[0.3, 0.3, 0.3]),
+        effect("quadratic_drag", &[0.02, 0.02, 0.02, 1.0]),
+        effect("angular_damping", &[0.01, 0.01, 0.01]),
+    ];
+    let exported = export(&vehicle, &effects, Format::ArdupilotSitl).unwrap();
+    let file = frame(&exported.text);
     let number = |key: &str| file[key].as_f64().unwrap();
     let weight = vehicle.body.mass_kg * vehicle.gravity_m_s2;
-    let drag = number("mdrag_coef") * (AIR_DENSITY_KG_M3 * number("disc_area") * weight).sqrt();
-    assert!((drag - 0.3).abs() < 1e-9, "{drag}");
+    // full thrust is the weight over hoverThrOut
+    assert!((weight / number("hoverThrOut") / 4.0 - 11.0).abs() < 1e-9);
+    // at home: the standard atmosphere at 584 m
+    let density = 1.225 * (1.0 - 2.255_77e-5 * number("refAlt")).powf(4.255_88);
+    let momentum = number("mdrag_coef") * (density * number("disc_area") * weight).sqrt();
+    assert!((momentum / 0.3 - 1.0).abs() < 1e-4, "{momentum}");
+    // what the reference flight leaves for the body, beside the momentum drag of its own thrust
+    let (tilt, speed) = (number("refAngle").to_radians(), number("refSpd"));
+    let thrust = weight / tilt.cos();
+    let of_rotors = tilt.cos()
+        * number("mdrag_coef")
+        * (speed * tilt.cos())
+        * (thrust * density * number("disc_area")).sqrt();
+    let body = (weight * tilt.tan() - of_rotors) / (speed * speed);
+    assert!((body / 0.02 - 1.0).abs() < 1e-3, "{body}");
+    // at hover a little more thrust turns as much as in the model
+    let law = |u: f64| 11.0 * (0.5 * u + 0.5 * u * u);
+    let hover = vehicle.propulsion.command_from_thrust(weight / 4.0);
     for (index, rotor) in vehicle.rotors.iter().enumerate() {
         let position = &file[format!("motor{}_position", index + 1)];
         assert_eq!(position[0].as_f64().unwrap(), rotor.position_m.x);
         // to the right, not to the left
         assert_eq!(position[1].as_f64().unwrap(), -rotor.position_m.y);
         let yaw = file[format!("motor{}_yaw", index + 1)].as_f64().unwrap();
-        assert!(yaw * rotor.spin.yaw_sign() < 0.0);
+        let torque = |u: f64| yaw * 0.05 * number("diagonal_size") * u * law(u);
+        let slope = (torque(hover + 1e-6) - torque(hover - 1e-6)) / (law(hover + 1e-6) - law(hover - 1e-6));
+        let expected = -rotor.spin.yaw_sign() * vehicle.propulsion.torque_per_thrust_m;
+        assert!((slope / expected - 1.0).abs() < 1e-6, "{slope} {expected}");
     }
+    // 0.01 N m/(rad/s) over the moments of inertia; the drag at the hubs is the same in both
+    let rates = vehicle.body.inertia_kg_m2.diagonal().map(|moment| 0.01 / moment);
+    assert!((400.0_f64.to_radians() / number("refRotRate") / rates.mean() - 1.0).abs() < 1e-9);
     assert!(exported.left_out.iter().any(|note| note.contains("products of inertia")));
+    assert!(exported.left_out.iter().any(|note| note.contains("1150 us")), "{:?}", exported.left_out);
+    let plain = export(&vehicle, &[], Format::ArdupilotSitl).unwrap();
+    let plain = frame(&plain.text);
+    for key in ["refRotRate", "mdrag_coef", "refAngle"] {
+        assert!(plain[key].as_f64().unwrap().abs() < 1e-9, "{key}: {}", plain[key]);
+    }
 }
 
 /// Tags of a text in order, each checked to be closed.
@@ -112,18 +160,31 @@ fn gazebo_and_mujoco_are_well_formed_and_hold_the_values() {
     assert!((drag * 4.0 * hover - 0.3).abs() < 1e-9);
     assert_eq!(between(&sdf.text, "<timeConstantUp>", "<"), "0.03");
     assert!(sdf.left_out.iter().any(|note| note.starts_with("angular_damping")));
+    // with the rotors' own mass, as points, the base is the whole vehicle again
+    let base: f64 = between(&sdf.text, "<mass>", "<").parse().unwrap();
+    assert!((base + 4e-3 - vehicle.body.mass_kg).abs() < 1e-12);
+    let moment: f64 = between(&sdf.text, "<ixx>", "<").parse().unwrap();
+    let hubs = 4.0 * 1e-3 * (0.174_f64.powi(2) + 0.06_f64.powi(2));
+    assert!((moment + hubs - vehicle.body.inertia_kg_m2[(0, 0)]).abs() < 1e-5, "{moment}");
     let mjcf = export(&vehicle, &effects, Format::Mjcf).unwrap();
     well_formed(&mjcf.text);
-    assert!(mjcf.text.contains("dyntype=\"filter\" dynprm=\"0.03\""));
+    assert!(mjcf.text.contains("dyntype=\"filterexact\" dynprm=\"0.03\""));
     let inertia: Vec<f64> =
         between(&mjcf.text, "fullinertia=\"", "\"").split(' ').map(|v| v.parse().unwrap()).collect();
     assert_eq!(inertia[3], 0.001);
     assert_eq!(inertia[5], 0.002);
+    // a drag across the rotor axis at the middle of the hubs, and what the hubs' own motion damps beside the effect
+    assert_eq!(between(&mjcf.text, "name=\"drag_x\"", "/>").rsplit_once(' ').unwrap().1, "-0.3\"");
+    assert!(!mjcf.text.contains("drag_z"));
+    let damping = between(&mjcf.text, "name=\"damping_z\"", "/>").rsplit_once('-').unwrap().1;
+    let damping: f64 = damping.trim_end_matches('"').parse().unwrap();
+    assert!((damping - 0.01 - 0.3 * 2.0 * 0.174 * 0.174).abs() < 1e-12, "{damping}");
 }
 
 #[test]
 fn rotorpy_gets_back_what_it_is_made_of() {
-    let vehicle = vehicle();
+    let mut vehicle = vehicle();
+    vehicle.propulsion.time_constant_down_s = None;
     let effects = [effect("linear_drag", &[0.3, 0.3, 0.2]), effect("inflow", &[0.1])];
     let exported = export(&vehicle, &effects, Format::Rotorpy).unwrap();
     let value = |key: &str| -> f64 { between(&exported.text, &format!("'{key}': "), ",").parse().unwrap() };

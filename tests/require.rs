@@ -19,7 +19,10 @@ fn what_is_missing_is_told_and_fails_only_where_it_is_required() {
         assert_eq!(failure, "MAVID_REQUIRE asks for `peers`, which is missing: no Python at /nowhere");
     }
     let failure = judge(Needed::Peers, why, "peers,share").unwrap_err();
-    assert_eq!(failure, "MAVID_REQUIRE: expected words out of peers, mavsdk, shared, ipv6, found `share`");
+    assert_eq!(
+        failure,
+        "MAVID_REQUIRE: expected words out of peers, mavsdk, mujoco, shared, ipv6, found `share`"
+    );
 }
 
 #[test]

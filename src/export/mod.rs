@@ -6,6 +6,7 @@
 
 mod ardupilot;
 mod axes;
+mod drag;
 mod error;
 mod format;
 mod mjcf;

@@ -6,7 +6,7 @@ use Format::{ArdupilotSitl, Mjcf, Px4Sih, Rotorpy, Sdf};
 
 /// Each effect with the simulators that have a place for it. What stands in none is told as left out.
 pub static PLACES: &[(&str, &[Format])] = &[
-    ("linear_drag", &[Px4Sih, ArdupilotSitl, Sdf, Rotorpy]),
+    ("linear_drag", &[Px4Sih, ArdupilotSitl, Sdf, Mjcf, Rotorpy]),
     ("quadratic_drag", &[ArdupilotSitl, Rotorpy]),
     ("ground_effect", &[]),
     ("ceiling_effect", &[]),
@@ -18,11 +18,11 @@ pub static PLACES: &[(&str, &[Format])] = &[
     ("com_offset", &[ArdupilotSitl, Sdf, Mjcf, Rotorpy]),
     ("thrust_tilt", &[]),
     ("rotor_inertia", &[]),
-    ("angular_damping", &[Px4Sih, ArdupilotSitl]),
+    ("angular_damping", &[Px4Sih, ArdupilotSitl, Mjcf]),
     ("blade_flapping", &[Rotorpy]),
-    ("inflow", &[Px4Sih, ArdupilotSitl, Rotorpy]),
+    ("inflow", &[Px4Sih, ArdupilotSitl, Mjcf, Rotorpy]),
     ("translational_lift", &[Rotorpy]),
-    ("steady_wind", &[Sdf, Mjcf, Rotorpy]),
+    ("steady_wind", &[Sdf, Rotorpy]),
     ("gust", &[]),
     ("slung_load", &[]),
     ("mass_change", &[]),

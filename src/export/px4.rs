@@ -2,9 +2,13 @@
 //!
 //! Its quadrotor (src/modules/simulation/simulator_sih): `T = T_MAX u`, lagging by `T_TAU`; body FRD,
 //! `Mx = L_ROLL T_MAX (-u0 + u1 + u2 - u3)`, `My = L_PITCH T_MAX (u0 - u1 + u2 - u3)`,
-//! `Mz = Q_MAX (u0 + u1 - u2 - u3)`, drag `-KDV v`, damping `-KDW w`.
+//! `Mz = Q_MAX (u0 + u1 - u2 - u3)`, drag `-KDV v` at the centre of mass, damping `-KDW w`.
+//!
+//! Its thrust is linear in the command, as PX4 makes a vehicle's by THR_MDL_FAC. So `T_MAX` is the thrust at full
+//! command, and THR_MDL_FAC is 0: thrust and torque that PX4 asks for do what they do on the vehicle.
 
 use super::axes::frd;
+use super::drag::{RotorDrag, damping};
 use super::error::ExportError;
 use super::notes::line_comments;
 use super::source::{Exported, Source};
@@ -15,6 +19,9 @@ use std::fmt::Write;
 const FORMAT: &str = "px4-sih";
 /// PX4's own default of the rotors' lag, s.
 const TAU_DEFAULT_S: f64 = 0.05;
+/// Hz, of the simulator's steps, by Euler's rule. Its accelerometer shows the force in the attitude of the step before:
+/// at PX4's default of 250 Hz thrust leaks into drag, 6 % of it in an identification flight.
+const STEPS_HZ: f64 = 1000.0;
 
 pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     let arms = source.arms_m();
@@ -28,16 +35,15 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     if arms.iter().any(|arm| (arm.x.abs() - forward_m).abs() > 1e-3 || (arm.y.abs() - left_m).abs() > 1e-3) {
         source.note("the simulator's rotors are symmetric about the centre of mass: arms are means, an offset of the centre of mass is left out");
     }
-    let thrust_max_n = linear_thrust_max_n(&mut source);
+    let thrust_max_n = source.thrust_max_n();
     let torque_max_nm = thrust_max_n * source.vehicle.propulsion.torque_per_thrust_m;
-    let drag = drag(&mut source);
-    let damping = damping(&mut source);
-    let lag_s = source.time_constant_s();
-    if lag_s.is_none() {
-        source.note(format!(
-            "no lag of the rotors is known: SIH_T_TAU keeps PX4's default of {TAU_DEFAULT_S} s"
-        ));
-    }
+    let hover = tell_linear(&mut source, thrust_max_n);
+    let drag = RotorDrag::of(&mut source);
+    let damping = even_damping(&mut source, &drag, &arms);
+    drag.tell_at_center(&mut source, &arms);
+    drag.tell_no_growth(&mut source);
+    let drag = drag.even(&mut source, "SIH_KDV");
+    let lag_s = lag(&mut source);
     let order = motors(&source, &arms);
     let body = &source.vehicle.body;
     let j = &body.inertia_kg_m2;
@@ -56,7 +62,9 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         ("SIH_L_PITCH", forward_m),
         ("SIH_KDV", drag),
         ("SIH_KDW", damping),
-        ("SIH_T_TAU", lag_s.unwrap_or(TAU_DEFAULT_S)),
+        ("SIH_T_TAU", lag_s),
+        ("THR_MDL_FAC", 0.0),
+        ("MPC_THR_HOVER", hover),
     ];
     let name = source.vehicle.name.clone();
     Ok(source.finish(|notes| {
@@ -66,46 +74,58 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         for (parameter, value) in parameters {
             let _ = writeln!(text, "param set {parameter} {value:.6e}");
         }
+        for parameter in ["IMU_GYRO_RATEMAX", "IMU_INTEG_RATE"] {
+            let _ = writeln!(text, "param set {parameter} {STEPS_HZ}");
+        }
         text
     }))
 }
 
-/// One rotor's thrust at full command, N: the simulator's is linear in the command, along the chord through hover.
-fn linear_thrust_max_n(source: &mut Source<'_>) -> f64 {
-    let thrust_max_n = source.thrust_max_n();
-    let hover = source.airframe.hover_thrust_n;
-    let command = source.vehicle.propulsion.command_from_thrust(hover);
-    let linear_max_n = hover / command;
-    if (linear_max_n / thrust_max_n - 1.0).abs() > 1e-6 {
+/// Thrust at hover over full thrust (-): the simulator's command there. Tells what that means for the model's.
+fn tell_linear(source: &mut Source<'_>, thrust_max_n: f64) -> f64 {
+    let hover_n = source.airframe.hover_thrust_n;
+    let (ours, its) = (source.vehicle.propulsion.command_from_thrust(hover_n), hover_n / thrust_max_n);
+    if (ours - its).abs() > 1e-6 {
         source.note(format!(
-            "the simulator's thrust is linear in the command: SIH_T_MAX is chosen so that hover needs the same command ({command:.3}); at full command the model gives {thrust_max_n:.3} N, the simulator {linear_max_n:.3} N"
+            "the simulator's thrust is linear in the command, the model's is not: hover is at {its:.3} here and at {ours:.3} in the model. Identify a flight of the simulator with thrust_max = {thrust_max_n:.4} and thrust_expo = 0"
         ));
     }
-    linear_max_n
+    its
 }
 
-/// N/(m/s), the same along all axes.
-fn drag(source: &mut Source<'_>) -> f64 {
-    let drag = ["dx", "dy", "dz"].map(|axis| source.take("linear_drag", axis));
-    let inflow = source.take("inflow", "kz");
-    let across = 0.5 * (drag[0] + drag[1]);
-    let along = drag[2] + inflow;
-    if across.max(along) > 0.0 && (drag[0] - drag[1]).abs().max((along - across).abs()) > 0.05 * across {
+/// s, with the least that the simulator integrates. Tells of its steps.
+fn lag(source: &mut Source<'_>) -> f64 {
+    source.note(format!(
+        "IMU_GYRO_RATEMAX and IMU_INTEG_RATE, after a restart, make the simulator's steps {} ms long: with PX4's default of 4 ms its accelerometer shows drag about 6 % too small",
+        1e3 / STEPS_HZ
+    ));
+    let Some(lag_s) = source.mean_lag_s() else {
         source.note(format!(
-            "the simulator's drag is the same along all axes: SIH_KDV is the mean across the rotor axis; the model has {:.4}, {:.4}, {along:.4} N/(m/s)",
-            drag[0], drag[1]
+            "no lag of the rotors is known: SIH_T_TAU keeps PX4's default of {TAU_DEFAULT_S} s"
+        ));
+        return TAU_DEFAULT_S;
+    };
+    source.note(
+        "the lag acts on the thrust here and on the rotor speed in the model: the same for small changes",
+    );
+    let step_s = STEPS_HZ.recip();
+    if lag_s < step_s {
+        source.note(format!(
+            "the simulator's steps are {step_s} s long: SIH_T_TAU is that, the model's lag is {lag_s} s"
         ));
     }
-    across
+    lag_s.max(step_s)
 }
 
-/// N m/(rad/s), the same about all axes.
-fn damping(source: &mut Source<'_>) -> f64 {
-    let damping = ["bx", "by", "bz"].map(|axis| source.take("angular_damping", axis));
-    let mean = damping.iter().sum::<f64>() / 3.0;
-    if damping.iter().any(|b| (b - mean).abs() > 0.05 * mean) {
+/// N m/(rad/s), the same about all axes: the model's damping, with that of a drag at the hubs.
+fn even_damping(source: &mut Source<'_>, drag: &RotorDrag, arms_m: &[Vector3<f64>]) -> f64 {
+    let own = Vector3::from(["bx", "by", "bz"].map(|axis| source.take("angular_damping", axis)));
+    let all = own + damping(&drag.at_hubs, arms_m);
+    let mean = all.mean();
+    if all.iter().any(|b| (b - mean).abs() > 0.05 * mean) {
         source.note(format!(
-            "the simulator's damping is the same about all axes: SIH_KDW is the mean of {damping:?} N m/(rad/s)"
+            "the simulator's damping is the same about all axes: SIH_KDW is the mean of {:.5}, {:.5}, {:.5} N m/(rad/s), the drag at the hubs included",
+            all.x, all.y, all.z
         ));
     }
     mean

@@ -4,6 +4,7 @@
 //! `T += k_h v_xy^2`, body drag `-|v| diag(c_D) v`, lag `tau_m`; hubs from the centre of mass. Frames and units
 //! are ours; the sign of a rotor is that of its reaction torque.
 
+use super::drag::RotorDrag;
 use super::error::ExportError;
 use super::notes::line_comments;
 use super::source::{Exported, Source};
@@ -23,13 +24,13 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     if radius_m.is_none() {
         source.note("the rotors' radius is not known; RotorPy uses it for drawing: 0.1 m");
     }
-    let drag = ["dx", "dy", "dz"].map(|axis| source.take("linear_drag", axis));
-    if (drag[0] - drag[1]).abs() > 0.05 * drag[0].max(drag[1]) {
-        source.note(format!(
-            "k_d is the same along x and y: the mean of {:.4} and {:.4} N/(m/s)",
-            drag[0], drag[1]
-        ));
+    let drag = RotorDrag::of(&mut source);
+    let across = drag.even_across(&mut source, "k_d");
+    drag.tell_at_hubs(&mut source);
+    if source.take("quadratic_drag", "by_face") > 0.05 {
+        source.note("RotorPy's drag of the body goes with the whole airspeed, the model's along an axis with the speed along it");
     }
+    let lag_s = source.mean_lag_s().unwrap_or(FAST_S);
     let per_rotor = |whole: f64| whole / (count * hover);
     let body = source.vehicle.body.clone();
     let j = &body.inertia_kg_m2;
@@ -47,11 +48,11 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         ("c_Dz", source.take("quadratic_drag", "cz")),
         ("k_eta", coefficient),
         ("k_m", coefficient * source.vehicle.propulsion.torque_per_thrust_m),
-        ("k_d", per_rotor(0.5 * (drag[0] + drag[1]))),
-        ("k_z", per_rotor(drag[2] + source.take("inflow", "kz"))),
+        ("k_d", per_rotor(across)),
+        ("k_z", per_rotor(drag.force.z)),
         ("k_h", source.take("translational_lift", "kh") / count),
         ("k_flap", per_rotor(source.take("blade_flapping", "k"))),
-        ("tau_m", source.time_constant_s().unwrap_or(FAST_S)),
+        ("tau_m", lag_s),
         ("rotor_speed_min", 0.0),
         ("rotor_speed_max", speed_max),
         ("motor_noise_std", 0.0),

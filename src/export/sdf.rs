@@ -1,13 +1,15 @@
 //! Gazebo: a model with the multicopter motor model of gz-sim.
 //!
-//! Its motor: `T = motorConstant w^2`, reaction torque `momentConstant T`, drag `rotorDragCoefficient |w| v` across
-//! the rotor axis, first-order lag up and down. Frames and units are ours.
+//! src/systems/multicopter_motor_model. Its motor: `T = motorConstant w^2`, reaction torque `momentConstant T`, drag `rotorDragCoefficient |w| v` at
+//! the hub across the rotor axis, first-order lag up and down. Frames and units are ours.
 
+use super::drag::RotorDrag;
 use super::error::ExportError;
 use super::notes::xml_comments;
 use super::source::{Exported, Source};
 use crate::text::markup;
 use crate::vehicle::{Rotor, Spin};
+use nalgebra::{Matrix3, Vector3};
 
 const FORMAT: &str = "sdf";
 /// kg and kg m^2 of a rotor's link, which the solver needs above zero.
@@ -21,7 +23,7 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     let hover = source.hover_rad_s(FORMAT)?;
     let count = source.vehicle.rotors.len() as f64;
     let across = drag(&mut source);
-    let lag_s = source.time_constant_s().unwrap_or(FAST_S);
+    let lags_s = source.lags_s().unwrap_or((FAST_S, FAST_S));
     let wind = ["north", "west", "up"].map(|axis| source.take("steady_wind", axis));
     if wind.iter().any(|part| *part != 0.0) {
         source.note(format!(
@@ -29,7 +31,7 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
             wind[0], wind[1], wind[2]
         ));
     }
-    let motor = Motor { coefficient, speed_max, lag_s, drag: across / (count * hover) };
+    let motor = Motor { coefficient, speed_max, lags_s, drag: across / (count * hover) };
     let (mut links, mut plugins) = (base_link(&mut source), String::new());
     for (number, rotor) in source.vehicle.rotors.iter().enumerate() {
         links.push_str(&rotor_link(number, rotor));
@@ -47,35 +49,33 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
 
 /// Across the rotor axis, N/(m/s), of the whole vehicle.
 fn drag(source: &mut Source<'_>) -> f64 {
-    let drag = ["dx", "dy", "dz"].map(|axis| source.take("linear_drag", axis));
-    let across = 0.5 * (drag[0] + drag[1]);
-    if (drag[0] - drag[1]).abs() > 0.05 * across {
+    let drag = RotorDrag::of(source);
+    drag.tell_at_hubs(source);
+    source.refuse("inflow");
+    let dz = source.take("linear_drag", "dz");
+    if dz > 0.0 {
         source.note(format!(
-            "drag is the same along x and y here: the mean of {:.4} and {:.4} N/(m/s)",
-            drag[0], drag[1]
+            "drag along the rotor axis cannot be represented in the motor model: {dz:.4} N/(m/s)"
         ));
     }
-    if drag[2] > 0.0 {
-        source.note(format!(
-            "drag along the rotor axis cannot be represented in the motor model: {:.4} N/(m/s)",
-            drag[2]
-        ));
-    }
-    across
+    drag.even_across(source, "rotorDragCoefficient")
 }
 
-/// The body without its rotors' links.
+/// The body without its rotors' links: together they have the model's mass, centre of mass and inertia.
 fn base_link(source: &mut Source<'_>) -> String {
-    let center = source.center_of_mass_m();
-    let body = &source.vehicle.body;
-    let rotors_kg = ROTOR_KG * source.vehicle.rotors.len() as f64;
-    let j = &body.inertia_kg_m2;
+    let whole_m = source.center_of_mass_m();
+    let (body, rotors) = (&source.vehicle.body, &source.vehicle.rotors);
+    let base_kg = body.mass_kg - ROTOR_KG * rotors.len() as f64;
+    let hubs = rotors.iter().map(|rotor| rotor.position_m);
+    let center = (whole_m * body.mass_kg - hubs.clone().sum::<Vector3<f64>>() * ROTOR_KG) / base_kg;
+    let j = hubs.fold(body.inertia_kg_m2 - point_inertia_kg_m2(base_kg, &(center - whole_m)), |left, hub| {
+        left - point_inertia_kg_m2(ROTOR_KG, &(hub - whole_m)) - Matrix3::from_diagonal_element(ROTOR_KG_M2)
+    });
     format!(
-        "    <link name=\"base_link\">\n      <inertial>\n        <pose>{} {} {} 0 0 0</pose>\n        <mass>{}</mass>\n        <inertia><ixx>{}</ixx><ixy>{}</ixy><ixz>{}</ixz><iyy>{}</iyy><iyz>{}</iyz><izz>{}</izz></inertia>\n      </inertial>\n    </link>\n",
+        "    <link name=\"base_link\">\n      <inertial>\n        <pose>{} {} {} 0 0 0</pose>\n        <mass>{base_kg}</mass>\n        <inertia><ixx>{}</ixx><ixy>{}</ixy><ixz>{}</ixz><iyy>{}</iyy><iyz>{}</iyz><izz>{}</izz></inertia>\n      </inertial>\n    </link>\n",
         center.x,
         center.y,
         center.z,
-        body.mass_kg - rotors_kg,
         j[(0, 0)],
         j[(0, 1)],
         j[(0, 2)],
@@ -83,6 +83,11 @@ fn base_link(source: &mut Source<'_>) -> String {
         j[(1, 2)],
         j[(2, 2)]
     )
+}
+
+/// kg m^2 of a point of mass `m_kg` at `r_m`.
+fn point_inertia_kg_m2(m_kg: f64, r_m: &Vector3<f64>) -> Matrix3<f64> {
+    (Matrix3::from_diagonal_element(r_m.norm_squared()) - r_m * r_m.transpose()) * m_kg
 }
 
 /// A rotor's own link and its joint.
@@ -100,8 +105,8 @@ struct Motor {
     coefficient: f64,
     /// rad/s
     speed_max: f64,
-    /// s
-    lag_s: f64,
+    /// s, of a rotor that speeds up and of one that slows down
+    lags_s: (f64, f64),
     /// N/(m/s) for each rad/s
     drag: f64,
 }
@@ -109,13 +114,13 @@ struct Motor {
 impl Motor {
     /// `torque_m`: reaction torque over thrust, m.
     fn plugin(&self, number: usize, rotor: &Rotor, torque_m: f64) -> String {
-        let Self { coefficient, speed_max, lag_s, drag } = self;
+        let Self { coefficient, speed_max, lags_s: (up_s, down_s), drag } = self;
         let spin = match rotor.spin {
             Spin::Cw => "cw",
             Spin::Ccw => "ccw",
         };
         format!(
-            "    <plugin filename=\"gz-sim-multicopter-motor-model-system\" name=\"gz::sim::systems::MulticopterMotorModel\">\n      <jointName>rotor_{number}_joint</jointName>\n      <linkName>rotor_{number}</linkName>\n      <turningDirection>{spin}</turningDirection>\n      <timeConstantUp>{lag_s}</timeConstantUp>\n      <timeConstantDown>{lag_s}</timeConstantDown>\n      <maxRotVelocity>{speed_max}</maxRotVelocity>\n      <motorConstant>{coefficient:e}</motorConstant>\n      <momentConstant>{torque_m}</momentConstant>\n      <commandSubTopic>command/motor_speed</commandSubTopic>\n      <motorNumber>{number}</motorNumber>\n      <rotorDragCoefficient>{drag:e}</rotorDragCoefficient>\n      <rollingMomentCoefficient>0</rollingMomentCoefficient>\n      <rotorVelocitySlowdownSim>10</rotorVelocitySlowdownSim>\n      <motorType>velocity</motorType>\n    </plugin>\n"
+            "    <plugin filename=\"gz-sim-multicopter-motor-model-system\" name=\"gz::sim::systems::MulticopterMotorModel\">\n      <jointName>rotor_{number}_joint</jointName>\n      <linkName>rotor_{number}</linkName>\n      <turningDirection>{spin}</turningDirection>\n      <timeConstantUp>{up_s}</timeConstantUp>\n      <timeConstantDown>{down_s}</timeConstantDown>\n      <maxRotVelocity>{speed_max}</maxRotVelocity>\n      <motorConstant>{coefficient:e}</motorConstant>\n      <momentConstant>{torque_m}</momentConstant>\n      <commandSubTopic>command/motor_speed</commandSubTopic>\n      <motorNumber>{number}</motorNumber>\n      <rotorDragCoefficient>{drag:e}</rotorDragCoefficient>\n      <rollingMomentCoefficient>0</rollingMomentCoefficient>\n      <rotorVelocitySlowdownSim>10</rotorVelocitySlowdownSim>\n      <motorType>velocity</motorType>\n    </plugin>\n"
         )
     }
 }

@@ -22,11 +22,19 @@ impl<'a> Source<'a> {
 
     /// An effect's parameter, 0 where the model does not have the effect; it counts as carried over.
     pub(super) fn take(&mut self, id: &'static str, parameter: &str) -> f64 {
+        self.take_or(id, parameter, 0.0)
+    }
+
+    /// [`Self::take`], `missing` where the model does not have the effect or does not state the parameter.
+    pub(super) fn take_or(&mut self, id: &'static str, parameter: &str, missing: f64) -> f64 {
         self.taken.push(id);
         let active = self.effects.iter().find(|active| active.effect().id() == id);
-        active.map_or(0.0, |active| {
+        active.map_or(missing, |active| {
             let names = active.effect().parameters().iter().chain(active.effect().finer_parameters());
-            names.zip(active.parameters()).find(|(p, _)| p.name == parameter).map_or(0.0, |(_, value)| *value)
+            names
+                .zip(active.parameters())
+                .find(|(p, _)| p.name == parameter)
+                .map_or(missing, |(_, value)| *value)
         })
     }
 
@@ -43,12 +51,28 @@ impl<'a> Source<'a> {
         self.left_out.push(text.into());
     }
 
-    /// s, lag of the rotors: of the effect, else what the vehicle's file knows.
-    pub(super) fn time_constant_s(&mut self) -> Option<f64> {
+    /// s, lag of a rotor that speeds up and of one that slows down: of the effect, else what the vehicle's file
+    /// knows.
+    pub(super) fn lags_s(&mut self) -> Option<(f64, f64)> {
         if self.has("motor_lag") {
-            return Some(self.take("motor_lag", "time_constant"));
+            let up_s = self.take("motor_lag", "time_constant");
+            return Some((up_s, self.take_or("motor_lag", "time_constant_down", up_s)));
         }
-        self.vehicle.propulsion.time_constant_s.filter(|time_constant_s| *time_constant_s > 0.0)
+        let propulsion = &self.vehicle.propulsion;
+        let up_s = propulsion.time_constant_s.filter(|up_s| *up_s > 0.0)?;
+        Some((up_s, propulsion.time_constant_down_s.unwrap_or(up_s)))
+    }
+
+    /// s, of a simulator that has one lag: the mean of both, which is told where they differ.
+    pub(super) fn mean_lag_s(&mut self) -> Option<f64> {
+        let (up_s, down_s) = self.lags_s()?;
+        let mean_s = f64::midpoint(up_s, down_s);
+        if (up_s - down_s).abs() > 0.01 * mean_s {
+            self.note(format!(
+                "the simulator's rotors speed up and slow down alike: {mean_s} s, the mean of {up_s} s and {down_s} s"
+            ));
+        }
+        Some(mean_s)
     }
 
     /// Centre of mass in the frame of the rotor positions, m, with the offset that was found.

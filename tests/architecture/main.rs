@@ -130,7 +130,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "plan", "diagnose", "study",
         ],
     ),
-    ("export", &["units", "text", "vehicle", "physics"]),
+    ("export", &["text", "vehicle", "physics"]),
     ("sitl", &["units", "autopilot", "frames", "vehicle", "fence", "physics", "wire", "link", "simulate"]),
     (
         "fly",

@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
-# Makes the Python environment against which some tests compare: numpy, scipy and pymavlink, at the versions of
-# requirements.txt, RotorPy without the plotting and learning packages that its dynamics do not use, and MAVSDK, which is
-# not to be had for every platform, under target/peers. Says so and succeeds where Python or the packages cannot be had:
-# those tests then skip themselves.
+# Makes the Python environment against which some tests compare, under target/peers: numpy, scipy and pymavlink, at the
+# versions of requirements.txt, RotorPy and MuJoCo without the plotting, learning and window packages that their dynamics
+# do not use, and MAVSDK. MuJoCo and MAVSDK are not to be had for every platform. Says so and succeeds where Python or the
+# packages cannot be had: those tests then skip themselves.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 peers="${CARGO_TARGET_DIR:-target}/peers"
 requirements=tests/peers/requirements.txt
 rotorpy=tests/peers/rotorpy.txt
+mujoco=tests/peers/mujoco.txt
 mavsdk=tests/peers/mavsdk.txt
 
-if [ -f "$peers/requirements.txt" ] && cat "$requirements" "$rotorpy" "$mavsdk" | cmp -s - "$peers/requirements.txt"; then
+if [ -f "$peers/requirements.txt" ] && cat "$requirements" "$rotorpy" "$mujoco" "$mavsdk" | cmp -s - "$peers/requirements.txt"; then
     echo "peers: ready in $peers"
     exit 0
 fi
@@ -31,8 +32,11 @@ if ! pip --requirement "$requirements" || ! pip --no-deps --requirement "$rotorp
     rm -rf "$peers"
     exit 0
 fi
+if ! pip --only-binary :all: --no-deps --requirement "$mujoco"; then
+    echo "peers: without MuJoCo, which could not be installed"
+fi
 if ! pip --only-binary :all: --requirement "$mavsdk"; then
     echo "peers: without MAVSDK, which could not be installed"
 fi
-cat "$requirements" "$rotorpy" "$mavsdk" >"$peers/requirements.txt"
+cat "$requirements" "$rotorpy" "$mujoco" "$mavsdk" >"$peers/requirements.txt"
 echo "peers: ready in $peers"

@@ -12,6 +12,8 @@ pub enum Needed {
     Peers,
     /// MAVSDK, which is not to be had for every platform
     Mavsdk,
+    /// MuJoCo, which is not to be had for every platform
+    Mujoco,
     /// the folder of shared recordings
     Shared,
     /// a loopback address of IPv6
@@ -19,13 +21,14 @@ pub enum Needed {
 }
 
 impl Needed {
-    pub const ALL: [Self; 4] = [Self::Peers, Self::Mavsdk, Self::Shared, Self::Ipv6];
+    pub const ALL: [Self; 5] = [Self::Peers, Self::Mavsdk, Self::Mujoco, Self::Shared, Self::Ipv6];
 
     /// As `MAVID_REQUIRE` names it.
     pub fn word(self) -> &'static str {
         match self {
             Self::Peers => "peers",
             Self::Mavsdk => "mavsdk",
+            Self::Mujoco => "mujoco",
             Self::Shared => "shared",
             Self::Ipv6 => "ipv6",
         }
