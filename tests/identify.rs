@@ -256,7 +256,7 @@ fn a_thin_link_leaves_forces_alone_or_is_refused_with_its_rates_and_one_that_suf
     for said in [
         "body rates (HIGHRES_IMU) at 7.",
         "(ESC_STATUS) at 7.",
-        "38 Hz at least",
+        "8 Hz are the least",
         "the log that the vehicle writes",
     ] {
         assert!(all.contains(said), "{said}: {all}");

@@ -123,12 +123,18 @@ impl Outputs {
         Some((1..=MOST_OUTPUTS).filter(drives).count()).filter(|count| *count > 0)
     }
 
+    /// The output whose function a parameter is, counted from 1.
+    #[must_use]
+    pub fn output_of(&self, name: &str) -> Option<usize> {
+        let Numbered { before, after } = self.function;
+        name.strip_prefix(before)?.strip_suffix(after)?.parse().ok()
+    }
+
     /// Whether a parameter tells how a command becomes thrust or how the vehicle is built; an output's function does where it
     /// is a motor.
     #[must_use]
     pub fn is_relevant(&self, name: &str, value: f64) -> bool {
-        let Numbered { before, after } = self.function;
-        let motor = name.starts_with(before) && name.ends_with(after) && self.is_motor(value);
+        let motor = self.is_motor(value) && self.output_of(name).is_some();
         motor || self.relevant.iter().any(|beginning| name.starts_with(beginning))
     }
 

@@ -7,10 +7,10 @@ use super::signatures::BENT_THRUST;
 
 /// Relative standard error of the mass that the thrust law adds: of 20 flights of both autopilots' simulators 16 were within 0.2 %,
 /// four within 0.4 %.
-const MASS: f64 = 0.003;
+pub const LAW_OF_THRUST: f64 = 0.003;
 /// Relative standard error that the torque law adds to moments of inertia: by instruments they were right to 0.3 % where statistics
 /// said 0.1 %.
-const INERTIA: f64 = 0.003;
+pub const LAW_OF_TORQUE: f64 = 0.003;
 
 /// Relative standard error that the form of an effect's law adds to its size: on ArduCopter's simulator, whose sensors are clean
 /// and whose laws are others, sizes were right to 1 to 3 %.
@@ -44,10 +44,10 @@ pub(super) fn add_floors(fitted: &mut Fitted) {
     }
     for (index, column) in fitted.rows.nuisances.iter().enumerate() {
         let floor = match column.nuisance {
-            Nuisance::Mass => MASS.hypot(scale) * body.mass_kg,
-            Nuisance::Inertia(0) => INERTIA.hypot(scale) * body.inertia_kg_m2[(0, 0)],
-            Nuisance::Inertia(3) => INERTIA.hypot(scale) * body.inertia_kg_m2[(1, 1)],
-            Nuisance::Inertia(5) => INERTIA.hypot(scale) * body.inertia_kg_m2[(2, 2)],
+            Nuisance::Mass => LAW_OF_THRUST.hypot(scale) * body.mass_kg,
+            Nuisance::Inertia(0) => LAW_OF_TORQUE.hypot(scale) * body.inertia_kg_m2[(0, 0)],
+            Nuisance::Inertia(3) => LAW_OF_TORQUE.hypot(scale) * body.inertia_kg_m2[(1, 1)],
+            Nuisance::Inertia(5) => LAW_OF_TORQUE.hypot(scale) * body.inertia_kg_m2[(2, 2)],
             _ => continue,
         };
         // what no row bears on stays undetermined

@@ -1,6 +1,6 @@
 //! What identification and diagnosis would make of a log: tried on its liveliest two minutes.
 
-use crate::diagnose::{ExpectedError, expected_errors};
+use crate::diagnose::{ExpectedError, LAW_OF_THRUST, LAW_OF_TORQUE, expected_errors};
 use crate::draft::{Given, draft};
 use crate::estimate::{
     Contradiction, Estimated, GuessedCurve, IdentifySettings, WeakInformation, apply_anchor, contradictions,
@@ -12,7 +12,7 @@ use crate::signals::{
     ConditionSettings, Signals, SignalsError, ThrustPreference, ThrustSource, WeakKernel, best, condition,
     median_period_s,
 };
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Guessed, Vehicle};
 
 /// Shortest step of the grid, s: what is faster adds memory and no knowledge to a kernel of 0.4 s.
 const LEAST_STEP_S: f64 = 0.008;
@@ -53,8 +53,8 @@ pub(super) fn foresee(
     let known = vehicle.cloned().or_else(|| Some(draft(window, &given, "assumed").ok()?.vehicle));
     let mut known = known.ok_or(None)?;
     if vehicle.is_none() {
-        // what is relative does not rest on them
-        known.guesses.clear();
+        // what is relative rests on the shape of the curve alone
+        known.guesses.retain(|guess| guess.of == Guessed::ThrustCurve);
     }
     let period_s = best(window, Quantity::AngularRate, |stream| stream.width == 3)
         .map_or(LEAST_STEP_S, |(_, stream)| median_period_s(stream));
@@ -123,8 +123,16 @@ impl Learnt {
         let moved = self.at_ends.as_ref().map(|(curve, [low, high])| {
             curve.moved([&low.combined().theta, &high.combined().theta]).on(&body.theta)
         });
-        body.with_guessed_curve(moved)
+        with_laws(body.with_guessed_curve(moved))
     }
+}
+
+/// With the errors that the laws of thrust and torque add to mass and moments of inertia.
+fn with_laws(mut body: Estimated) -> Estimated {
+    for (index, law) in [(0, LAW_OF_THRUST), (1, LAW_OF_TORQUE), (4, LAW_OF_TORQUE), (6, LAW_OF_TORQUE)] {
+        body.covariance[(index, index)] += (law * body.theta[index]).powi(2);
+    }
+    body
 }
 
 /// What the weak form learns of a window.

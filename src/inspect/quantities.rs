@@ -7,7 +7,7 @@ use super::lacking::{Lack, lack, remedy};
 use super::outlook::judged;
 use super::quantity::{ExpectedParameter, QuantitySummary};
 use crate::autopilot::VehicleKind;
-use crate::diagnose::{Expected, ExpectedError, Shown};
+use crate::diagnose::{Expected, ExpectedError, LEAST_FLIGHT_S, Shown};
 
 /// A quantity's standard error as a share of its usual size up to which it is told: an effect of usual size is then four
 /// standard errors from nothing, which is what `explain` asks for.
@@ -114,9 +114,12 @@ impl Outcome<'_> {
         // what to fly is told beside it
         let why = |part: &&Outlook| Some(part.reason.as_ref()?.split(';').next()?.to_owned());
         let told = |part: &&Outlook| Some(format!("{}: {}", part.name, why(part)?));
-        let reasons: Vec<String> = match missing.as_slice() {
-            [only] if asked.body.len() == 1 => why(only).into_iter().collect(),
-            several => several.iter().filter_map(told).collect(),
+        let first = missing.first().and_then(why);
+        let is_of_all = missing.len() == asked.body.len() && missing.iter().all(|part| why(part) == first);
+        let reasons: Vec<String> = if is_of_all {
+            first.into_iter().collect()
+        } else {
+            missing.iter().filter_map(told).collect()
         };
         let at_most = self.at_most && by_window.is_some() && !expected.is_empty();
         let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
@@ -131,6 +134,13 @@ impl Outcome<'_> {
             Some((Ok(errors), assumed)) => (errors, assumed),
             Some((Err(why), _)) => {
                 return QuantitySummary { reason: Some(why.clone()), fly: Some(asked.fly), ..none };
+            }
+            None if self.evidence.assessment.flight.usable_s < LEAST_FLIGHT_S => {
+                let reason = format!(
+                    "{:.1} s of flight can be used, at least {LEAST_FLIGHT_S:.0} s are needed",
+                    self.evidence.assessment.flight.usable_s
+                );
+                return QuantitySummary { reason: Some(reason), fly: Some(asked.fly), ..none };
             }
             None => return QuantitySummary { status: "possible", ..none },
         };

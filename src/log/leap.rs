@@ -1,8 +1,10 @@
 //! A stamp that leaps ahead: time that passed, or damage. Which of them, the stamps behind it tell; until they have, messages
 //! wait, so that neither a sound log loses one nor a damaged one makes the log longer.
 
-/// So many stamps from before the leap, behind it: it was damage.
+/// So many stamps from before a leap that threads do not explain, behind it: it was damage.
 const BACK: usize = 2;
+/// The same behind a shorter leap. Each topic's next message may be from before a pause: damage brings more of them.
+const BACK_SHORT: usize = 64;
 /// So many at or after it, itself among them: time passed.
 const AHEAD: usize = 8;
 /// No more messages wait.
@@ -19,6 +21,8 @@ pub(super) struct Leap<T> {
     leapt_s: f64,
     ahead: usize,
     back: usize,
+    /// stamps of another time
+    elsewhere: usize,
     waiting: Vec<(Side, T)>,
 }
 
@@ -40,24 +44,33 @@ pub(super) enum Settled<T> {
 impl<T> Leap<T> {
     /// A message's stamp leaps, from `before_s` to `leapt_s`.
     pub(super) fn new(before_s: f64, leapt_s: f64, message: T) -> Self {
-        Self { before_s, leapt_s, ahead: 1, back: 0, waiting: vec![(Side::Ahead, message)] }
+        Self { before_s, leapt_s, ahead: 1, back: 0, elsewhere: 0, waiting: vec![(Side::Ahead, message)] }
     }
 
     /// Takes the message behind; `true` where it tells, or no more can wait.
     pub(super) fn wait(&mut self, stamp_s: Option<f64>, message: T) -> bool {
-        let is_ahead = stamp_s.is_some_and(|stamp_s| stamp_s >= self.leapt_s - THREADS_S);
+        let behind_s = THREADS_S.min(0.5 * (self.leapt_s - self.before_s));
+        let is_ahead = stamp_s.is_some_and(|stamp_s| stamp_s >= self.leapt_s - behind_s);
         let is_back = !is_ahead && stamp_s.is_some_and(|stamp_s| stamp_s >= self.before_s - THREADS_S);
         self.ahead += usize::from(is_ahead);
         self.back += usize::from(is_back);
+        self.elsewhere += usize::from(stamp_s.is_some() && !is_ahead && !is_back);
         self.waiting.push((if is_ahead { Side::Ahead } else { Side::Other }, message));
-        self.ahead >= AHEAD || self.back >= BACK || self.waiting.len() >= MOST
+        self.ahead >= AHEAD || self.back >= self.enough() || self.waiting.len() >= MOST
+    }
+
+    /// So many stamps from before the leap tell that it was damage.
+    fn enough(&self) -> usize {
+        if self.leapt_s - self.before_s > THREADS_S { BACK } else { BACK_SHORT }
     }
 
     /// What it was, as far as it has been told.
     pub(super) fn settle(self) -> Settled<T> {
-        let messages = self.waiting.into_iter();
         let is_last = self.ahead == 1 && self.leapt_s - self.before_s > LAST_S;
-        if self.back < BACK && self.ahead > self.back && !is_last {
+        let is_told = self.ahead >= AHEAD || self.ahead > self.back.max(self.elsewhere);
+        let has_passed = self.back < self.enough() && is_told && !is_last;
+        let messages = self.waiting.into_iter();
+        if has_passed {
             return Settled::Passed(messages.map(|(_, message)| message).collect());
         }
         let others = messages.filter(|(side, _)| *side == Side::Other);
@@ -67,7 +80,7 @@ impl<T> Leap<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Leap, Settled};
+    use super::{BACK_SHORT, Leap, MOST, Settled};
 
     /// What follows on a leap from 100 s; how many were damaged, and how many messages are left.
     fn settled(leapt_s: f64, stamps_s: &[f64]) -> (usize, usize) {
@@ -96,5 +109,16 @@ mod tests {
         // the log ends
         assert_eq!((of(&[1100.1]), of(&[]), of(&[100.1])), ((0, 2), (1, 0), (1, 1)));
         assert_eq!(settled(131.0, &[]), (0, 1));
+        // nothing goes on from it, nor from before it
+        assert_eq!(settled(1100.0, &[50.0; 300]), (1, MOST - 1));
+    }
+
+    #[test]
+    fn behind_a_short_pause_the_topics_catch_up() {
+        let late: Vec<f64> = (0..40).map(|index| if index % 4 == 3 { 108.0 } else { 100.5 }).collect();
+        assert_eq!(settled(108.0, &late), (0, 29));
+        // one stamp ahead, and the others go on as before
+        let onward: Vec<f64> = (0..100).map(|index| 100.0 + 0.01 * f64::from(index)).collect();
+        assert_eq!(settled(108.0, &onward), (1, BACK_SHORT));
     }
 }

@@ -43,8 +43,8 @@ impl Apart {
         }
     }
 
-    /// What leaps by no more than this does no harm; `None` where nothing moves.
-    fn harmless(self, stream: &Stream) -> Option<f64> {
+    /// What leaps by no more than this does no harm; `None` where nothing moves and the stream has no size.
+    fn harmless(self, stream: &Stream, size: f64) -> Option<f64> {
         let mut values: Vec<f64> = match self {
             Self::Angle => (0..stream.len()).map(|index| self.of(stream, 0, index)).collect(),
             Self::Channel(channel) => (0..stream.len()).map(|index| stream.sample(index)[channel]).collect(),
@@ -53,8 +53,19 @@ impl Apart {
         values.sort_by(f64::total_cmp);
         let at = |share: f64| values.get(place(share, values.len())).copied();
         let spans = at(MOSTLY.1)? - at(MOSTLY.0)?;
+        // a channel that rests is compared with the size of them all
+        let spans = if spans > 0.0 { spans } else { size };
         (spans > 0.0).then_some(HARMLESS * spans)
     }
+}
+
+/// The largest of what the channels mostly are, without their signs.
+fn size(stream: &Stream) -> f64 {
+    let mostly = |channel: usize| {
+        let channel = (0..stream.len()).map(|index| stream.sample(index)[channel].abs());
+        lower_median(&mut channel.filter(|value| value.is_finite()).collect::<Vec<_>>())
+    };
+    (0..stream.width).map(mostly).fold(0.0, f64::max)
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length")]
@@ -74,8 +85,8 @@ fn around(index: usize, length: usize) -> impl Iterator<Item = usize> {
 }
 
 /// Marks the samples that leap in one respect.
-fn mark(stream: &Stream, apart: Apart, leaps: &mut [bool]) {
-    let Some(harmless) = apart.harmless(stream) else { return };
+fn mark(stream: &Stream, (apart, size): (Apart, f64), leaps: &mut [bool]) {
+    let Some(harmless) = apart.harmless(stream, size) else { return };
     let length = stream.len();
     let mut near = Vec::with_capacity(2 * AROUND);
     let far: Vec<f64> = (0..length)
@@ -125,8 +136,11 @@ pub(super) fn leave_out(quantity: Quantity, stream: &mut Stream) -> u64 {
     match quantity {
         Quantity::Armed | Quantity::LandedState => mark_states(stream, &mut leaps),
         Quantity::Mode => {}
-        Quantity::Attitude | Quantity::AttitudeSetpoint => mark(stream, Apart::Angle, &mut leaps),
-        _ => (0..stream.width).for_each(|channel| mark(stream, Apart::Channel(channel), &mut leaps)),
+        Quantity::Attitude | Quantity::AttitudeSetpoint => mark(stream, (Apart::Angle, 0.0), &mut leaps),
+        _ => {
+            let size = size(stream);
+            (0..stream.width).for_each(|channel| mark(stream, (Apart::Channel(channel), size), &mut leaps));
+        }
     }
     let count = leaps.iter().filter(|leaps| **leaps).count();
     if count > 0 {
@@ -174,6 +188,11 @@ mod tests {
         assert_eq!(leave_out(Quantity::ActuatorCommand, &mut steps), 0);
         steps.values[50] = 60_000.0;
         assert_eq!(leave_out(Quantity::ActuatorCommand, &mut steps), 1);
+        // an output that is not used, beside one that is
+        let mut beside = stream(2, (0..100).flat_map(|index| [1500.0 + 100.0 * swing(index), 0.0]).collect());
+        assert_eq!(leave_out(Quantity::ActuatorCommand, &mut beside), 0);
+        (beside.values[81], beside.values[121]) = (60.0, 60_000.0);
+        assert_eq!(leave_out(Quantity::ActuatorCommand, &mut beside), 1);
     }
 
     #[test]

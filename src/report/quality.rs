@@ -24,7 +24,8 @@ fn one(name: &str, quality: &Quality) -> Markup {
         .iter()
         .map(|(quantity, message, rate_hz)| {
             let offset = quality.offsets.iter().find(|(of, _)| of == quantity).map(|(_, offset)| offset);
-            let late = offset
+            let determined = offset.filter(|offset| offset.std_s.is_finite());
+            let late = determined
                 .map_or_else(|| "-".to_owned(), |offset| with_error(1e3 * offset.late_s, 1e3 * offset.std_s));
             let done = offset.map_or("", |offset| {
                 if offset.repaired { "taken out" } else { "not corrected: not known well enough" }

@@ -158,7 +158,7 @@ impl Actuation {
         if let Some(count) = moving.filter(|count| *count > needed) {
             notes.push(Note::remark(
                 About::Actuators,
-                format!("the log has {count} actuator channels in use, the vehicle file {needed} rotors: is it this vehicle's?"),
+                format!("the log has {count} actuator channels in use, the vehicle {needed} rotors: is it this vehicle's?"),
             ));
         }
         notes

@@ -11,7 +11,8 @@ use crate::recording::{ParameterChange, Recording};
 const TOLD: usize = 8;
 
 /// Takes, of each parameter that changed and on which the way from command to thrust or the vehicle's build depends, the value
-/// that stood longest in the air: one that was set after the flight says nothing of it.
+/// that stood longest in the air: one that was set after the flight says nothing of it. The motor at an output stays there,
+/// whatever drives the output afterwards.
 pub fn settle_parameters(recording: &mut Recording) {
     if recording.parameter_changes.is_empty() {
         return;
@@ -36,13 +37,19 @@ pub fn settled_parameters(
         by_name.entry(change.name.as_str()).or_default().push(change);
     }
     let longest = |(name, changes): (&str, Vec<&ParameterChange>)| {
-        Some((name.to_owned(), longest_value(&changes, airborne_s)?))
+        let is_output = outputs.output_of(name).is_some();
+        let is_wired = |value: f64| is_output && outputs.is_motor(value);
+        Some((name.to_owned(), longest_value(&changes, airborne_s, is_wired)?))
     };
     by_name.into_iter().filter_map(longest).collect()
 }
 
-/// Of one parameter's values the one that stood longest in these spans (s).
-fn longest_value(changes: &[&ParameterChange], airborne_s: &[(f64, f64)]) -> Option<f64> {
+/// Of one parameter's values the one that stood longest in these spans (s), of the preferred ones if there are any.
+fn longest_value(
+    changes: &[&ParameterChange],
+    airborne_s: &[(f64, f64)],
+    is_preferred: impl Fn(f64) -> bool,
+) -> Option<f64> {
     let since = |index: usize| changes.get(index).map_or(f64::INFINITY, |change| change.time_s);
     let stood_s = |from_s: f64, to_s: f64| -> f64 {
         airborne_s.iter().map(|(start_s, end_s)| (end_s.min(to_s) - start_s.max(from_s)).max(0.0)).sum()
@@ -58,7 +65,7 @@ fn longest_value(changes: &[&ParameterChange], airborne_s: &[(f64, f64)]) -> Opt
     values
         .into_iter()
         .filter(|(_, seconds)| *seconds > 0.0)
-        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .max_by(|a, b| is_preferred(a.0).cmp(&is_preferred(b.0)).then(a.1.total_cmp(&b.1)))
         .map(|(value, _)| value)
 }
 
@@ -120,7 +127,14 @@ pub fn changes_in_the_air(
         .take(TOLD)
         .map(|change| {
             let value = taken.get(&change.name).copied().unwrap_or(change.after);
-            let text = format!("{}: {} is taken for the whole flight", told(change), short(value));
+            let left = outputs.output_of(&change.name).filter(|_| !outputs.is_motor(change.after));
+            let text = match left {
+                Some(output) => format!(
+                    "{}: from then on output {output} does not follow the mixer, and what it carries is taken for the motor's command",
+                    told(change)
+                ),
+                None => format!("{}: {} is taken for the whole flight", told(change), short(value)),
+            };
             Note::warning(About::Actuators, text)
         })
         .collect();
@@ -183,19 +197,21 @@ mod tests {
             change(35.0, "ATC_RAT_RLL_P", 0.1, 0.2),
             change(36.0, "STAT_RUNTIME", 1.0, 2.0),
             change(37.0, "SERVO1_FUNCTION", 33.0, 34.0),
+            change(38.0, "SERVO2_FUNCTION", 34.0, 1.0),
         ];
         let airborne_s = [(10.0, 60.0)];
         let taken = settled_parameters(Autopilot::ArduPilot, &changes, &airborne_s).into_iter().collect();
         let notes = changes_in_the_air(Autopilot::ArduPilot, &changes, &airborne_s, &taken);
         let texts: Vec<&str> = notes.iter().map(|note| note.text.as_str()).collect();
-        assert_eq!(texts.len(), 3, "{texts:?}");
+        assert_eq!(texts.len(), 4, "{texts:?}");
         assert!(
             texts[0]
                 .starts_with("MOT_THST_EXPO changed from 0.65 to 0.5 at 34.2 s, in the air: 0.5 is taken"),
             "{texts:?}"
         );
         assert!(texts[1].starts_with("SERVO1_FUNCTION changed from 33 to 34"), "{texts:?}");
-        assert!(texts[2].starts_with("ATC_RAT_RLL_P") && !notes[2].is_warning(), "{texts:?}");
+        assert!(texts[2].contains("34 to 1 at 38.0 s, in the air: from then on output 2 does not follow"), "{texts:?}");
+        assert!(texts[3].starts_with("ATC_RAT_RLL_P") && !notes[3].is_warning(), "{texts:?}");
         assert_eq!(changes_in_the_air(Autopilot::ArduPilot, &changes, &[], &taken), []);
     }
 
@@ -209,11 +225,12 @@ mod tests {
             change(70.0, "MOT_THST_EXPO", 0.65, 0.1),
             change(70.0, "MOT_THST_HOVER", 0.2, 0.3),
             change(40.0, "SERVO1_FUNCTION", 33.0, 34.0),
+            change(12.0, "SERVO2_FUNCTION", 34.0, 1.0),
             change(40.0, "ATC_RAT_RLL_P", 0.1, 0.2),
         ];
         let settled = settled_parameters(Autopilot::ArduPilot, &changes, &[(10.0, 32.0), (34.0, 60.0)]);
-        let expected = [("MOT_THST_EXPO".to_owned(), 0.65), ("SERVO1_FUNCTION".to_owned(), 33.0)];
-        assert_eq!(settled, expected);
+        let expected = [("MOT_THST_EXPO", 0.65), ("SERVO1_FUNCTION", 33.0), ("SERVO2_FUNCTION", 34.0)];
+        assert_eq!(settled, expected.map(|(name, value)| (name.to_owned(), value)));
         assert_eq!(settled_parameters(Autopilot::ArduPilot, &changes, &[]), []);
         let key = StreamKey { quantity: Quantity::Armed, source: "EV", instance: 0 };
         let armed =

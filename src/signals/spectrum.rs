@@ -9,12 +9,18 @@ const HIGHEST_HZ: f64 = 5.0;
 /// Share of the power below the result. Chosen; not measured.
 const SHARE: f64 = 0.98;
 
+/// Least rms of a commanded acceleration that tells a trajectory, m/s^2. Setpoints of positions alone carry zeros in its place.
+/// Chosen; not measured.
+const LEAST_COMMANDED_M_S2: f64 = 0.02;
+
 /// The trajectory's highest harmonic, Hz: 98 % of the power of the commanded acceleration is below it, or of the
-/// measured velocity if no command was recorded. `None` without both.
+/// measured velocity if no acceleration was commanded. `None` without both.
 #[must_use]
 pub fn highest_harmonic_hz(signals: &Signals) -> Option<f64> {
-    let series: &[Vector3<f64>] = match (&signals.reference, &signals.velocity) {
-        (Some(reference), _) => &reference.acceleration,
+    let commanded = signals.reference.as_ref().map(|reference| -> &[Vector3<f64>] { &reference.acceleration });
+    let commanded = commanded.filter(|series| rms(series, &signals.usable) >= LEAST_COMMANDED_M_S2);
+    let series: &[Vector3<f64>] = match (commanded, &signals.velocity) {
+        (Some(acceleration), _) => acceleration,
         (None, Some(velocity)) => velocity,
         (None, None) => return None,
     };
@@ -42,4 +48,11 @@ pub fn highest_harmonic_hz(signals: &Signals) -> Option<f64> {
             below >= SHARE * total
         })
         .map(|(f, _)| *f)
+}
+
+/// Root mean square over the usable instants; 0 without one.
+fn rms(series: &[Vector3<f64>], usable: &[bool]) -> f64 {
+    let used = series.iter().zip(usable).filter(|(_, usable)| **usable);
+    let (count, sum) = used.fold((0.0, 0.0), |(count, sum), (value, _)| (count + 1.0, sum + value.norm_squared()));
+    if count > 0.0 { f64::sqrt(sum / count) } else { 0.0 }
 }

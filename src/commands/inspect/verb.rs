@@ -4,7 +4,7 @@ use mavid::config::read_vehicle;
 use mavid::inspect::{self, Inspection};
 use mavid::log::format_of;
 use mavid::report::{InspectionDocument, inspection_text};
-use mavid::study::{draft_from_log, draft_notes, unread};
+use mavid::study::{StudyError, draft_from_log, draft_notes, unread};
 use mavid::text;
 use mavid::vehicle::Vehicle;
 
@@ -20,8 +20,15 @@ pub fn run(json: bool, stderr: &StandardError, args: &InspectArgs) -> Result<Out
         output::warnings(path, &loaded.warnings);
     }
     let weighed = args.mass.map(|mass_kg| args.shape.given(mass_kg));
-    let draft =
-        weighed.map(|weighed| draft_from_log(&args.log, &args.read.settings(), &weighed)).transpose()?;
+    let drafted = weighed.map(|weighed| draft_from_log(&args.log, &args.read.settings(), &weighed));
+    let draft = match drafted.transpose() {
+        // what the log holds is told all the same
+        Err(StudyError::File { why, .. }) => {
+            output::message(&format!("no vehicle can be drafted from this log: {why}"));
+            None
+        }
+        draft => draft?,
+    };
     draft.iter().flat_map(draft_notes).for_each(|note| output::note(&note));
     let of_file = loaded.as_ref().map(|loaded| &loaded.vehicle);
     let vehicle = of_file.or_else(|| draft.as_ref().map(|draft| &draft.vehicle));

@@ -11,7 +11,8 @@ const ORDINARY_M: f64 = 0.005;
 
 /// An accelerometer away from the centre of mass.
 pub static SIGNATURE: Signature = Signature {
-    needs: &[Need::Accelerometer],
+    // of rates that are logged seldom, vibration that the samples fold into slow motion looks the same
+    needs: &[Need::Accelerometer, Need::Torques],
     // against the kinematics alone
     forms: |recorded| {
         let twice = recorded.all(Trace::reads_force_twice);

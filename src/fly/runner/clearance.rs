@@ -2,14 +2,14 @@
 
 use std::time::Duration;
 
+use super::question::{Answer, Question, Told};
+
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 use crate::fly::finding::{Finding, Level};
 use crate::fly::flight::Flight;
 use crate::fly::parameters::{Download, DownloadSettings, Parameters, wanted};
-use crate::fly::preflight::{
-    BatteryState, Fence, FenceDownload, FenceOutcome, Judged, Page, Readiness, Situation, judge,
-};
+use crate::fly::preflight::{Fence, FenceDownload, FenceOutcome, Judged, Page};
 use crate::fly::requests::{
     Capacity, LinkKind, Need, RequestSettings, Requests, request_set, slow_request_set,
 };
@@ -57,6 +57,8 @@ impl Cleared {
 enum Stage {
     Parameters(Box<Download>),
     Rates(Box<Parameters>, Box<Requests>),
+    /// all is known, and judged
+    Judged(Box<Requests>),
     Over,
 }
 
@@ -124,7 +126,7 @@ impl Clearance {
         match &mut self.stage {
             Stage::Parameters(download) => download.take_frame(frame),
             Stage::Rates(_, requests) => requests.take_frame(frame),
-            Stage::Over => {}
+            Stage::Judged(_) | Stage::Over => {}
         }
     }
 
@@ -133,7 +135,7 @@ impl Clearance {
         let message = match &mut self.stage {
             Stage::Parameters(download) => download.poll(now),
             Stage::Rates(_, requests) => requests.poll(now),
-            Stage::Over => None,
+            Stage::Judged(_) | Stage::Over => None,
         };
         let message = message.or_else(|| self.fence.poll(now));
         if message.is_none()
@@ -153,11 +155,11 @@ impl Clearance {
 
     /// Whether all else is done and the vehicle reports no position yet.
     pub(super) fn waits_for_position(&self) -> bool {
-        self.waits.is_some() && !self.counted_again && !matches!(self.stage, Stage::Over)
+        self.waits.is_some() && !self.counted_again && matches!(self.stage, Stage::Rates(..))
     }
 
-    /// The result, once, after the end.
-    pub(super) fn finished(&mut self, flight: &Flight, vehicle: &Vehicle, now: Duration) -> Option<Cleared> {
+    /// What is to be judged, once, after the end.
+    pub(super) fn question(&mut self, flight: &Flight, vehicle: &Vehicle, now: Duration) -> Option<Question> {
         let Stage::Rates(_, requests) = &mut self.stage else { return None };
         if !requests.is_done() {
             return None;
@@ -176,8 +178,20 @@ impl Clearance {
         let Stage::Rates(parameters, requests) = std::mem::replace(&mut self.stage, Stage::Over) else {
             return None;
         };
+        self.stage = Stage::Judged(requests);
+        let mut fence = Fence::new(&parameters, self.fence.items(), self.origin.as_ref());
+        if let Some(FenceOutcome::Incomplete { came, of }) = self.fence.outcome() {
+            let of = of.map_or("an unknown number of".to_owned(), |of| of.to_string());
+            fence.unknown.push(format!("{came} of {of} items came"));
+        }
+        Some(Question::of(flight, vehicle, now, (parameters, Told { fence, home_m: self.home_m })))
+    }
+
+    /// The result, once, with what the checks came to.
+    pub(super) fn finish(&mut self, flight: &Flight, answer: Answer) -> Option<Cleared> {
+        let Stage::Judged(requests) = std::mem::replace(&mut self.stage, Stage::Over) else { return None };
         let report = requests.report();
-        let Judged { mut findings, feeding, mut page } = self.judge(flight, vehicle, (&parameters, now));
+        let Answer { judged: Judged { mut findings, feeding, mut page }, parameters } = answer;
         for finding in &mut findings {
             if finding.level == Level::Refusal && AWAITED.contains(&finding.subject) {
                 finding.level = Level::Awaited;
@@ -202,53 +216,6 @@ impl Clearance {
             feeding,
             page,
             lines,
-        })
-    }
-
-    fn judge(
-        &self,
-        flight: &Flight,
-        vehicle: &Vehicle,
-        (parameters, now): (&Parameters, Duration),
-    ) -> Judged {
-        let status = flight.status(now);
-        let sortie = flight.sortie();
-        let mut fence = Fence::new(parameters, self.fence.items(), self.origin.as_ref());
-        if let Some(FenceOutcome::Incomplete { came, of }) = self.fence.outcome() {
-            let of = of.map_or("an unknown number of".to_owned(), |of| of.to_string());
-            fence.unknown.push(format!("{came} of {of} items came"));
-        }
-        let battery = BatteryState {
-            remaining_percent: status.battery_percent.map(f64::from),
-            is_low: status.battery_is_low,
-            endurance_s: sortie.settings.hover_time_s,
-        };
-        let readiness = Readiness {
-            may_arm: status.may_arm,
-            unhealthy: status.unhealthy.into_iter().map(str::to_owned).collect(),
-            estimate_good_for: status.estimate_good_for,
-            estimate_faults: status.estimator_faults,
-            home_set: self.home_m.is_some(),
-            position_arrives: status.position_m.is_some(),
-            armed: status.armed,
-            ..Readiness::default()
-        };
-        let stand_m = status.position_m.map(Vector3::from);
-        judge(&Situation {
-            path: sortie.course.path(),
-            origin_m: stand_m.map_or_else(Vector3::zeros, |stand_m| flight.offset_m(&stand_m)),
-            stand_m,
-            home_m: self.home_m,
-            vehicle,
-            limits: &sortie.limits,
-            tracking_max_m: sortie.settings.tracking_max_m,
-            parameters,
-            log_awaited: &sortie.settings.log_awaited,
-            release: flight.release(),
-            fence: &fence,
-            battery: &battery,
-            readiness: &readiness,
-            own_system: u8::try_from(sortie.settings.station.0.0).unwrap_or(u8::MAX),
         })
     }
 }

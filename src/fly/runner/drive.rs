@@ -11,6 +11,7 @@ use super::estimating::Estimating;
 use super::event_layer::emit;
 use super::files::{EVENTS, PARAMETERS};
 use super::journal::Journal;
+use super::judging::Judging;
 use super::stream::SharedGuide;
 use super::supervisor::Supervisor;
 use crate::autopilot::Mode;
@@ -51,6 +52,7 @@ pub(super) struct Drive {
     clock: Clock,
     dir: PathBuf,
     estimating: Estimating,
+    judging: Judging,
     notes: Vec<Note>,
     model: ViewModel,
     shown: Duration,
@@ -73,7 +75,7 @@ impl Drive {
         guide: SharedGuide,
         writer: LinkWriter,
         clock: Clock,
-        (place, estimating): (Place, Estimating),
+        (place, estimating, judging): (Place, Estimating, Judging),
     ) -> Self {
         let mut model = ViewModel { title: place.vehicle.name.clone(), ..ViewModel::default() };
         model.tracking.limit_m = Some(flight.sortie().settings.tracking_max_m);
@@ -81,12 +83,13 @@ impl Drive {
         let notes = vec![Note::new(clock.elapsed(), Level::Information, "link", waits)];
         let Place { dir, vehicle, link, .. } = place;
         Self {
-            supervisor: Supervisor::new(flight, vehicle, link),
+            supervisor: Supervisor::new(flight, vehicle, link).with_checks_aside(),
             guide,
             writer,
             clock,
             dir,
             estimating,
+            judging,
             notes,
             model,
             shown: Duration::ZERO,
@@ -119,6 +122,11 @@ impl Drive {
     pub(super) fn tick(&mut self, waiting: usize) {
         let now = self.clock.elapsed();
         self.supervisor.tick(now, waiting);
+        match self.judging.answer() {
+            Some(Ok(answer)) => self.supervisor.answer(now, *answer),
+            Some(Err(why)) => self.supervisor.handle(now, Event::Cleared(Err(why.to_owned()))),
+            None => {}
+        }
         self.act(now);
     }
 
@@ -145,6 +153,9 @@ impl Drive {
                 Action::Note(note) => self.notes.push(note),
                 Action::Finished(outcome) => self.outcome = Some(outcome),
             }
+        }
+        if let Some(question) = self.supervisor.take_question() {
+            self.judging.ask(question);
         }
         if let Some(cleared) = self.supervisor.take_cleared() {
             self.cleared(now, cleared);

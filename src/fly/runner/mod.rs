@@ -7,7 +7,7 @@
 //!            thread of setpoints ------> link
 //! ```
 //!
-//! The live identification hears what the flight hears, on a thread of its own.
+//! The live identification hears what the flight hears, on a thread of its own. The checks before arming are computed on another one.
 
 mod clearance;
 mod clock;
@@ -18,9 +18,11 @@ mod event_layer;
 mod feed;
 mod files;
 mod journal;
+mod judging;
 mod link_kind;
 mod parking;
 mod priority;
+mod question;
 mod ride;
 mod stream;
 mod supervisor;

@@ -13,6 +13,7 @@ use super::clock::Clock;
 use super::drive::{self, Drive};
 use super::error::RunError;
 use super::estimating::Estimating;
+use super::judging::Judging;
 use super::event_layer::{Subscription, flight_span};
 use super::files::{EVENTS, TLOG};
 use super::journal::Journal;
@@ -123,7 +124,8 @@ async fn fly(ride: Ride, console: Console, subscription: Subscription) -> Result
     let place = drive::Place { dir: ride.dir, vehicle: ride.vehicle, link, address };
     // here, and not in a task: those of the link have a rank that it is not to have
     let estimating = Estimating::start().map_err(make("a thread"))?;
-    let mut drive = Drive::new(flight, guide.clone(), writer.clone(), clock, (place, estimating));
+    let judging = Judging::start().map_err(make("a thread"))?;
+    let mut drive = Drive::new(flight, guide.clone(), writer.clone(), clock, (place, estimating, judging));
     if !stream.is_real_time {
         drive.warn("setpoints", NO_PRIORITY);
     }

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use super::clearance::{Clearance, Cleared};
+use super::question::{Answer, Question};
 use crate::fly::finding;
 use crate::fly::flight::{Action, Event, Flight};
 use crate::fly::lift::Lift;
@@ -21,6 +22,9 @@ pub struct Supervisor {
     vehicle: Vehicle,
     link: LinkKind,
     clearance: Option<Clearance>,
+    /// the checks are not made here
+    aside: bool,
+    question: Option<Box<Question>>,
     cleared: Option<Cleared>,
     actions: VecDeque<Action>,
     /// it was told that the vehicle's position is waited for
@@ -42,12 +46,32 @@ impl Supervisor {
             vehicle,
             link,
             clearance: None,
+            aside: false,
+            question: None,
             cleared: None,
             actions: VecDeque::new(),
             told_waiting: false,
             took: true,
             seen: Duration::ZERO,
             to_read: 0,
+        }
+    }
+
+    /// The checks are made elsewhere: of [`Self::take_question`], for [`Self::answer`].
+    pub(super) fn with_checks_aside(self) -> Self {
+        Self { aside: true, ..self }
+    }
+
+    /// What is to be judged, once.
+    pub(super) fn take_question(&mut self) -> Option<Box<Question>> {
+        self.question.take()
+    }
+
+    /// Takes what the checks came to.
+    pub(super) fn answer(&mut self, now: Duration, answer: Answer) {
+        let clearance = self.clearance.as_mut().filter(|_| self.flight.wants_clearance());
+        if let Some(cleared) = clearance.and_then(|clearance| clearance.finish(&self.flight, answer)) {
+            self.finish_checks(now, cleared);
         }
     }
 
@@ -148,14 +172,16 @@ impl Supervisor {
         while let Some(message) = clearance.poll(now) {
             self.actions.push_back(Action::Send(message));
         }
-        let cleared = clearance.finished(&self.flight, &self.vehicle, now);
+        let question = clearance.question(&self.flight, &self.vehicle, now);
         let waits = clearance.waits_for_position();
         if waits && !std::mem::replace(&mut self.told_waiting, waits) {
             let text = "waiting for the vehicle's position estimate; all else is checked";
             self.note(now, Level::Information, "check", text);
         }
-        if let Some(cleared) = cleared {
-            self.finish_checks(now, cleared);
+        match question.map(Box::new) {
+            Some(question) if self.aside => self.question = Some(question),
+            Some(question) => self.answer(now, question.answer()),
+            None => {}
         }
     }
 

@@ -8,7 +8,7 @@ use crate::units::seconds_from_us;
 /// A topic's stamps may run back by this much.
 const BACKWARD_US: u64 = 2_000_000;
 /// What follows tells a longer leap forward from damage.
-const FORWARD_US: u64 = 10_000_000;
+const FORWARD_US: u64 = 2_000_000;
 /// Stamps behind one another agree within this.
 const AGREES_US: u64 = 2_000_000;
 /// So many stamps in a row that agree with each other but not with the clock: it has leapt or started anew.

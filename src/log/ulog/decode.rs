@@ -47,8 +47,35 @@ pub(super) struct Decoder {
 pub(super) struct Topic {
     pub(super) resets: ResetCounters,
     pub(super) last_us: Option<u64>,
+    behind: Option<Behind>,
     /// no other topic has streams of the same key
     pub(super) is_alone: bool,
+}
+
+/// Stamps in a row that are far behind a topic's last one.
+#[derive(Debug, Clone, Copy)]
+struct Behind {
+    last_us: u64,
+    stamp_us: u64,
+    count: u8,
+}
+
+/// So many in a row that agree with each other: damage put the last one ahead, or the topic would be lost until then.
+const BEHIND: u8 = 3;
+/// They follow one another within this.
+const FOLLOWS_US: u64 = 2_000_000;
+
+impl Topic {
+    /// Takes a stamp that does not go on from the topic's last one; `true` where that was damaged.
+    fn was_ahead(&mut self, stamp_us: u64) -> bool {
+        let Some(last_us) = self.last_us.filter(|last_us| stamp_us < *last_us) else { return false };
+        let follows = |behind: &Behind| {
+            behind.last_us == last_us && (behind.stamp_us..=behind.stamp_us.saturating_add(FOLLOWS_US)).contains(&stamp_us)
+        };
+        let count = self.behind.filter(follows).map_or(1, |behind| behind.count + 1);
+        self.behind = Some(Behind { last_us, stamp_us, count });
+        count >= BEHIND
+    }
 }
 
 /// A message of a topic that waits.
@@ -142,7 +169,7 @@ impl Decoder {
         }
         self.streams[slot] = streams_of(subscription);
         let resets = ResetCounters::of(subscription);
-        let topic = Topic { resets, last_us: None, is_alone: false };
+        let topic = Topic { resets, last_us: None, behind: None, is_alone: false };
         self.topics[slot] = (!self.streams[slot].is_empty()).then_some(topic);
         self.places.clear();
     }
@@ -170,6 +197,7 @@ impl Decoder {
                 self.report.ran_back = (self.clock.ran_back, self.clock.ran_back_most_us);
                 self.restarted(stamp_us, sink);
             }
+            Placed::Stale if topic.was_ahead(stamp_us) => topic.last_us = Some(stamp_us),
             Placed::Stale => {
                 self.report.stale_stamps += 1;
                 return;

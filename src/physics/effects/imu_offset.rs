@@ -9,9 +9,9 @@ use crate::physics::{Bounds, Effect, Hook, Measurement, Parameter, State};
 pub struct ImuOffset;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "x", unit: "m", bounds: Bounds::of(-0.3, 0.3).by_arm(1) },
-    Parameter { name: "y", unit: "m", bounds: Bounds::of(-0.3, 0.3).by_arm(1) },
-    Parameter { name: "z", unit: "m", bounds: Bounds::of(-0.3, 0.3).by_arm(1) },
+    Parameter { name: "x", unit: "m", bounds: Bounds::of(-0.1, 0.1).by_arm(1) },
+    Parameter { name: "y", unit: "m", bounds: Bounds::of(-0.1, 0.1).by_arm(1) },
+    Parameter { name: "z", unit: "m", bounds: Bounds::of(-0.1, 0.1).by_arm(1) },
 ];
 
 impl Effect for ImuOffset {

@@ -69,14 +69,18 @@ pub(super) fn flight_lines<'a>(flights: impl Iterator<Item = &'a Quality>) -> St
             quality.usable.summary()
         );
         for (quantity, offset) in &quality.offsets {
-            let what = if offset.repaired { "taken out" } else { "not corrected: not known well enough" };
-            let _ = writeln!(
-                page,
-                "    {quantity:?} {} by {:.2} +- {:.2} ms against the inertial unit, {what}",
-                if offset.late_s < 0.0 { "early" } else { "late" },
-                1e3 * offset.late_s.abs(),
-                1e3 * offset.std_s
-            );
+            let _ = if offset.std_s.is_finite() {
+                let what = if offset.repaired { "taken out" } else { "not corrected: not known well enough" };
+                writeln!(
+                    page,
+                    "    {quantity:?} {} by {:.2} +- {:.2} ms against the inertial unit, {what}",
+                    if offset.late_s < 0.0 { "early" } else { "late" },
+                    1e3 * offset.late_s.abs(),
+                    1e3 * offset.std_s
+                )
+            } else {
+                writeln!(page, "    {quantity:?}: lateness against the inertial unit not determined")
+            };
         }
         for note in &quality.notes {
             let _ = writeln!(page, "    {note}");

@@ -165,7 +165,11 @@ fn clock(page: &mut String, inspection: &Inspection) {
         row(page, "estimator jumped", at(&clock.estimator_resets_s));
     }
     for offset in &inspection.stream_offsets {
-        let text = format!("{:+.2} +- {:.2} ms late", 1e3 * offset.late_s, 1e3 * offset.std_s);
+        let text = if offset.std_s.is_finite() {
+            format!("{:+.2} +- {:.2} ms late", 1e3 * offset.late_s, 1e3 * offset.std_s)
+        } else {
+            "lateness not determined".to_owned()
+        };
         row(page, &format!("{} stamps", offset.quantity), text);
     }
 }

@@ -1,6 +1,6 @@
 //! Mass and inertia together with what the flights show beside them: the estimator of `explain`.
 
-use crate::diagnose::{ExplainError, ExplainSettings, Explanation, Verdict, explain};
+use crate::diagnose::{ExplainError, ExplainSettings, Explanation, Verdict, brief, explain};
 use crate::estimate::{
     Estimated, Finding, MethodResult, Nominal, Recommendation, THETA, moved_by_guessed_curve,
 };
@@ -47,13 +47,13 @@ pub(super) fn beside(
         estimated = estimated.with_guessed_curve(moved);
     }
     let effects: Vec<&'static str> = found.named.iter().map(|named| named.id).collect();
-    let best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(&found));
+    let best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(&found, vehicle));
     Ok(Beside { best, effects, turned_by_control: found.turned_by_control })
 }
 
 /// The reason for the user.
-fn why(found: &Explanation) -> String {
-    let names: Vec<String> = found.named.iter().map(|named| named.id.replace('_', " ")).collect();
+fn why(found: &Explanation, vehicle: &Vehicle) -> String {
+    let names: Vec<String> = found.named.iter().map(|named| brief(named, vehicle, false)).collect();
     match (found.verdict, names.join(", ")) {
         (Verdict::Unexplained, _) => {
             "mass and inertia alone: something acts in these flights that no known effect explains, and \

@@ -56,7 +56,7 @@ fn the_scaling_written_out() {
             ("tether", "stiffness", (0.0, 1000.0 * m)),
             // places in the airframe
             ("com_offset", "x", (-0.1 * l, 0.1 * l)),
-            ("imu_offset", "x", (-0.3 * l, 0.3 * l)),
+            ("imu_offset", "x", (-0.1 * l, 0.1 * l)),
             ("ceiling_effect", "a2", (0.0, l)),
             // the environment and the sampling
             ("steady_wind", "north", (-20.0, 20.0)),
