@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::said::Said;
+use super::reported_state::ReportedState;
 use crate::autopilot::{Autopilot, Outputs};
 use crate::note::{About, Note};
 use crate::recording::{ParameterChange, Recording};
@@ -64,7 +64,7 @@ fn longest_value(changes: &[&ParameterChange], airborne_s: &[(f64, f64)]) -> Opt
 
 /// When the vehicle was in the air by the autopilot's words, s; all the time where it says nothing of it.
 fn said_airborne(recording: &Recording) -> Vec<(f64, f64)> {
-    let said = Said::of(recording);
+    let said = ReportedState::of(recording);
     let Some(words) = said.words() else { return vec![(f64::NEG_INFINITY, f64::INFINITY)] };
     let pairs = words.time_s.windows(2).map(|pair| (pair[0], pair[1]));
     pairs.filter(|(from_s, _)| said.may_be_off_ground(*from_s)).collect()
@@ -120,7 +120,7 @@ pub fn changes_in_the_air(
         .take(TOLD)
         .map(|change| {
             let value = taken.get(&change.name).copied().unwrap_or(change.after);
-            let text = format!("{}: {} is taken for the whole flight", told(change), short(value));
+            let text = format!("{}: {} is used for the whole flight", told(change), short(value));
             Note::warning(About::Actuators, text)
         })
         .collect();
@@ -190,8 +190,7 @@ mod tests {
         let texts: Vec<&str> = notes.iter().map(|note| note.text.as_str()).collect();
         assert_eq!(texts.len(), 3, "{texts:?}");
         assert!(
-            texts[0]
-                .starts_with("MOT_THST_EXPO changed from 0.65 to 0.5 at 34.2 s, in the air: 0.5 is taken"),
+            texts[0].starts_with("MOT_THST_EXPO changed from 0.65 to 0.5 at 34.2 s, in the air: 0.5 is used"),
             "{texts:?}"
         );
         assert!(texts[1].starts_with("SERVO1_FUNCTION changed from 33 to 34"), "{texts:?}");

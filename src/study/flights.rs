@@ -10,7 +10,7 @@ use crate::log::{
 };
 use crate::note::{About, Note};
 use crate::recording::{Recording, shared_share};
-use crate::signals::{ConditionSettings, Said, Signals, settle_parameters};
+use crate::signals::{ConditionSettings, ReportedState, Signals, settle_parameters};
 use crate::text;
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
@@ -151,7 +151,7 @@ fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyErro
         "expected a log with times, got one whose messages carry no time of the vehicle's"
     } else if opened.report.ends_early() {
         "expected a whole log, got one that ends before its first sample"
-    } else if flights.all(|flight| Said::of(&flight.recording).never_armed()) {
+    } else if flights.all(|flight| ReportedState::of(&flight.recording).never_armed()) {
         "expected a flight, got the log of a vehicle that was never armed"
     } else {
         return Ok(());

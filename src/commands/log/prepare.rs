@@ -230,7 +230,7 @@ pub fn agreed(word: &str, what: &str) -> Result<bool, CommandError> {
     let agrees = answer == word || ALSO_YES.contains(&answer.as_str());
     if !agrees && !answer.is_empty() && !NO.contains(&answer.as_str()) {
         output::message(&format!(
-            "expected {word}, y or n, got {}: that is taken for no",
+            "expected {word}, y or n, got {}: treated as no",
             text::excerpt(&answer, 20)
         ));
     }
