@@ -1,4 +1,5 @@
-//! After the search: which effects stay in the model, and what has no noise of the autopilot's own tells their sizes.
+//! Refinement of the model after the search: which effects stay, and their sizes by estimators that the autopilot's noise does
+//! not bias (flight path reconstruction, instruments).
 
 use super::base::Base;
 use super::feedback_noise::is_fed_back;

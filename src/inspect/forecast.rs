@@ -1,4 +1,4 @@
-//! What identification and diagnosis would make of a log: tried on its liveliest two minutes.
+//! Forecast of identification and diagnosis: both are tried on the two minutes of the log with the most excitation.
 
 use crate::diagnose::{ExpectedError, expected_errors};
 use crate::draft::{Given, draft};

@@ -1,4 +1,4 @@
-//! The force problem of a flight: its states, its parameters with what is known of them, its residuals with their noise.
+//! The force problem of a flight: its states, its parameters with their priors, its residuals with their noise.
 
 use std::sync::Arc;
 

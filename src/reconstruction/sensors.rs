@@ -1,4 +1,4 @@
-//! What the sensors and the autopilot's estimate say of the states.
+//! Measurement equations of the sensors and of the autopilot's estimate.
 
 use std::sync::Arc;
 

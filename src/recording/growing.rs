@@ -1,4 +1,4 @@
-//! A stream while samples come to it.
+//! A stream during reading.
 
 use super::stream::{Stream, StreamKey};
 use super::value_range::most;

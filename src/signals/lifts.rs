@@ -1,4 +1,4 @@
-//! Whether the thrust of a vehicle file lifts its weight in a flight that the log shows.
+//! Check that the thrust of a vehicle file lifts its weight in a flight that the log shows.
 
 use super::SignalsError;
 use super::actuation::Actuation;

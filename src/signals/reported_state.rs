@@ -1,4 +1,4 @@
-//! When a vehicle may be in the air by the autopilot's own words: armed, landed, and whether it asked for thrust.
+//! The state that the autopilot reports: armed, landed, and whether it commanded thrust.
 
 use crate::recording::{Quantity, Recording, Stream};
 

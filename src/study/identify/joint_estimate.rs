@@ -1,4 +1,4 @@
-//! Mass and inertia together with what the flights show beside them: the estimator of `explain`.
+//! Mass and inertia by the estimator of `explain`, together with the effects that the flights show.
 
 use crate::diagnose::{ExplainError, ExplainSettings, Explanation, Verdict, explain};
 use crate::estimate::{
