@@ -20,11 +20,12 @@ use crate::signals::{Signals, ThrustSource};
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 
-/// Standard deviation of a lag that the torques have told, s, beside its own.
+/// Standard deviation of a lag that the torques have told, s, beside its own. Chosen; not measured.
 const LAG_STD_S: f64 = 0.01;
 /// Standard deviation of a lag where none was found, s.
 const NO_LAG_STD_S: f64 = 0.005;
 /// The scale of thrust over mass stays within this factor of what the weak form found, or the fit is not believed.
+/// Chosen; not measured.
 const MOST_SCALE: f64 = 1.5;
 
 /// A share that grows with the rotors' speed is told apart beyond this many standard errors.

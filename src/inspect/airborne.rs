@@ -9,6 +9,7 @@ use crate::stats::median;
 /// measured.
 const LEAST_COMMAND: f64 = 0.12;
 /// So many samples of a channel behind one another, other than its median, are no damage: single ones are.
+/// Chosen; not measured.
 const LEAST_CHANGED: usize = 3;
 /// What an output may be as a fraction of full scale, reversed ones and pulses of 0 included: the rest is damage.
 const OUTPUTS: std::ops::RangeInclusive<f64> = -1.0..=1.5;

@@ -22,7 +22,7 @@ use crate::signals::SignalsError;
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
 
-/// A window holds all of a flight where no more than this times its seconds can be used.
+/// A window holds all of a flight where no more than this times its seconds can be used. Chosen; not measured.
 const MOSTLY: f64 = 1.05;
 /// MAV_SEVERITY_WARNING; smaller is worse.
 const WARNING: u8 = 4;

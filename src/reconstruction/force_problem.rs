@@ -33,11 +33,11 @@ pub struct KnownLag {
     pub lag_std_s: f64,
 }
 
-/// Standard deviation of the lateness of the commands, s.
+/// Standard deviation of the lateness of the commands, s. Chosen; not measured.
 const LATE_STD_S: f64 = 0.002;
-/// Standard deviation of the lateness of the attitude, s.
+/// Standard deviation of the lateness of the attitude, s. Chosen; not measured.
 const LATE_ATTITUDE_STD_S: f64 = 0.01;
-/// Standard deviation of the accelerometer's bias, m/s^2.
+/// Standard deviation of the accelerometer's bias, m/s^2. Chosen; not measured.
 const BIAS_STD_M_S2: f64 = 0.3;
 
 /// The force problem of a flight with these effects.

@@ -10,9 +10,9 @@ use super::place::STEP_S;
 use super::places::{BIAS, ERROR, LATE_ATTITUDE, TILT, VELOCITY};
 use super::residuals::{Residuals, Row};
 
-/// Share of the accelerometer that the autopilot's velocity integrates.
+/// Share of the accelerometer that the autopilot's velocity integrates. Chosen; not measured.
 const SHARED: f64 = 0.9;
-/// Its forgetting, 1/s.
+/// Its forgetting, 1/s. Chosen; not measured.
 const FORGET_1_S: f64 = 0.5;
 
 fn put(by_states: &mut Pair, at: usize, block: &Matrix3<f64>) {

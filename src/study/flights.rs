@@ -25,7 +25,7 @@ pub(super) const IDENTIFIED: Hold = Hold { seconds: 1800.0, numbers: 3_000_000 }
 /// What is explained of one log. Memory and time grow with the numbers: a log of an on-board profile holds more of them a second
 /// than telemetry.
 pub(super) const EXPLAINED: Hold = Hold { seconds: 480.0, numbers: 1_500_000 };
-/// Share of a hold-out's samples that may be in an explained flight: none are, but for chance.
+/// Share of a hold-out's samples that may be in an explained flight: none are, but for chance. Chosen; not measured.
 const MOST_SHARED: f64 = 0.02;
 
 /// How logs are read.
