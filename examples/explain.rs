@@ -29,7 +29,7 @@ pub fn effects() -> Result<String, Box<dyn Error>> {
     for named in &explanation.named {
         writeln!(text, "{}: {}.", named.id, clause(named, &vehicle))?;
         for other in &named.confusable_with {
-            writeln!(text, "  may be taken for {}", other.id)?;
+            writeln!(text, "  confusable with {}", other.id)?;
         }
     }
     Ok(text)

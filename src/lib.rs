@@ -37,6 +37,7 @@
 //! | [`config`], [`vehicle`] | what is known of a vehicle beforehand |
 //! | [`plan`], [`trajectory`] | the excitation trajectory, and the standard errors that it will give |
 //! | [`link`], [`wire`], [`fly`] | MAVLink, and the flight |
+//! | [`fetch`], [`onboard`] | the logs that a vehicle keeps, fetched over MAVLink |
 //! | [`log`], [`recording`] | from a file to a recording |
 //! | [`signals`] | streams chosen, aligned in time and put on one grid |
 //! | [`regression`], [`estimate`] | mass and inertia |
@@ -145,6 +146,7 @@ pub mod inspect;
 pub mod link;
 pub mod log;
 pub mod note;
+pub mod onboard;
 pub mod physics;
 pub mod plan;
 pub mod reconstruction;

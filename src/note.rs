@@ -18,6 +18,8 @@ pub enum Severity {
 pub enum About {
     /// a file that went in, by its name as given
     File(String),
+    /// a link, by its address
+    Link(String),
     /// what the vehicle file states
     Vehicle,
     /// recorded streams of the motion
@@ -37,7 +39,7 @@ pub struct Note {
     pub severity: Severity,
     /// what it is about
     pub about: About,
-    /// without the name of the file that it may be about
+    /// without the name of the file or link that it may be about
     pub text: String,
 }
 
@@ -66,11 +68,11 @@ impl Note {
         self.severity == Severity::Warning
     }
 
-    /// The text after the name of the file that it is about, without its severity.
+    /// The text after the name of the file or link that it is about, without its severity.
     #[must_use]
     pub fn sentence(&self) -> String {
         match &self.about {
-            About::File(name) => format!("{name}: {}", self.text),
+            About::File(name) | About::Link(name) => format!("{name}: {}", self.text),
             _ => self.text.clone(),
         }
     }

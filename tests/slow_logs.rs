@@ -149,7 +149,7 @@ fn what_needs_torques_is_not_determined_together_with_the_rigid_body() {
         let Found::NotDetermined { reason, .. } = &of.found else { panic!("{of:?}") };
         reason.clone()
     };
-    assert!(reason("motor_lag", "time_constant").contains("forces alone do not tell it"));
+    assert!(reason("motor_lag", "time_constant").contains("forces alone do not determine it"));
     assert!(!reason("linear_drag", "at_hubs").is_empty());
     assert!(found.acting.iter().all(|effect| effect.effect().id() != "motor_lag"));
     let refused = identified(&["angular_damping"]).map(|_| ()).unwrap_err().to_string();

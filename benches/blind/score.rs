@@ -102,7 +102,7 @@ fn tell(answer: &Answer) {
     println!("    would have been named from {limits:?}; latency {:?}", explanation.search.latency);
 }
 
-/// A name with its values and what it may be taken for.
+/// A name with its values and its confusable effects.
 fn told(name: &Named) -> String {
     let values: Vec<String> = name
         .parameters

@@ -1,5 +1,6 @@
 //! The failure of a verb.
 
+use mavid::onboard::OnboardError;
 use mavid::plan::PlanError;
 
 /// Why a verb did not do its work.
@@ -45,6 +46,17 @@ impl From<mavid::study::StudyError> for CommandError {
             ) => Self::Failure(why.to_string()),
             mavid::study::StudyError::Config(error) => error.into(),
             other => Self::Input(other.to_string()),
+        }
+    }
+}
+
+impl From<OnboardError> for CommandError {
+    fn from(error: OnboardError) -> Self {
+        let text = error.to_string();
+        match error {
+            OnboardError::Ended(_) | OnboardError::DownloadEnded { .. } => Self::Ended(text),
+            error if error.is_input() => Self::Input(text),
+            _ => Self::Failure(text),
         }
     }
 }

@@ -42,11 +42,11 @@ impl fmt::Display for Divergence {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Place { off_m, extent_m } => {
-                write!(out, "it ends up {off_m:.1} m off in a flight of {extent_m:.1} m")
+                write!(out, "it is {off_m:.1} m off, in a flight that extends over {extent_m:.1} m")
             }
             Self::Swing { torque, simulated, recorded } => write!(
                 out,
-                "its controller swings {torque} by {simulated:.3} N m, one sigma, where the flight had {recorded:.3} N m"
+                "{torque} oscillates with {simulated:.3} N m (one sigma), in the flight with {recorded:.3} N m"
             ),
         }
     }
@@ -115,8 +115,7 @@ mod tests {
         assert_eq!(of(&flight(1.3, 3.0), (0.0, 20.0)), None);
         let left = of(&flight(9.0, 1.0), (0.0, 20.0)).unwrap();
         assert!(
-            left.to_string().starts_with("it ends up 24.")
-                && left.to_string().contains("in a flight of 6.0 m"),
+            left.to_string().starts_with("it is 24.") && left.to_string().contains("in a flight of 6.0 m"),
             "{left}"
         );
         let swings = of(&flight(1.0, 50.0), (0.0, 20.0)).unwrap();

@@ -1,4 +1,4 @@
-//! Whether a candidate is accepted into the model, and the model with it.
+//! Decides whether a candidate, and the model with it, is accepted.
 
 use super::base::lift_load;
 use super::fit::{Fitted, Newton, fit};

@@ -88,7 +88,7 @@ pub struct Empirical {
 /// Number of knots with which the quantity is chosen. Chosen; not measured.
 const KNOTS: usize = 13;
 const OTHER_KNOTS: [usize; 2] = [7, 25];
-/// Parts of the flight in the cross-validation.
+/// Parts of the flight in the cross-validation. Chosen; not measured.
 const FOLDS: usize = 6;
 /// Least share of the residual energy that a term must predict in the cross-validation. Chosen; not measured.
 const LEAST_GAIN: f64 = 0.02;

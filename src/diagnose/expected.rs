@@ -1,5 +1,5 @@
-//! How well flights determine what one may want to know of a vehicle, before anything is searched for: each quantity's standard
-//! error by its signature's own columns, at its usual size, with the noise that the rigid body leaves.
+//! The expected standard error of each quantity before a search: by the columns of its signature, at its usual size, with the
+//! residual of the rigid body as noise.
 
 use super::base::Base;
 use super::candidates::Candidate;

@@ -4,7 +4,7 @@ use super::channels::{AXES, CHANNELS};
 use super::confusable::confusable_with;
 use super::evidence::LEAST_ROWS;
 use super::explanation::{Explanation, Verdict};
-use super::fed_back::is_fed_back;
+use super::feedback_noise::is_fed_back;
 use super::fit::Fitted;
 use super::gates::Gates;
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
@@ -12,8 +12,8 @@ use super::latency_name::latency_name;
 use super::limits::{limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
 use super::named::{Confusable, Named, NamedParameter, Strength};
+use super::refinement::{fitted_strength, refine};
 use super::search::search;
-use super::settle::{fitted_strength, settle};
 use super::signature::Signature;
 use super::signatures::{ALL, GUST};
 use super::slight::{FoundEffect, Slight, named_and_slight};
@@ -111,7 +111,7 @@ pub fn explain(
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
     let mut found = search(&traces, vehicle, &settings.gates, settings.signatures)?;
-    settle((flights, &traces), vehicle, &mut found)?;
+    refine((flights, &traces), vehicle, &mut found)?;
     let beyond = tracing::info_span!("locate").in_scope(|| beyond(&traces, &found));
     let explanation = judge(&traces, vehicle, found, beyond);
     explanation.emit();

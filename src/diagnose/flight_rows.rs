@@ -1,8 +1,8 @@
 //! One flight's part of the rows: what acts along it by commands and by motion, and the residual of the base.
 
-use super::along::{moved_by, wrench_along};
 use super::base::Base;
 use super::channels::{Channels, NuisanceColumn, SECOND, append, channels};
+use super::model_wrench::{moved_by, wrench_along};
 use super::nuisances::nuisances;
 use super::rotors::{OfRotors, RotorMotion};
 use super::sensors::true_motion;

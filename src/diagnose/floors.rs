@@ -1,4 +1,4 @@
-//! What no statistics of one flight tell: how far the laws themselves hold.
+//! Lower bounds of the standard errors: the accuracy of the laws themselves, which the statistics of one flight do not contain.
 
 use super::base::{Base, follows_force};
 use super::channels::Nuisance;

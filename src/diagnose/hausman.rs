@@ -1,5 +1,5 @@
-//! Hausman's test (1978) of two estimates of one value: one that is the more precise while its assumptions hold, and one that
-//! holds in either case.
+//! Hausman's test (1978) of two estimates of one value: one is more precise while its assumptions hold, the other is consistent
+//! in either case.
 
 /// Normal deviate beyond which they differ. Chosen; not measured.
 pub(super) const DEVIATE: f64 = 2.5;

@@ -1,4 +1,4 @@
-//! Instruments: what the commanded trajectory asks of the torques. It causes the motion, and has none of the noise that the
+//! Instruments: the torques that the commanded trajectory needs. It causes the motion, and it does not contain the noise that the
 //! measured motion and the commands share.
 
 use crate::signals::{Reference, central_difference};

@@ -1,4 +1,4 @@
-//! The force as velocity and attitude show it.
+//! The force by the derivative of velocity, with the attitude.
 
 use super::trace::Trace;
 use nalgebra::Vector3;

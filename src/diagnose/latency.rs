@@ -7,7 +7,7 @@
 use super::base::Base;
 use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, append, channels, nothing, per_step};
 use super::evidence::Weighted;
-use super::fed_back::{UNCONFIRMED_S, is_fed_back};
+use super::feedback_noise::{UNCONFIRMED_S, is_fed_back};
 use super::fit::{Fitted, Newton, evaluate, fit};
 use super::flight_rows::residuals;
 use super::hausman::{contradict, differ};
@@ -47,8 +47,7 @@ impl LatencyFinding {
 }
 
 /// Why a latency is not determined.
-pub const NO_LATENCY: &str =
-    "commands or body rates are logged too seldom to compare torques, and forces alone do not tell it";
+pub const NO_LATENCY: &str = "commands or body rates are logged at too low a rate to compare torques, and forces alone do not determine it";
 
 /// The kind of a shorter latency is not determined, s: sampling and a fast motor together are as long. Chosen; not
 /// measured.

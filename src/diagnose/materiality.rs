@@ -1,8 +1,7 @@
-//! Whether what is certain also matters: small certain things are traces and get no name.
+//! Materiality: significant effects that are too small to matter are traces and get no name.
 //!
-//! A long quiet flight makes everything certain, also what slow errors of the sensors, of the estimator and of the log's stamps
-//! imitate. What those imitate is small: an accelerometer's bias and a level that is off by a third of a degree are half a percent
-//! of the weight.
+//! In a long quiet flight everything becomes significant, also the slow errors of sensors, estimator and time stamps. Their size
+//! is small: an accelerometer bias, or a level that is wrong by a third of a degree, is half a percent of the weight.
 
 use super::channels::{CHANNELS, SECOND};
 use super::fit::Fitted;
@@ -15,7 +14,7 @@ use std::ops::Range;
 const SHOWN: Size = Size { force: 0.005, torque: 0.04 };
 /// What matters in however much noise.
 const PLAIN: Size = Size { force: 0.01, torque: 0.2 };
-/// Share of the misfit without the effect from which on it shows.
+/// Share of the misfit without the effect from which on it shows. Chosen; not measured.
 const SHOWS: f64 = 0.04;
 /// Share of the misfit without the effect from which on it matters, however small it is: the misfit itself is as small then.
 const MISFIT: f64 = 0.2;

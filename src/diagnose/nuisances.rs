@@ -2,7 +2,7 @@
 
 use super::base::Base;
 use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels, force_channels, nothing};
-use super::fed_back::{UNCONFIRMED_S, is_fed_back};
+use super::feedback_noise::{UNCONFIRMED_S, is_fed_back};
 use super::rotors::RotorMotion;
 use super::trace::Trace;
 use crate::signals::central_difference;

@@ -1,4 +1,4 @@
-//! What a model costs: what it leaves unexplained, its columns, and how far its nuisances are from what is known of them.
+//! The cost of a model: its residual, its number of columns, and the distance of its nuisance parameters from their priors.
 
 use super::fit::Fitted;
 use super::tested::Tested;

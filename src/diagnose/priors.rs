@@ -1,4 +1,4 @@
-//! The nuisances' priors, as they weigh against the rows.
+//! Priors of the nuisance parameters, with their weight relative to the rows.
 
 use super::channels::{Nuisance, NuisanceColumn, SECOND};
 use nalgebra::DVector;

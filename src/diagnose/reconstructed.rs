@@ -20,11 +20,12 @@ use crate::signals::{Signals, ThrustSource};
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 
-/// Standard deviation of a lag that the torques have told, s, beside its own.
+/// Standard deviation of a lag that the torques have told, s, beside its own. Chosen; not measured.
 const LAG_STD_S: f64 = 0.01;
 /// Standard deviation of a lag where none was found, s.
 const NO_LAG_STD_S: f64 = 0.005;
 /// The scale of thrust over mass stays within this factor of what the weak form found, or the fit is not believed.
+/// Chosen; not measured.
 const MOST_SCALE: f64 = 1.5;
 
 /// A share that grows with the rotors' speed is told apart beyond this many standard errors.
@@ -73,13 +74,13 @@ struct Flights<'a> {
 impl Flights<'_> {
     fn sizes(&self, traces: &[Trace], fitted: &Fitted) -> Result<Result<Fitted, Kept>, PhysicsError> {
         match self.estimated(fitted) {
-            Ok((base, terms, together)) => replaced(traces, (fitted, base), &terms, &together),
+            Ok((base, terms, pooled)) => replaced(traces, (fitted, base), &terms, &pooled),
             Err(why) => Ok(Err(why)),
         }
     }
 
     /// The base in the forms that the forces show, its effects as terms, and their values.
-    fn estimated(&self, fitted: &Fitted) -> Result<(Base, Vec<Term>, Together), Kept> {
+    fn estimated(&self, fitted: &Fitted) -> Result<(Base, Vec<Term>, PooledEstimate), Kept> {
         let mut base = fitted.base.clone();
         let mut open = base.clone();
         for present in &mut open.present {
@@ -90,27 +91,27 @@ impl Flights<'_> {
             return Err(Kept::NoForce);
         }
         if open.present.iter().any(|present| present.signature.role.with_speed.is_some()) {
-            let together = self.together(fitted, &open, &terms, fit_mode)?;
-            choose_forms(&mut base, &terms, &together);
+            let pooled = self.pooled_over_flights(fitted, &open, &terms, fit_mode)?;
+            choose_forms(&mut base, &terms, &pooled);
         }
         let terms = self::terms(&base).ok_or(Kept::OtherKind)?;
-        let together = self.together(fitted, &base, &terms, fit)?;
-        Ok((base, terms, together))
+        let pooled = self.pooled_over_flights(fitted, &base, &terms, fit)?;
+        Ok((base, terms, pooled))
     }
 
-    fn together(
+    fn pooled_over_flights(
         &self,
         fitted: &Fitted,
         base: &Base,
         terms: &[Term],
         estimate: Estimate,
-    ) -> Result<Together, Kept> {
+    ) -> Result<PooledEstimate, Kept> {
         let one = |signals: &Signals| {
             let lag = known_lag(fitted, signals, self.latency_std_s);
             fitted_flight((signals, base, lag), terms, estimate)
         };
         let fits: Vec<Fit> = self.signals.par_iter().map(one).collect::<Result<_, _>>()?;
-        Together::of(&fits, terms).ok_or(Kept::Singular)
+        PooledEstimate::of(&fits, terms).ok_or(Kept::Singular)
     }
 }
 
@@ -118,12 +119,12 @@ impl Flights<'_> {
 type Estimate = fn(Problem, &[usize]) -> Result<Fit, FitError>;
 
 /// Each effect in the form that its share tells.
-fn choose_forms(base: &mut Base, opened: &[Term], together: &Together) {
+fn choose_forms(base: &mut Base, opened: &[Term], pooled: &PooledEstimate) {
     let mut next = 1;
     for (present, term) in base.present.iter_mut().zip(opened) {
         for &slot in &term.free {
             if present.signature.role.with_speed.is_some_and(|(own, _)| own == slot) {
-                choose_form(present, slot, (together.values[next], together.std(next)));
+                choose_form(present, slot, (pooled.values[next], pooled.std(next)));
             }
             next += 1;
         }
@@ -225,12 +226,12 @@ fn fitted_flight(
 }
 
 /// Scale and free values of all flights: each flight weighted by its information.
-struct Together {
+struct PooledEstimate {
     values: DVector<f64>,
     covariance: DMatrix<f64>,
 }
 
-impl Together {
+impl PooledEstimate {
     fn std(&self, index: usize) -> f64 {
         self.covariance[(index, index)].max(0.0).sqrt()
     }
@@ -250,7 +251,7 @@ impl Together {
     }
 }
 
-/// A value of the reconstruction: its place among the effects and its slot, where it stands in [`Together`], the value.
+/// A value of the reconstruction: its place among the effects and its slot, where it stands in [`PooledEstimate`], the value.
 struct Size {
     place: usize,
     slot: usize,
@@ -283,7 +284,7 @@ fn replaced(
     traces: &[Trace],
     (fitted, mut base): (&Fitted, Base),
     terms: &[Term],
-    Together { values, covariance }: &Together,
+    PooledEstimate { values, covariance }: &PooledEstimate,
 ) -> Result<Result<Fitted, Kept>, PhysicsError> {
     let scale = values[0];
     if !(MOST_SCALE.recip()..=MOST_SCALE).contains(&scale) {

@@ -5,12 +5,12 @@
 //! by the kinematics: what acts on the vehicle shows in both, a fault of a sensor in one of them. A parameter's column is built from the signals that are not
 //! on the left of its row: rotor thrusts by the commands for forces, by the measured motion for torques.
 
-use super::along::{PartAlong, each_along};
 use super::base::Base;
 use super::channels::{
     CHANNELS, Channels, Nuisance, NuisanceColumn, append, channels, joined, measures, nothing, per_step,
 };
 use super::flight_rows::{Along, Part, one_flight, residual};
+use super::model_wrench::{PartAlong, each_along};
 use super::rotors::RotorMotion;
 use super::sensors::{KnownMotion, true_readings};
 use super::signature::EffectTerm;

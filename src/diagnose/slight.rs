@@ -1,4 +1,4 @@
-//! Which of the effects found get a name, and which are traces.
+//! Separates the effects that get a name from the traces, which are significant but immaterial.
 
 use super::fit::Fitted;
 use super::materiality::Materiality;

@@ -1,4 +1,4 @@
-//! One effect in place of several of one kind: two weak rotors can stand for a centre of mass that is off.
+//! One effect in place of several of one kind: two weak rotors can look like a centre of mass that is off.
 
 use super::acceptance::accepted;
 use super::candidates::candidates;

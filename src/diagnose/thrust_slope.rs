@@ -1,7 +1,7 @@
-//! How the force goes with the commanded thrust, where both have noise.
+//! The slope of the force over the commanded thrust, if both have noise.
 //!
-//! Commands that answer noise move no vehicle for long, and least squares then finds a slope that is too small: that looks like a bent
-//! thrust curve. Regression the other way round finds one that is too great. The true slope lies between them (Frisch 1934).
+//! Commands that react to noise hardly move the vehicle. The slope by least squares is then too small, which looks like a bent
+//! thrust curve. The slope of the reverse regression is too large. The true slope lies between both (Frisch 1934).
 
 use super::fit::Fitted;
 use super::trace::Trace;

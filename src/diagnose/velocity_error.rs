@@ -10,9 +10,9 @@
 //! `F_v c` by an accelerometer, and `F_v c - m R'c'` by the kinematics. In weak form `R'c'` is `K1(R'c) + K(w x R'c)`.
 //! Between knots the error is a straight line, and the derivative a constant there.
 
-use super::along::wrench_along;
 use super::base::Base;
 use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, force_channels};
+use super::model_wrench::wrench_along;
 use super::rotors::RotorMotion;
 use super::trace::Trace;
 use crate::physics::Model;

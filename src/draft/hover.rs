@@ -5,9 +5,9 @@ use crate::signals::{best, thrusts_from_commands};
 use crate::units::GRAVITY_M_S2;
 use crate::vehicle::Vehicle;
 
-/// Rotors carry the vehicle where their thrust is at least this share of its 90th percentile.
+/// Rotors carry the vehicle where their thrust is at least this share of its 90th percentile. Chosen; not measured.
 const CARRYING: f64 = 0.5;
-/// Samples of rotors that carry the vehicle, from which on a median means something.
+/// Samples of rotors that carry the vehicle, from which on a median means something. Chosen; not measured.
 const LEAST: usize = 50;
 /// Relative standard error: scale and lean of an accelerometer, drag along the rotors' axis, a curve that is not the rotors'.
 /// Chosen.

@@ -63,9 +63,9 @@ pub enum DraftError {
     Layout(#[from] LayoutError),
 }
 
-/// Masses of multirotors, kg.
+/// Masses of multirotors, kg. Chosen; not measured.
 const MASSES_KG: (f64, f64) = (0.005, 500.0);
-/// Sizes of multirotors, m.
+/// Sizes of multirotors, m. Chosen; not measured.
 const SIZES_M: (f64, f64) = (0.03, 10.0);
 /// Pulse widths of none and of full command where no parameter states them, microseconds: the usual range.
 const PULSES_US: (f64, f64) = (1000.0, 2000.0);

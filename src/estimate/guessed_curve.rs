@@ -1,7 +1,7 @@
-//! What a guessed thrust curve does to an estimate.
+//! The influence of a guessed thrust curve on an estimate.
 //!
-//! A flight compares torque and acceleration; by commands alone, torque is the slope of the thrust curve times the difference
-//! of the commands. With another curve the same flight gives another inertia, and no residual tells.
+//! A flight compares torque and acceleration. If thrust comes from commands, torque is the slope of the thrust curve times the
+//! difference of the commands. Another curve gives another inertia from the same flight, and no residual shows it.
 
 use super::compensate::take_out;
 use super::result::{CURVE_IS_A_GUESS, Estimated};

@@ -1,4 +1,4 @@
-//! What is known of a vehicle before the flight, as far as estimates are judged by it.
+//! Prior knowledge of a vehicle by which estimates are judged.
 
 use super::theta::{THETA, Theta, theta_of};
 use crate::vehicle::{Anchor, Guess, Guessed, Vehicle};

@@ -2,13 +2,14 @@
 
 use crate::autopilot::Autopilot;
 use crate::recording::{Quantity, Recording, Stream};
-use crate::signals::{LEAST_FREE_S, Said, best};
+use crate::signals::{LEAST_FREE_S, ReportedState, best};
 use crate::stats::median;
 
 /// Command from which a motor does more than idle: autopilots let motors idle at up to this value. Chosen; not
 /// measured.
 const LEAST_COMMAND: f64 = 0.12;
 /// So many samples of a channel behind one another, other than its median, are no damage: single ones are.
+/// Chosen; not measured.
 const LEAST_CHANGED: usize = 3;
 /// What an output may be as a fraction of full scale, reversed ones and pulses of 0 included: the rest is damage.
 const OUTPUTS: std::ops::RangeInclusive<f64> = -1.0..=1.5;
@@ -96,7 +97,7 @@ pub(super) struct Before {
 /// When the vehicle of a recording was in the air: its rotors carry it, and neither does the autopilot say that it is disarmed
 /// or has landed nor, where it does not tell of landing, does the vehicle stand still.
 pub(super) fn airborne(recording: &Recording, commands: Option<&Stream>, before: &mut Before) -> Airborne {
-    let said = Said::of(recording);
+    let said = ReportedState::of(recording);
     let found = match (effort(recording, commands), said.words()) {
         (Some((effort, idle, from)), _) => {
             let flown = smoothed(&effort);
@@ -140,7 +141,12 @@ pub(super) fn airborne(recording: &Recording, commands: Option<&Stream>, before:
 }
 
 impl Airborne {
-    fn when(time_s: &[f64], said: &Said<'_>, from: &'static str, carries: impl Fn(usize) -> bool) -> Self {
+    fn when(
+        time_s: &[f64],
+        said: &ReportedState<'_>,
+        from: &'static str,
+        carries: impl Fn(usize) -> bool,
+    ) -> Self {
         let flown_s = spans(time_s, |i| carries(i) && said.may_be_off_ground(time_s[i]));
         let free_s = spans(time_s, |i| carries(i) && said.may_fly(time_s[i]));
         let seconds: f64 = free_s.iter().map(|(start_s, end_s)| end_s - start_s).sum();

@@ -3,7 +3,7 @@
 use super::airborne::{Before, airborne, normalized_commands};
 use super::excitation::ExcitationTally;
 use super::flown_rates::FlownRates;
-use super::foresee::Learnt;
+use super::forecast::Learnt;
 use super::inspection::{Excitation, FlightSummary, OffsetSummary, Segment};
 use super::motion::Motion;
 use crate::estimate::{Estimated, flights_apart};

@@ -10,7 +10,7 @@ const BLOCK_S: f64 = 1.0;
 /// Change of the lateness from which the host's clock was set, s: no link delays a message for so long. Chosen; not
 /// measured.
 const HOST_STEP_S: f64 = 10.0;
-/// Restarts that are kept; a log with more is broken.
+/// Restarts that are kept; a log with more is broken. Chosen; not measured.
 const KEPT_RESETS: usize = 1000;
 /// Largest standard error of a drift that is reported, parts per million. Chosen; not measured.
 const VAGUEST_PPM: f64 = 1000.0;

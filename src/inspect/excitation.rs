@@ -12,7 +12,7 @@ const HALF_WIDTH_S: f64 = 0.2;
 /// Width of the bins of spectra, Hz. Chosen; not measured.
 const BIN_HZ: f64 = 0.05;
 const BINS: usize = 100;
-/// Share of the power below the band's lower and upper end.
+/// Share of the power below the band's lower and upper end. Chosen; not measured.
 const BAND: (f64, f64) = (0.05, 0.95);
 /// Step of the series for spectra and periods, s. Chosen; not measured.
 const SERIES_STEP_S: f64 = 0.1;

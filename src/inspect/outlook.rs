@@ -2,7 +2,7 @@
 
 use super::evidence::Evidence;
 use super::inspection::Outlook;
-use super::lacking::lack;
+use super::missing_streams::lack;
 use crate::estimate::{
     Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scaling_mass, size_of,
 };

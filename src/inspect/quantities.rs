@@ -1,9 +1,9 @@
 //! What one may want to know of a vehicle, one entry a quantity: how well the log will tell it, or why not and what to do.
 
 use super::evidence::Evidence;
-use super::foresee::Foreseen;
+use super::forecast::Forecast;
 use super::inspection::Outlook;
-use super::lacking::{Lack, lack, remedy};
+use super::missing_streams::{Lack, lack, remedy};
 use super::outlook::judged;
 use super::quantity::{ExpectedParameter, QuantitySummary};
 use crate::autopilot::VehicleKind;
@@ -38,7 +38,7 @@ pub(super) struct Outcome<'a> {
     /// of the rigid body, in `Theta`'s order
     pub body: &'a [Outlook],
     /// of the liveliest window; `None` where that could not be tried
-    pub foreseen: Option<&'a Foreseen>,
+    pub foreseen: Option<&'a Forecast>,
     /// the liveliest window is not all of the flight
     pub at_most: bool,
 }
@@ -116,11 +116,8 @@ impl Outcome<'_> {
         let told = |part: &&Outlook| Some(format!("{}: {}", part.name, why(part)?));
         let first = missing.first().and_then(why);
         let is_of_all = missing.len() == asked.body.len() && missing.iter().all(|part| why(part) == first);
-        let reasons: Vec<String> = if is_of_all {
-            first.into_iter().collect()
-        } else {
-            missing.iter().filter_map(told).collect()
-        };
+        let reasons: Vec<String> =
+            if is_of_all { first.into_iter().collect() } else { missing.iter().filter_map(told).collect() };
         let at_most = self.at_most && by_window.is_some() && !expected.is_empty();
         let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
         let fly = reason.is_some().then_some(asked.fly);

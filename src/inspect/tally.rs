@@ -5,7 +5,7 @@ use std::sync::mpsc::sync_channel;
 use super::assess::{Assessment, Assessor};
 use super::clock::ClockTally;
 use super::evidence::Evidence;
-use super::foresee::{Foreseen, foresee};
+use super::forecast::{Forecast, forecast};
 use super::inspection::{FlightSummary, Inspection, Reading, Text, TextSummary, Timeline, VehicleSummary};
 use super::outlook::outlook;
 use super::parameters::Parameters;
@@ -22,7 +22,7 @@ use crate::signals::SignalsError;
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
 
-/// A window holds all of a flight where no more than this times its seconds can be used.
+/// A window holds all of a flight where no more than this times its seconds can be used. Chosen; not measured.
 const MOSTLY: f64 = 1.05;
 /// MAV_SEVERITY_WARNING; smaller is worse.
 const WARNING: u8 = 4;
@@ -278,11 +278,11 @@ impl Found {
         tally: &Tally,
         assessment: &mut Assessment,
         vehicle: Option<&Vehicle>,
-    ) -> Option<Foreseen> {
+    ) -> Option<Forecast> {
         let is_multirotor = self.kind.is_none_or(|kind| kind == VehicleKind::Multirotor);
         let (_, window) = assessment.liveliest.as_mut().filter(|_| is_multirotor)?;
         window.parameters.clone_from(tally.parameters.values());
-        match foresee(window, vehicle) {
+        match forecast(window, vehicle) {
             Ok(foreseen) => Some(foreseen),
             Err(Some(slow @ SignalsError::TooSlow { .. })) if vehicle.is_none() => {
                 assessment.refusal = Some(slow);
@@ -331,7 +331,7 @@ impl Found {
             streams: &self.streams,
             assessment: &assessment,
             vehicle,
-            assumed: foreseen.as_ref().and_then(Foreseen::assumed),
+            assumed: foreseen.as_ref().and_then(Forecast::assumed),
             contradictions: foreseen.as_ref().map_or(&[], |foreseen| &foreseen.contradictions),
             missing_curve: tally.parameters.missing_curve(self.autopilot),
             kind: self.kind,

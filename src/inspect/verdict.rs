@@ -2,7 +2,7 @@
 
 use super::evidence::Evidence;
 use super::inspection::{Outlook, Unflown, VehicleSummary};
-use super::lacking::{SOUND_COPY, lack};
+use super::missing_streams::{SOUND_COPY, lack};
 use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION};
 use crate::autopilot::VehicleKind;
 use crate::estimate::{POOR, contradicts_file, rescaled, rests_on_guessed_curve};

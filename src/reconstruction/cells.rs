@@ -13,13 +13,13 @@ use crate::vehicle::Vehicle;
 /// Height over the place of take-off at which a vehicle is in the air, m: on the ground it is carried, and the fit would explain
 /// that by drag.
 const AIRBORNE_M: f64 = 1.0;
-/// The same for flights that stay lower: share of the greatest height.
+/// The same for flights that stay lower: share of the greatest height. Chosen; not measured.
 const AIRBORNE_SHARE: f64 = 0.5;
-/// Left out at both ends of the part in the air, s: it still rises, or is about to land.
+/// Left out at both ends of the part in the air, s: it still rises, or is about to land. Chosen; not measured.
 const RISING_S: f64 = 0.5;
-/// Fewer cells than this teach nothing.
+/// Fewer cells than this teach nothing. Chosen; not measured.
 const LEAST_CELLS: usize = 200;
-/// Accelerometers read no less than this, m/s^2: the resolution of the messages.
+/// Accelerometers read no less than this, m/s^2: the resolution of the messages. Chosen; not measured.
 const LEAST_NOISE_M_S2: f64 = 0.003;
 
 /// A flight in cells of [`STEP_S`], body FLU and world NWU.

@@ -1,4 +1,4 @@
-//! The force problem of a flight: its states, its parameters with what is known of them, its residuals with their noise.
+//! The force problem of a flight: its states, its parameters with their priors, its residuals with their noise.
 
 use std::sync::Arc;
 
@@ -33,17 +33,18 @@ pub struct KnownLag {
     pub lag_std_s: f64,
 }
 
-/// Standard deviation of the lateness of the commands, s.
+/// Standard deviation of the lateness of the commands, s. Chosen; not measured.
 const LATE_STD_S: f64 = 0.002;
-/// Standard deviation of the lateness of the attitude, s.
+/// Standard deviation of the lateness of the attitude, s. Chosen; not measured.
 const LATE_ATTITUDE_STD_S: f64 = 0.01;
-/// Standard deviation of what stamps leave open of the lateness of the autopilot's velocity, s.
+/// Standard deviation of what stamps leave open of the lateness of the autopilot's velocity, s. Chosen; not measured.
 const LATE_VELOCITY_STD_S: f64 = 0.01;
-/// Standard deviation of the lateness of the receiver's velocity beside the one that the autopilot's velocity tells, s.
+/// Standard deviation of the lateness of the receiver's velocity beside the one that the autopilot's velocity tells, s. Chosen;
+/// not measured.
 const LATE_RECEIVER_STD_S: f64 = 0.05;
 /// A receiver's velocity has at least this much noise, m/s: its resolution, and what is slow in its errors.
 const RECEIVER_FLOOR_M_S: f64 = 0.03;
-/// Standard deviation of the accelerometer's bias, m/s^2.
+/// Standard deviation of the accelerometer's bias, m/s^2. Chosen; not measured.
 const BIAS_STD_M_S2: f64 = 0.3;
 
 /// The force problem of a flight with these effects.

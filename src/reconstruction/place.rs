@@ -4,7 +4,7 @@ use nalgebra::UnitQuaternion;
 
 use crate::signals::Grid;
 
-/// Length of a cell, s.
+/// Length of a cell, s. Chosen; not measured.
 pub const STEP_S: f64 = 0.04;
 
 /// An instant on a grid: the index before, the index after, and the share of the way to the latter.

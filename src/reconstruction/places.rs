@@ -1,4 +1,4 @@
-//! Where states and parameters stand in their vectors.
+//! Indices of states and parameters in their vectors.
 
 /// Where each part of a state begins.
 pub(super) const VELOCITY: usize = 0;

@@ -1,4 +1,4 @@
-//! What is estimated from a flight: its states, its parameters with what is known of them, its residuals.
+//! What is estimated from a flight: its states, its parameters with their priors, its residuals.
 
 use super::blocks::State;
 use super::residuals::Group;

@@ -1,4 +1,4 @@
-//! Residuals of neighbouring states: what a sensor, or the motion itself, says of them.
+//! Residuals between neighbouring states: from a sensor, or from the equation of motion.
 
 use nalgebra::SVector;
 

@@ -1,4 +1,4 @@
-//! What the sensors and the autopilot's estimate say of the states.
+//! Measurement equations of the sensors and of the autopilot's estimate.
 
 use std::sync::Arc;
 
@@ -11,9 +11,9 @@ use super::places::{BIAS, ERROR, LATE_ATTITUDE, LATE_RECEIVER, LATE_VELOCITY, TI
 use super::receiver::Seen;
 use super::residuals::{Residuals, Row};
 
-/// Share of the accelerometer that the autopilot's velocity integrates.
+/// Share of the accelerometer that the autopilot's velocity integrates. Chosen; not measured.
 const SHARED: f64 = 0.9;
-/// Its forgetting, 1/s.
+/// Its forgetting, 1/s. Chosen; not measured.
 const FORGET_1_S: f64 = 0.5;
 
 fn put(by_states: &mut Pair, at: usize, block: &Matrix3<f64>) {

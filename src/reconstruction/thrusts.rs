@@ -1,4 +1,4 @@
-//! Thrusts of the rotors in cells of time, behind any lag and lateness of their commands.
+//! Thrusts of the rotors in cells of time, after lag and delay of their commands.
 
 use super::place::{Place, STEP_S};
 use crate::physics::{ActuationLatency, MAX_ROTORS, delayed_thrusts_n};

@@ -1,7 +1,7 @@
-//! A stream while samples come to it.
+//! A stream during reading.
 
-use super::possible::most;
 use super::stream::{Stream, StreamKey};
+use super::value_range::most;
 
 /// What putting a stream's samples in order took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

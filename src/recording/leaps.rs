@@ -1,7 +1,7 @@
-//! Samples of a damaged log that leap away from those around them and back. What a log holds has no checksums: damage within the
-//! range of what a vehicle does is told by its neighbours alone.
+//! Single outliers in a damaged log. On-board logs have no checksums, so damage within the possible values shows only against the
+//! neighbouring samples.
 //!
-//! Only for logs that are known to be damaged: of a sound log no sample is left out.
+//! Only for logs that are known to be damaged: no sample of an undamaged log is left out.
 
 use std::collections::BTreeMap;
 

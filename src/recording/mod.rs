@@ -10,10 +10,10 @@ mod flight;
 mod growing;
 mod leaps;
 mod overlap;
-mod possible;
 mod quantity;
 mod statistics;
 mod stream;
+mod value_range;
 
 pub use builder::RecordingBuilder;
 pub use event::Event;

@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::said::Said;
+use super::reported_state::ReportedState;
 use crate::autopilot::{Autopilot, Outputs};
 use crate::note::{About, Note};
 use crate::recording::{ParameterChange, Recording};
 
-/// Changes that are told one by one.
+/// Changes that are told one by one. Chosen; not measured.
 const TOLD: usize = 8;
 
 /// Takes, of each parameter that changed and on which the way from command to thrust or the vehicle's build depends, the value
@@ -71,7 +71,7 @@ fn longest_value(
 
 /// When the vehicle was in the air by the autopilot's words, s; all the time where it says nothing of it.
 fn said_airborne(recording: &Recording) -> Vec<(f64, f64)> {
-    let said = Said::of(recording);
+    let said = ReportedState::of(recording);
     let Some(words) = said.words() else { return vec![(f64::NEG_INFINITY, f64::INFINITY)] };
     let pairs = words.time_s.windows(2).map(|pair| (pair[0], pair[1]));
     pairs.filter(|(from_s, _)| said.may_be_off_ground(*from_s)).collect()
@@ -133,7 +133,7 @@ pub fn changes_in_the_air(
                     "{}: from then on output {output} does not follow the mixer, and what it carries is taken for the motor's command",
                     told(change)
                 ),
-                None => format!("{}: {} is taken for the whole flight", told(change), short(value)),
+                None => format!("{}: {} is used for the whole flight", told(change), short(value)),
             };
             Note::warning(About::Actuators, text)
         })
@@ -205,12 +205,14 @@ mod tests {
         let texts: Vec<&str> = notes.iter().map(|note| note.text.as_str()).collect();
         assert_eq!(texts.len(), 4, "{texts:?}");
         assert!(
-            texts[0]
-                .starts_with("MOT_THST_EXPO changed from 0.65 to 0.5 at 34.2 s, in the air: 0.5 is taken"),
+            texts[0].starts_with("MOT_THST_EXPO changed from 0.65 to 0.5 at 34.2 s, in the air: 0.5 is used"),
             "{texts:?}"
         );
         assert!(texts[1].starts_with("SERVO1_FUNCTION changed from 33 to 34"), "{texts:?}");
-        assert!(texts[2].contains("34 to 1 at 38.0 s, in the air: from then on output 2 does not follow"), "{texts:?}");
+        assert!(
+            texts[2].contains("34 to 1 at 38.0 s, in the air: from then on output 2 does not follow"),
+            "{texts:?}"
+        );
         assert!(texts[3].starts_with("ATC_RAT_RLL_P") && !notes[3].is_warning(), "{texts:?}");
         assert_eq!(changes_in_the_air(Autopilot::ArduPilot, &changes, &[], &taken), []);
     }

@@ -1,8 +1,8 @@
-//! Whether the thrust of a vehicle file lifts its weight in a flight that the log shows.
+//! Check that the thrust of a vehicle file lifts its weight in a flight that the log shows.
 
 use super::SignalsError;
 use super::actuation::Actuation;
-use super::said::Said;
+use super::reported_state::ReportedState;
 use super::select::best;
 use super::usable::FLYING_SHARE;
 use crate::recording::{Quantity, Recording, Stream};
@@ -20,7 +20,7 @@ pub(super) fn too_little(
     actuation: &Actuation,
     vehicle: &Vehicle,
 ) -> Option<SignalsError> {
-    let said = Said::of(recording);
+    let said = ReportedState::of(recording);
     let stream = actuation.stream();
     let spans_s = stream.time_s.windows(2).map(|pair| (pair[0], pair[1] - pair[0]));
     let asked_s: f64 = spans_s.filter(|(t_s, _)| said.may_fly(*t_s)).map(|(_, step_s)| step_s).sum();
@@ -41,7 +41,7 @@ pub(super) fn too_little(
 }
 
 /// Time in which it moved while it may have flown, s.
-fn moving_s(stream: &Stream, said: &Said<'_>) -> f64 {
+fn moving_s(stream: &Stream, said: &ReportedState<'_>) -> f64 {
     let size = |index: usize| stream.sample(index).iter().map(|value| value * value).sum::<f64>().sqrt();
     let moved = |index: &usize| size(*index) > MOVES && said.may_fly(stream.time_s[*index]);
     let step_s =

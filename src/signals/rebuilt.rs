@@ -1,8 +1,7 @@
-//! Motor commands of a log that holds them too seldom, rebuilt from what the controller asked for.
+//! Motor commands that are logged at a low rate, rebuilt from the controller's torque and thrust setpoints.
 //!
-//! Both autopilots log their motors at 10 Hz unless asked otherwise, and the torque and thrust that their controllers ask
-//! for at 50 Hz and more. The allocation between them is linear in the thrusts: it is fitted on the samples that are there,
-//! and its error on them is told.
+//! By default, both autopilots log their motors at 10 Hz, and the torque and thrust setpoints of their controllers at 50 Hz or
+//! more. The allocation from setpoints to thrusts is linear. It is fitted to the logged samples, and its error is reported.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -21,7 +20,7 @@ const SAME_CYCLE_S: f64 = 0.006;
 const THRUST_GAP_S: f64 = 0.15;
 /// Commands that are no linear function of the setpoints any more: at their ends.
 const UNSATURATED: std::ops::Range<f64> = 0.02..0.98;
-/// Fewer pairs than this fit five coefficients a rotor badly.
+/// Fewer pairs than this fit five coefficients a rotor badly. Chosen; not measured.
 const LEAST_PAIRS: usize = 60;
 /// Share of the commands' variance that the setpoints must explain. PX4's logs have 0.999, with its parameters unchanged.
 const LEAST_EXPLAINED: f64 = 0.95;

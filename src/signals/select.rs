@@ -126,7 +126,7 @@ pub fn is_live(stream: &Stream) -> bool {
     })
 }
 
-/// A stream of fewer samples says nothing.
+/// A stream of fewer samples says nothing. Chosen; not measured.
 pub(super) const LEAST_SAMPLES: usize = 10;
 
 /// The refusal of a recording whose longest stream of a quantity that satisfies `fits` is too short to be used;
@@ -184,6 +184,7 @@ pub(super) fn best_of(
 }
 
 /// A faster inertial sensor says no more, Hz: of several that are fast, the one that filters least is best.
+/// Chosen; not measured.
 const ENOUGH_HZ: f64 = 100.0;
 
 /// A place on the earth, to a centimetre: only where nothing else tells the position.

@@ -1,7 +1,7 @@
 //! The instants of a flight that identification may use.
 
 use super::actuation::Actuation;
-use super::said::{LEAST_FREE_S, Said};
+use super::reported_state::{LEAST_FREE_S, ReportedState};
 use super::select::median_period_s;
 use super::{Grid, hold_onto};
 use crate::recording::{Recording, Stream};
@@ -89,7 +89,7 @@ pub(super) fn airborne_spans(
     vehicle: &Vehicle,
 ) -> Vec<(f64, f64)> {
     let needed = FLYING_SHARE * vehicle.body.mass_kg * vehicle.gravity_m_s2;
-    let words = Said::of(recording);
+    let words = ReportedState::of(recording);
     let free = carried_spans(actuation, needed, |t_s| words.may_fly(t_s));
     let seconds = |spans: &[(f64, f64)]| spans.iter().map(|(start, end)| end - start).sum::<f64>();
     if seconds(&free) >= LEAST_FREE_S {

@@ -12,6 +12,7 @@ const LEAST_STEPS: usize = 5;
 /// Share of the squares that a law must explain: a rotor's does 0.99 and more. Chosen.
 const LEAST_EXPLAINED: f64 = 0.95;
 /// Thrust below this share of the largest is not used: speeds are read badly there, and the scales' offset matters.
+/// Chosen; not measured.
 const LEAST_SHARE: f64 = 0.03;
 /// Largest thrusts of one rotor, N; largest speed, rad/s; torque per thrust, m. Beyond stands a wrong unit.
 const THRUSTS_N: (f64, f64) = (0.005, 5000.0);

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// Stretches of the series.
+/// Stretches of the series. Chosen; not measured.
 const STRETCHES: usize = 12;
 
 /// Chance of coefficients `theta` if nothing were there, by an F test with the scores of twelve stretches of the series

@@ -1,4 +1,4 @@
-//! The log of the ground station and the log of the vehicle, where both hold the same flight.
+//! The log of the ground station and the log of the vehicle, if both hold the same flight.
 
 use super::flight::{Flight, LoggedBy};
 use crate::note::{About, Note};

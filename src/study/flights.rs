@@ -10,7 +10,7 @@ use crate::log::{
 };
 use crate::note::{About, Note};
 use crate::recording::{Recording, shared_share};
-use crate::signals::{ConditionSettings, Said, Signals, settle_parameters};
+use crate::signals::{ConditionSettings, ReportedState, Signals, settle_parameters};
 use crate::text;
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
@@ -25,7 +25,7 @@ pub(super) const IDENTIFIED: Hold = Hold { seconds: 1800.0, numbers: 3_000_000 }
 /// What is explained of one log. Memory and time grow with the numbers: a log of an on-board profile holds more of them a second
 /// than telemetry.
 pub(super) const EXPLAINED: Hold = Hold { seconds: 480.0, numbers: 1_500_000 };
-/// Share of a hold-out's samples that may be in an explained flight: none are, but for chance.
+/// Share of a hold-out's samples that may be in an explained flight: none are, but for chance. Chosen; not measured.
 const MOST_SHARED: f64 = 0.02;
 
 /// How logs are read.
@@ -151,7 +151,7 @@ fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyErro
         "expected a log with times, got one whose messages carry no time of the vehicle's"
     } else if opened.report.ends_early() {
         "expected a whole log, got one that ends before its first sample"
-    } else if flights.all(|flight| Said::of(&flight.recording).never_armed()) {
+    } else if flights.all(|flight| ReportedState::of(&flight.recording).never_armed()) {
         "expected a flight, got the log of a vehicle that was never armed"
     } else {
         return Ok(());

@@ -1,4 +1,4 @@
-//! A log without a flight is told so, whatever else it lacks: in the words of `inspect`.
+//! A log without a flight is refused with the message of `inspect`, before any other check.
 
 use super::{ReadSettings, StudyError};
 use crate::inspect::{Unflown, inspect};

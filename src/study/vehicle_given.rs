@@ -224,9 +224,9 @@ pub fn with_thrust_stand(mut draft: Draft, table: &Path) -> Result<Draft, StudyE
     Ok(draft)
 }
 
-/// A largest thrust that is known better than this is from a flight.
+/// A largest thrust that is known better than this is from a flight. Chosen; not measured.
 const FLOWN: f64 = 0.1;
-/// Thrusts of a stand and of a flight that are further apart contradict each other.
+/// Thrusts of a stand and of a flight that are further apart contradict each other. Chosen; not measured.
 const APART: f64 = 1.25;
 
 /// A draft as a vehicle file, with where its values come from.

@@ -154,13 +154,15 @@ const LAYERS: &[(&str, &[&str])] = &[
             "plan",
         ],
     ),
+    // the logs and parameters of a vehicle on the ground: the dialogues of `fetch`, held over a link
+    ("onboard", &["note", "autopilot", "wire", "fetch", "link", "fly"]),
 ];
 
 /// The binary's own modules: they may use anything, and nothing of the library may use them.
 const BINARY: &[&str] = &["main", "cli", "commands"];
 
 /// Who may open a socket or name the runtime.
-const NETWORK: &[&str] = &["link", "replay", "fly", "sitl", "main", "cli", "commands"];
+const NETWORK: &[&str] = &["link", "replay", "fly", "onboard", "sitl", "main", "cli", "commands"];
 
 /// Who may print.
 const PRINT: &[&str] = &["main", "commands"];

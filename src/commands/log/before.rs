@@ -4,12 +4,12 @@ use std::time::Duration;
 
 use mavid::autopilot::LogAwaited;
 use mavid::fetch::Noted;
+use mavid::onboard;
 use mavid::wire::SystemId;
 
-use super::hint;
-use super::prepare::{agreed, changes_page, earlier, put_back_page, restart_now};
-use super::session::Session;
-use super::{preparing, state};
+use super::link::open_as;
+use super::prepare::{agreed, changes_page, earlier, expect_rates, put_back_page, restart_now};
+use super::{hint, state};
 use crate::cli::{FlyArgs, VehicleLinkArgs};
 use crate::commands::words::Word;
 use crate::commands::{CommandError, network, output};
@@ -67,18 +67,18 @@ fn failed(error: impl std::fmt::Display) -> CommandError {
 
 async fn set(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     let link = link_of(args, args.system_id);
-    let mut session = Session::open_as(&link, SystemId(args.station_id), BEFORE).await?;
+    let mut session = open_as(&link, SystemId(args.station_id), BEFORE).await?;
     let offer = session.offer().await?;
     let notes = state::notes(&session.known_as(&offer))?;
-    let prepared = preparing::look(&mut session, &notes).await?;
-    preparing::expect_rates(&session, &prepared)?;
+    let prepared = onboard::look(&mut session, &notes).await?;
+    expect_rates(&session, &prepared)?;
     let changes = &prepared.plan.changes;
     let what = changes_page(changes);
     if !changes.is_empty() {
-        preparing::change(&mut session, &prepared, changes, &notes).await?;
+        onboard::change(&mut session, &prepared, changes, &notes).await?;
     }
     let names: Vec<&str> = changes.iter().map(|change| change.parameter).collect();
-    if preparing::needs_restart(&session, &names) {
+    if onboard::needs_restart(&session, &names) {
         return Err(CommandError::Failure(format!(
             "not flown: {what} is set and counts after a restart of the autopilot: restart it, then give the same command \
              again (mavid does not restart it). Without a flight, {} puts it back",
@@ -108,7 +108,7 @@ async fn set(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
 
 async fn reminded(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     let link = link_of(args, args.system_id);
-    let mut session = Session::open_as(&link, SystemId(args.station_id), BEFORE).await?;
+    let mut session = open_as(&link, SystemId(args.station_id), BEFORE).await?;
     let offer = session.offer().await?;
     let notes = state::notes(&session.known_as(&offer))?;
     let mut before = BeforeFlight { system: Some(session.vehicle.system.0), ..BeforeFlight::default() };
@@ -118,10 +118,10 @@ async fn reminded(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     }
     output::message(&earlier(&link, &noted));
     if agreed("restore", "put it back now, before the flight")? {
-        let put_back = preparing::put_back(&mut session, &notes).await?;
+        let put_back = onboard::put_back(&mut session, &notes).await?;
         put_back_page(&put_back).lines().for_each(output::message);
     } else {
-        before.awaited = preparing::look(&mut session, &notes).await?.awaited;
+        before.awaited = onboard::look(&mut session, &notes).await?.awaited;
     }
     Ok(before)
 }
@@ -133,10 +133,10 @@ pub fn put_back(args: &FlyArgs, before: &BeforeFlight, tell: &mut impl FnMut(Wor
     }
     let link = link_of(args, before.system);
     let done = network::block_on(async {
-        let mut session = Session::open_as(&link, SystemId(args.station_id), AFTER).await?;
+        let mut session = open_as(&link, SystemId(args.station_id), AFTER).await?;
         let offer = session.offer().await?;
         let notes = state::notes(&session.known_as(&offer))?;
-        let put_back = preparing::put_back(&mut session, &notes).await?;
+        let put_back = onboard::put_back(&mut session, &notes).await?;
         Ok((put_back_page(&put_back), put_back.failed.is_empty()))
     });
     match done {

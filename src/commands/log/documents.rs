@@ -1,14 +1,11 @@
 //! What `mavid log` says, for programs and for people.
 
-use std::path::Path;
-
 use mavid::fetch::{Checked, Place, RemoteLog, local_name};
+use mavid::onboard::{Download, Listed, Session};
 use mavid::text;
 use serde::Serialize;
 
-use super::fetching::{Done, next, words};
 use super::hint::link_options;
-use super::session::Session;
 use crate::cli::VehicleLinkArgs;
 
 /// The document of `mavid log list`.
@@ -58,7 +55,7 @@ fn name(log: &RemoteLog) -> Option<String> {
 
 impl ListDocument {
     /// Of the logs of a vehicle.
-    pub fn new(session: &Session, protocol: &'static str, logs: &[RemoteLog], left_out: usize) -> Self {
+    pub fn new(session: &Session, listed: &Listed) -> Self {
         let line = |log: &RemoteLog| LogLine {
             id: log.id,
             name: name(log),
@@ -69,9 +66,9 @@ impl ListDocument {
             schema: 1,
             system: session.vehicle.system.0,
             autopilot: session.stack.id,
-            protocol,
-            logs: logs.iter().map(line).collect(),
-            left_out,
+            protocol: listed.protocol.id(),
+            logs: listed.logs.iter().map(line).collect(),
+            left_out: listed.left_out,
         }
     }
 
@@ -107,7 +104,7 @@ impl ListDocument {
 
 impl FetchDocument {
     /// Of a log that was fetched.
-    pub fn new(session: &Session, log: &RemoteLog, done: &Done) -> Self {
+    pub fn new(session: &Session, log: &RemoteLog, done: &Download) -> Self {
         let (checked, crc32) = match done.checked {
             Checked::Sum(sum) => ("crc32", Some(sum)),
             Checked::Length | Checked::NoAnswer => ("length", None),
@@ -130,7 +127,7 @@ impl FetchDocument {
 }
 
 /// A log that was fetched, for people.
-pub fn page(done: &Done) -> String {
+pub fn page(done: &Download) -> String {
     let seconds = done.took.as_secs_f64().max(1e-3);
     let rate_kb_s = (done.bytes - done.resumed.min(done.bytes)) as f64 / seconds / 1e3;
     let resumed = match done.resumed {
@@ -138,13 +135,28 @@ pub fn page(done: &Done) -> String {
         bytes => format!(" after {:.2} MB of an earlier download", bytes as f64 / 1e6),
     };
     format!(
-        "{}: {:.2} MB in {seconds:.1} s by {}, {rate_kb_s:.0} kB/s{resumed}\n{}\n{}",
+        "{}: {:.2} MB in {seconds:.1} s by {}, {rate_kb_s:.0} kB/s{resumed}\n{}\nnext: mavid inspect {}",
         text::path(&done.path),
         done.bytes as f64 / 1e6,
         done.protocol.words(),
-        words(done.checked),
-        next(Path::new(&done.path))
+        checked_words(done.checked),
+        text::path(&done.path)
     )
+}
+
+/// How a log was checked, in words.
+pub(super) fn checked_words(checked: Checked) -> String {
+    match checked {
+        Checked::Sum(sum) => format!("its length and checksum ({sum:#010x}) are those of the vehicle"),
+        Checked::Length => "its length is that of the vehicle; the vehicle offers no checksum".to_owned(),
+        Checked::NoAnswer => {
+            "its length is that of the vehicle; the vehicle did not answer for the checksum".to_owned()
+        }
+        Checked::Grown(bytes) => format!(
+            "the vehicle still writes on it ({bytes} bytes now): this is what there was when the download began, and no \
+             checksum is of it"
+        ),
+    }
 }
 
 #[cfg(test)]

@@ -4,16 +4,17 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use mavid::fetch::Wanted;
+use mavid::onboard::{self, Flow, Progress};
 use mavid::wire::SystemId;
 
 use super::before::{AFTER, link_of};
-use super::fetching::{self, Progress, words};
+use super::documents::checked_words;
 use super::hint;
-use super::session::{Flow, Session};
+use super::link::open_as;
 use crate::cli::{FlyArgs, VehicleLinkArgs};
 use crate::commands::live::Work;
 use crate::commands::words::Word;
-use crate::commands::{CommandError, network};
+use crate::commands::{CommandError, network, output};
 
 /// A download without `--fetch-log` is made only if it takes no longer than this.
 const AT_MOST: Duration = Duration::from_secs(60);
@@ -93,9 +94,10 @@ async fn fetched(
     fetching: Fetching,
     tell: &mut impl FnMut(Word),
 ) -> Result<Option<PathBuf>, CommandError> {
-    let mut session = Session::open_as(link, station, AFTER).await?;
+    let mut session = open_as(link, station, AFTER).await?;
     let offer = session.offer().await?;
-    let (_, logs, _) = fetching::list(&mut session, (&offer, None), Wanted::Last).await?;
+    let logs = onboard::list(&mut session, (&offer, None), Wanted::Last).await?.logs;
+    output::folder(folder)?;
     let mut path = None;
     match logs.last() {
         None => tell(Word::Message("the vehicle wrote no log of its own".to_owned())),
@@ -118,7 +120,7 @@ async fn fetched(
                     }
                 }
             };
-            let done = fetching::fetch(&mut session, (&offer, None), log, (folder, &mut watch)).await?;
+            let done = onboard::fetch(&mut session, (&offer, None), log, (folder, &mut watch)).await?;
             if let Some(done) = done {
                 let took = done.took.as_secs_f64();
                 tell(Word::Message(format!(
@@ -126,7 +128,7 @@ async fn fetched(
                     mavid::text::path(&done.path),
                     done.bytes as f64 / 1e6,
                     done.protocol.words(),
-                    words(done.checked)
+                    checked_words(done.checked)
                 )));
                 path = Some(done.path);
             }

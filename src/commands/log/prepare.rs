@@ -4,13 +4,12 @@ use std::io::{self, BufRead, IsTerminal};
 
 use mavid::autopilot::{LogAwaited, LogChange};
 use mavid::fetch::Noted;
+use mavid::onboard::{self, LoggingState, PutBack, Session};
 use mavid::text;
 use serde::Serialize;
 
-use super::hint;
-use super::preparing::{self, Prepared, PutBack};
-use super::session::Session;
-use super::state;
+use super::link::open;
+use super::{hint, state};
 use crate::cli::{LogPrepareArgs, VehicleLinkArgs};
 use crate::commands::{CommandError, Outcome, output};
 
@@ -22,7 +21,7 @@ const ALSO_YES: [&str; 2] = ["y", "yes"];
 const NO: [&str; 2] = ["n", "no"];
 
 /// The document.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct Document {
     schema: u32,
     system: u32,
@@ -68,18 +67,26 @@ struct RestoredLine {
     value: f64,
 }
 
+impl Document {
+    /// Of a vehicle of which nothing else is to be said.
+    fn of(session: &Session) -> Self {
+        let (system, autopilot) = (session.vehicle.system.0, session.stack.id);
+        Self { schema: 1, system, autopilot, ..Self::default() }
+    }
+}
+
 /// Runs the verb.
 pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandError> {
-    let mut session = Session::open(&args.link).await?;
+    let mut session = open(&args.link).await?;
     let offer = session.offer().await?;
     let notes = state::notes(&session.known_as(&offer))?;
     notes.read().map_err(|error| CommandError::Input(error.to_string()))?;
     let place = text::path(&notes.path());
     if args.restore {
-        let put_back = preparing::put_back(&mut session, &notes).await?;
+        let put_back = onboard::put_back(&mut session, &notes).await?;
         return restored(json, &session, &put_back, place);
     }
-    let prepared = preparing::look(&mut session, &notes).await?;
+    let prepared = onboard::look(&mut session, &notes).await?;
     let changes = &prepared.plan.changes;
     if !json {
         output::text(&says(&session, &prepared))?;
@@ -89,10 +96,10 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
     }
     let set = !changes.is_empty() && (args.set_logging || !json && agreed(YES, "set this")?);
     if set {
-        preparing::change(&mut session, &prepared, changes, &notes).await?;
+        onboard::change(&mut session, &prepared, changes, &notes).await?;
     }
     let names: Vec<&str> = changes.iter().map(|change| change.parameter).collect();
-    let restart = set && preparing::needs_restart(&session, &names);
+    let restart = set && onboard::needs_restart(&session, &names);
     if json {
         let line = |change: &LogChange| ChangeLine {
             parameter: change.parameter,
@@ -102,18 +109,13 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
             set,
         };
         output::json(&Document {
-            schema: 1,
-            system: session.vehicle.system.0,
-            autopilot: session.stack.id,
             logs: prepared.plan.logs.clone(),
             changes: changes.iter().map(line).collect(),
             unknown: prepared.plan.unknown.clone(),
-            restored: Vec::new(),
-            left: Vec::new(),
-            not_restored: Vec::new(),
             awaiting_restart: prepared.awaited.iter().map(|awaited| awaited.parameter).collect(),
             notes: (set || !prepared.noted.is_empty()).then_some(place),
             restart: restart || !prepared.awaited.is_empty(),
+            ..Document::of(&session)
         })?;
     } else if set {
         output::text(&set_page(&args.link, &place, restart))?;
@@ -121,7 +123,7 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
         output::text("nothing is changed; --set-logging sets it")?;
     }
     if args.set_logging {
-        preparing::expect_rates(&session, &prepared)?;
+        expect_rates(&session, &prepared)?;
     }
     Ok(Outcome::Done)
 }
@@ -136,8 +138,8 @@ fn set_page(link: &VehicleLinkArgs, place: &str, restart: bool) -> String {
     page
 }
 
-fn says(session: &Session, prepared: &Prepared) -> String {
-    let Prepared { plan, awaited, unsure, noted, .. } = prepared;
+fn says(session: &Session, prepared: &LoggingState) -> String {
+    let LoggingState { plan, awaited, unsure, noted, .. } = prepared;
     let (changes, unknown) = (&plan.changes, &plan.unknown);
     let until = if awaited.is_empty() { "" } else { " until the autopilot is restarted" };
     let mut lines =
@@ -186,6 +188,18 @@ pub fn restart_now(awaited: &[LogAwaited]) -> String {
     )
 }
 
+/// Fails where the vehicle did not answer for what sets the rates of its log: that was to be set.
+pub fn expect_rates(session: &Session, state: &LoggingState) -> Result<(), CommandError> {
+    let unknown = session.stack.rates_unknown(&state.plan).join(", ");
+    if unknown.is_empty() {
+        return Ok(());
+    }
+    Err(CommandError::Failure(format!(
+        "--set-logging: expected an answer for {unknown}, which sets the rates of the log, the vehicle gave none: it is not set. \
+         Try again on a better link, or set it with another ground station"
+    )))
+}
+
 /// What is changed, for people.
 pub fn changes_page(changes: &[LogChange]) -> String {
     let one =
@@ -216,7 +230,7 @@ pub fn agreed(word: &str, what: &str) -> Result<bool, CommandError> {
     let agrees = answer == word || ALSO_YES.contains(&answer.as_str());
     if !agrees && !answer.is_empty() && !NO.contains(&answer.as_str()) {
         output::message(&format!(
-            "expected {word}, y or n, got {}: that is taken for no",
+            "expected {word}, y or n, got {}: treated as no",
             text::excerpt(&answer, 20)
         ));
     }
@@ -231,27 +245,18 @@ fn restored(
 ) -> Result<Outcome, CommandError> {
     if json {
         let line = |name: &str, value: f64| RestoredLine { parameter: name.to_owned(), value };
+        let not_restored = |(noted, why): &(Noted, String)| NotRestored {
+            parameter: noted.name.clone(),
+            value: noted.found,
+            why: why.clone(),
+        };
         output::json(&Document {
-            schema: 1,
-            system: session.vehicle.system.0,
-            autopilot: session.stack.id,
-            logs: Vec::new(),
-            changes: Vec::new(),
-            unknown: Vec::new(),
             restored: put_back.done.iter().map(|noted| line(&noted.name, noted.found)).collect(),
             left: put_back.left.iter().map(|(noted, now)| line(&noted.name, *now)).collect(),
-            not_restored: put_back
-                .failed
-                .iter()
-                .map(|(noted, why)| NotRestored {
-                    parameter: noted.name.clone(),
-                    value: noted.found,
-                    why: why.clone(),
-                })
-                .collect(),
-            awaiting_restart: Vec::new(),
+            not_restored: put_back.failed.iter().map(not_restored).collect(),
             notes: (!put_back.failed.is_empty()).then(|| place.clone()),
             restart: put_back.restart,
+            ..Document::of(session)
         })?;
     } else {
         output::text(&put_back_page(put_back))?;

@@ -1,11 +1,11 @@
 //! The runs of `mavid log list` and `mavid log fetch`.
 
 use mavid::fetch::{Offer, RemoteLog, Wanted};
+use mavid::onboard::{self, Flow, Progress, Session};
 
 use super::documents::{FetchDocument, ListDocument, page};
-use super::fetching::Progress;
-use super::session::{Flow, Session};
-use super::{fetching, prepare, state};
+use super::link::open;
+use super::{prepare, state};
 use crate::cli::{LogArgs, LogFetchArgs, LogListArgs, LogVerb, VehicleLinkArgs};
 use crate::commands::progress::bytes_bar;
 use crate::commands::standard_error::StandardError;
@@ -28,12 +28,12 @@ pub fn run(json: bool, stderr: &StandardError, args: &LogArgs) -> Result<Outcome
 }
 
 async fn list(json: bool, args: &LogListArgs) -> Result<Outcome, CommandError> {
-    let mut session = Session::open(&args.link).await?;
+    let mut session = open(&args.link).await?;
     let offer = session.offer().await?;
     remind(&args.link, &session, &offer);
     let asked = args.protocol.map(Into::into);
-    let (protocol, logs, left_out) = fetching::list(&mut session, (&offer, asked), Wanted::All).await?;
-    let document = ListDocument::new(&session, protocol.id(), &logs, left_out);
+    let listed = onboard::list(&mut session, (&offer, asked), Wanted::All).await?;
+    let document = ListDocument::new(&session, &listed);
     if json {
         output::json(&document)?
     } else {
@@ -43,12 +43,13 @@ async fn list(json: bool, args: &LogListArgs) -> Result<Outcome, CommandError> {
 }
 
 async fn fetch(json: bool, stderr: &StandardError, args: &LogFetchArgs) -> Result<Outcome, CommandError> {
-    let mut session = Session::open(&args.link).await?;
+    let mut session = open(&args.link).await?;
     let offer = session.offer().await?;
     remind(&args.link, &session, &offer);
     let wanted = if args.id.is_some() { Wanted::All } else { Wanted::Last };
     let asked = args.protocol.map(Into::into);
-    let (_, logs, _) = fetching::list(&mut session, (&offer, asked), wanted).await?;
+    let logs = onboard::list(&mut session, (&offer, asked), wanted).await?.logs;
+    output::folder(&args.out)?;
     let log = chosen(&logs, args.id)?;
     let bar = stderr.bar(bytes_bar(log.size));
     let mut watch = |progress: Progress| {
@@ -59,7 +60,7 @@ async fn fetch(json: bool, stderr: &StandardError, args: &LogFetchArgs) -> Resul
         }
         Flow::On
     };
-    let fetched = fetching::fetch(&mut session, (&offer, asked), log, (&args.out, &mut watch)).await;
+    let fetched = onboard::fetch(&mut session, (&offer, asked), log, (&args.out, &mut watch)).await;
     bar.finish_and_clear();
     let Some(done) = fetched? else {
         return Err(CommandError::Failure("the download did not come to its end".to_owned()));

@@ -46,7 +46,7 @@ pub(super) fn flown_again(
             let again = autopilot_flight(recording, &model, nominal).map_err(|error| named(&error))?;
             match divergence(&recorded, &again, span_s(ready)) {
                 Some(how) => Err(named(&format!(
-                    "the simulation of the {name} leaves the flight: {how}; its errors would be no predictions"
+                    "the simulation of the {name} diverges from the flight: {how}; its errors say nothing about the model"
                 ))),
                 None => Ok(recorded.square_errors(&again, span_s(ready))),
             }

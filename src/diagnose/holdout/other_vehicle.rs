@@ -206,8 +206,8 @@ fn by_what_is_left(
     let (channel, ratio) = ratios.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let channel = CHANNEL_NAMES[channel];
     let reason = format!(
-        "{whose}, or it holds something that the others do not: even a fit of its own leaves {ratio:.1} times as much of \
-         {channel} there as here"
+        "{whose}, or it contains something that the others do not: even after its own fit, the residual of {channel} is \
+         {ratio:.1} times the one here"
     );
     let by = Difference::Residual { channel, ratio };
     Some(OtherVehicle { by, reason })

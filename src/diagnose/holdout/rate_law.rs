@@ -24,7 +24,7 @@ const FASTEST_1_S: f64 = 50.0;
 /// Decay to start from, 1/s. Chosen; not measured.
 const START_1_S: f64 = 2.0;
 const PASSES: usize = 25;
-/// A step below this share of the values' size ends the fit.
+/// A step below this share of the values' size ends the fit. Chosen; not measured.
 const CONVERGED: f64 = 1e-4;
 
 /// What the law is fitted to: a flight with the torque of the model along it (body FLU, N m, one an instant) and the inertia in

@@ -141,7 +141,7 @@ fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
         } else {
             match own {
                 None if present.is_share_at_hubs(slot) && !fitted.rows.compares_torques => {
-                    "it shows only in torques, and commands or body rates are logged too seldom to compare them".to_owned()
+                    "it shows only in torques, and commands or body rates are logged at too low a rate to compare them".to_owned()
                 }
                 None => "nothing in this flight excites it".to_owned(),
                 Some(own) if own < OWN => {

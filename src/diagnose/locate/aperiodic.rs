@@ -2,8 +2,8 @@
 //! low-frequency power than a sensor's (red noise), gusts; and lack of fit for flights without a period.
 
 use super::super::channels::{AXES, Channels, SECOND};
-use super::super::felt::may_feel;
 use super::super::fit::Fitted;
+use super::super::measured_force::may_feel;
 use super::super::signature::EffectTerm;
 use super::super::trace::Trace;
 use super::gust::{GustFound, gust};

@@ -5,8 +5,8 @@
 //! name: it is tested on the residual of the names, and compared with their part.
 
 use super::super::channels::{AXES, CHANNELS, Channels, channels};
-use super::super::felt::may_feel;
 use super::super::fit::Fitted;
+use super::super::measured_force::may_feel;
 use super::super::trace::Trace;
 use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_SIDEWAYS};
 use crate::stats::quantile;

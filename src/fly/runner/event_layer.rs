@@ -96,7 +96,7 @@ where
             scope.find_map(|span| flights.get(&span.id()).cloned())
         };
         if let Some(feed) = feed {
-            let mut said = Said::default();
+            let mut said = EventText::default();
             event.record(&mut said);
             feed.write(said.note(*event.metadata().level()));
         }
@@ -138,13 +138,13 @@ fn locked(flights: &Mutex<HashMap<Id, Feed>>) -> MutexGuard<'_, HashMap<Id, Feed
 
 /// The fields of a note, as they are read from its event.
 #[derive(Debug, Default)]
-struct Said {
+struct EventText {
     time_s: f64,
     kind: String,
     text: String,
 }
 
-impl Said {
+impl EventText {
     fn note(self, level: tracing::Level) -> Note {
         let level = match level {
             tracing::Level::ERROR => Level::Error,
@@ -155,7 +155,7 @@ impl Said {
     }
 }
 
-impl Visit for Said {
+impl Visit for EventText {
     fn record_f64(&mut self, field: &Field, value: f64) {
         if field.name() == "time_s" {
             self.time_s = value;

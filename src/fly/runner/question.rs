@@ -1,6 +1,7 @@
 //! What the checks before the flight are made of, once all of it is known. Judging it takes a moment, in which the flight goes
 //! on.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use crate::autopilot::LogAwaited;
@@ -22,7 +23,7 @@ pub(super) struct Told {
 /// All that is judged.
 #[derive(Debug)]
 pub(super) struct Question {
-    path: FlightPath,
+    path: Arc<FlightPath>,
     origin_m: Vector3<f64>,
     stand_m: Option<Vector3<f64>>,
     vehicle: Vehicle,

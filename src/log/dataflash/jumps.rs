@@ -2,7 +2,7 @@
 
 /// What one kind of message has said.
 #[derive(Debug, Clone, Copy)]
-struct Said {
+struct Reported {
     message: u8,
     offsets_m: [f64; 2],
     /// other offsets, until the next message repeats them, and when they came: a single message may be damaged
@@ -11,7 +11,7 @@ struct Said {
 
 /// The jumps so far.
 #[derive(Debug, Default)]
-pub(super) struct Jumps(Vec<Said>);
+pub(super) struct Jumps(Vec<Reported>);
 
 impl Jumps {
     /// The clock began anew.
@@ -23,7 +23,7 @@ impl Jumps {
     /// before the log began.
     pub(super) fn take(&mut self, message: u8, offsets_m: [f64; 2], time_s: f64) -> Option<f64> {
         let Some(said) = self.0.iter_mut().find(|said| said.message == message) else {
-            self.0.push(Said { message, offsets_m, doubted: None });
+            self.0.push(Reported { message, offsets_m, doubted: None });
             return None;
         };
         if said.offsets_m == offsets_m {
@@ -32,7 +32,7 @@ impl Jumps {
         }
         match said.doubted {
             Some((doubted_m, since_s)) if doubted_m == offsets_m => {
-                *said = Said { offsets_m, doubted: None, ..*said };
+                *said = Reported { offsets_m, doubted: None, ..*said };
                 Some(since_s)
             }
             _ => {

@@ -1,42 +1,36 @@
 //! The effects that the program knows, and how they are made by name.
 
-use super::{
-    AngularDamping, BatterySag, BladeFlapping, CeilingEffect, ComOffset, FrameMisalignment, GroundEffect,
-    Gust, ImuMisalignment, ImuOffset, Inflow, LinearDrag, MassChange, MotorLag, QuadraticDrag, RotorInertia,
-    SlungLoad, SteadyWind, Tether, ThrustCurve, ThrustTilt, TranslationalLift, TransportDelay, VortexRing,
-    WeakRotor,
-};
 use crate::physics::{ActiveEffect, Bounds, Effect, Parameter, PhysicsError};
 use crate::text::compact;
 use crate::vehicle::VehicleSize;
 
 /// All effects that the program knows.
 pub static ALL: &[&dyn Effect] = &[
-    &LinearDrag,
-    &QuadraticDrag,
-    &GroundEffect,
-    &CeilingEffect,
-    &MotorLag,
-    &TransportDelay,
-    &ThrustCurve,
-    &BatterySag,
-    &WeakRotor,
-    &ComOffset,
-    &ThrustTilt,
-    &RotorInertia,
-    &AngularDamping,
-    &BladeFlapping,
-    &Inflow,
-    &TranslationalLift,
-    &SteadyWind,
-    &Gust,
-    &SlungLoad,
-    &MassChange,
-    &ImuMisalignment,
-    &ImuOffset,
-    &FrameMisalignment,
-    &Tether,
-    &VortexRing,
+    &super::LinearDrag,
+    &super::QuadraticDrag,
+    &super::GroundEffect,
+    &super::CeilingEffect,
+    &super::MotorLag,
+    &super::TransportDelay,
+    &super::ThrustCurve,
+    &super::BatterySag,
+    &super::WeakRotor,
+    &super::ComOffset,
+    &super::ThrustTilt,
+    &super::RotorInertia,
+    &super::AngularDamping,
+    &super::BladeFlapping,
+    &super::Inflow,
+    &super::TranslationalLift,
+    &super::SteadyWind,
+    &super::Gust,
+    &super::SlungLoad,
+    &super::MassChange,
+    &super::ImuMisalignment,
+    &super::ImuOffset,
+    &super::FrameMisalignment,
+    &super::Tether,
+    &super::VortexRing,
 ];
 
 /// The effect of this identifier.

@@ -131,7 +131,7 @@ fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
         (table(&caption, &["parameter", "value|", "unit"], &rows))
         @for other in &effect.confusable_with {
             (note(&format!(
-                "May be taken for {} ({}): {}.",
+                "Confusable with {} ({}): {}.",
                 called(other.id), other.id, apart(other.distinguishability)
             )))
         }

@@ -67,7 +67,7 @@ fn effect_lines(page: &mut String, study: &ExplainStudy, effect: &Named) {
         let apart = other
             .distinguishability
             .map_or(String::new(), |apart| format!(": {apart:.1} standard deviations apart in this flight"));
-        let _ = writeln!(page, "    may be taken for {} ({}){apart}", called(other.id), other.id);
+        let _ = writeln!(page, "    confusable with {} ({}){apart}", called(other.id), other.id);
     }
 }
 

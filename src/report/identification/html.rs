@@ -43,7 +43,7 @@ fn answer(study: &IdentifyStudy) -> String {
         parts.push(format!("{} kg m^2", inertia.join(", ")));
     }
     if let Some(with) = &study.with {
-        let found = with.together.effects.iter().filter(|effect| effect.is_significant());
+        let found = with.joint.effects.iter().filter(|effect| effect.is_significant());
         parts.extend(found.map(effect_words));
     }
     let good = verdict(study, study.body());
@@ -137,7 +137,7 @@ fn along_the_flight(study: &IdentifyStudy) -> Markup {
 
 fn effects(study: &IdentifyStudy) -> Markup {
     let Some(with) = &study.with else { return Markup::default() };
-    let content = html! { @for of in &with.together.effects { (effect(of)) } };
+    let content = html! { @for of in &with.joint.effects { (effect(of)) } };
     section("Effects", &content)
 }
 
@@ -161,7 +161,7 @@ fn effect(of: &EffectFound) -> Markup {
 fn rigid_body(study: &IdentifyStudy) -> Markup {
     let best = &study.identification.best;
     let nominal = theta_of(&study.vehicle.body);
-    let without = study.with.as_ref().map(|with| &with.together.body_before.parameters);
+    let without = study.with.as_ref().map(|with| &with.joint.body_before.parameters);
     let rows: Vec<Vec<Cell>> = study
         .body()
         .parameters

@@ -40,14 +40,14 @@ pub fn identified_model(study: &IdentifyStudy) -> Result<String, ConfigError> {
 
 /// The vehicle with the effects that were identified together with it.
 fn model_with(study: &IdentifyStudy, with: &WithEffects) -> Result<String, ConfigError> {
-    let together = &with.together;
-    let mut text = vehicle_to_toml(&together.vehicle)?;
-    text.push_str(&effect_tables(&together.acting));
-    let ids: Vec<&str> = together.effects.iter().map(|effect| effect.effect.id()).collect();
+    let joint = &with.joint;
+    let mut text = vehicle_to_toml(&joint.vehicle)?;
+    text.push_str(&effect_tables(&joint.acting));
+    let ids: Vec<&str> = joint.effects.iter().map(|effect| effect.effect.id()).collect();
     let _ = writeln!(text, "\n[identified]\nmethod = \"WEAK\"\nwith = {ids:?}");
     let _ = writeln!(text, "# what the flight did not determine keeps its nominal value in [body]");
-    text.push_str(&identified_entries(&together.body, together.scale.as_ref()));
-    let latency = &together.latency;
+    text.push_str(&identified_entries(&joint.body, joint.scale.as_ref()));
+    let latency = &joint.latency;
     let _ = if latency.is_determined() {
         let (total_s, std_s) = (latency.total_s, latency.std_s);
         writeln!(text, "latency = {{ value = {total_s:e}, std = {std_s:e}, unit = \"s\" }}")
@@ -55,7 +55,7 @@ fn model_with(study: &IdentifyStudy, with: &WithEffects) -> Result<String, Confi
         writeln!(text, "{}", not_determined("latency", NO_LATENCY))
     };
     text.push_str(&correlation_lines(&study.correlation()));
-    for effect in &together.effects {
+    for effect in &joint.effects {
         let _ = writeln!(text, "\n[identified.effects.{}]\nz = {:e}", effect.effect.id(), effect.z);
         for parameter in &effect.parameters {
             let _ = writeln!(text, "{}", effect_entry(parameter));

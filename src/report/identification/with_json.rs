@@ -80,30 +80,30 @@ struct Used {
 
 /// As JSON.
 pub(super) fn with_values(with: &WithEffects) -> With {
-    let together = &with.together;
-    let latency = &together.latency;
+    let joint = &with.joint;
+    let latency = &joint.latency;
     let determined = |value: f64| latency.is_determined().then_some(value);
-    let Correlation { names: correlation_of, rows: correlation } = Correlation::of_fit(&together.after);
+    let Correlation { names: correlation_of, rows: correlation } = Correlation::of_fit(&joint.after);
     With {
-        effects: together.effects.iter().map(effect_value).collect(),
-        parameters: values(&together.body),
-        parameters_without: values(&together.body_before),
-        thrust: together.scale.as_ref().map(thrust),
+        effects: joint.effects.iter().map(effect_value).collect(),
+        parameters: values(&joint.body),
+        parameters_without: values(&joint.body_before),
+        thrust: joint.scale.as_ref().map(thrust),
         latency: Latency {
             value: determined(latency.total_s),
             std: determined(latency.std_s),
             unit: "s",
             delay_s: determined(latency.parts.delay_s),
             lag_s: determined(latency.parts.lag_s),
-            named: together.latency_named,
+            named: joint.latency_named,
         },
         misfit: with
             .misfits()
             .into_iter()
             .map(|of| (of.name, MisfitValue { without: of.without, with: of.with, unit: of.unit }))
             .collect(),
-        made_physical: together.physical == Physical::Moved,
-        warnings: physical(together.physical).into_iter().collect(),
+        made_physical: joint.physical == Physical::Moved,
+        warnings: physical(joint.physical).into_iter().collect(),
         correlation_of,
         correlation,
         flights: with

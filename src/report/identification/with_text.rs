@@ -10,8 +10,8 @@ use super::words::{beyond, flight_lines, number, physical};
 
 /// Effects and rigid body, identified together.
 pub(super) fn with_text(study: &IdentifyStudy, with: &WithEffects) -> String {
-    let together = &with.together;
-    let ids: Vec<&str> = together.effects.iter().map(|effect| effect.effect.id()).collect();
+    let joint = &with.joint;
+    let ids: Vec<&str> = joint.effects.iter().map(|effect| effect.effect.id()).collect();
     let mut doubts = study.doubts().join("; ");
     if !doubts.is_empty() {
         doubts = format!("doubtful: {doubts}; ");
@@ -21,7 +21,7 @@ pub(super) fn with_text(study: &IdentifyStudy, with: &WithEffects) -> String {
         study.vehicle.name,
         ids.join(", ")
     );
-    for effect in &together.effects {
+    for effect in &joint.effects {
         let _ = writeln!(page, "  {}: {}", effect.effect.id(), evidence(effect));
     }
     let _ = writeln!(
@@ -30,17 +30,17 @@ pub(super) fn with_text(study: &IdentifyStudy, with: &WithEffects) -> String {
         "parameter", "value", "std error", "without them", "nominal"
     );
     let nominal = theta_of(&study.vehicle.body);
-    let bodies = together.body.parameters.iter().zip(&together.body_before.parameters);
+    let bodies = joint.body.parameters.iter().zip(&joint.body_before.parameters);
     for (index, (with, without)) in bodies.enumerate() {
         let _ = writeln!(page, "  {}", body_line(with, without, nominal[index]));
     }
-    for effect in &together.effects {
+    for effect in &joint.effects {
         for parameter in &effect.parameters {
             let _ = writeln!(page, "  {}", effect_line(effect, parameter));
         }
     }
-    page.push_str(&scale_line(together));
-    if let Some(sentence) = physical(together.physical) {
+    page.push_str(&scale_line(joint));
+    if let Some(sentence) = physical(joint.physical) {
         let _ = writeln!(page, "  {sentence}");
     }
     let _ = writeln!(page, "\n  {:<26}{:>13}{:>13}  unit", "misfit, rms", "without them", "with them");
@@ -48,8 +48,8 @@ pub(super) fn with_text(study: &IdentifyStudy, with: &WithEffects) -> String {
         let _ = writeln!(page, "  {name:<26}{:>13}{:>13}  {unit}", number(without), number(with));
     }
     page.push('\n');
-    let latency = &together.latency;
-    let how = if together.latency_named { "kept as the named kind" } else { "estimated with them" };
+    let latency = &joint.latency;
+    let how = if joint.latency_named { "kept as the named kind" } else { "estimated with them" };
     let _ = if latency.is_determined() {
         let (total_ms, std_ms) = (1e3 * latency.total_s, 1e3 * latency.std_s);
         writeln!(page, "  actuation latency {total_ms:.1} +- {std_ms:.1} ms, {how}")
@@ -61,8 +61,8 @@ pub(super) fn with_text(study: &IdentifyStudy, with: &WithEffects) -> String {
 }
 
 /// The source of the scale of the forces.
-fn scale_line(together: &JointEstimate) -> String {
-    match together.scale.as_ref().map(|scale| (scale.name, &scale.value, scale.unit)) {
+fn scale_line(joint: &JointEstimate) -> String {
+    match joint.scale.as_ref().map(|scale| (scale.name, &scale.value, scale.unit)) {
         Some((name, Finding::Determined { value, std }, unit)) => {
             format!("  {name} {value:.4e} +- {std:.1e} {unit} (identified; forces have the scale of the weighed \
                      mass)\n")

@@ -15,7 +15,7 @@ pub(super) fn verdict(study: &IdentifyStudy, result: &MethodResult) -> String {
     if !doubts.is_empty() {
         return format!("doubtful: {}", doubts.join("; "));
     }
-    let scale = study.with.as_ref().map_or(study.scale.as_ref(), |with| with.together.scale.as_ref());
+    let scale = study.with.as_ref().map_or(study.scale.as_ref(), |with| with.joint.scale.as_ref());
     let (mut good, mut poor, mut no) = (Vec::new(), Vec::new(), Vec::new());
     let mut tell = |name: &'static str, relative: f64| {
         if relative > POOR {

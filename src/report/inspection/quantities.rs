@@ -31,7 +31,7 @@ fn said(quantity: &QuantitySummary, above: Option<&QuantitySummary>) -> String {
         "yes" if expected.starts_with("the ") => format!("yes, {expected}{better}"),
         "yes" => format!("yes, to {expected}{better}"),
         "possible" if is_as_above(|_, _| true) => "yes, likewise".to_owned(),
-        "possible" => "yes, as far as streams and motion tell; --vehicle shows how well".to_owned(),
+        "possible" => "yes, by its streams and motion; --vehicle adds the accuracy".to_owned(),
         "partly" if expected.is_empty() => format!("partly; {reason}"),
         "partly" => format!("partly, to {expected}{better}; {reason}"),
         _ if !expected.is_empty() => format!("no, only to {expected}{better}; {reason}"),

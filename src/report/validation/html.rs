@@ -98,7 +98,7 @@ fn answer(study: &ValidateStudy) -> String {
     });
     let mean = study.mean_gain(best);
     let verdict = if mean < -ALIKE_PERCENT {
-        format!("No model predicts better than {first}; nearest comes {}, whose", names[best])
+        format!("No model predicts better than {first}; the next best is {}, whose", names[best])
     } else if mean < ALIKE_PERCENT {
         format!("{} predicts as well as {first}: its", names[best])
     } else if names.len() > 2 {
@@ -201,6 +201,6 @@ mod tests {
             "b predicts better than a: its 0.5 s errors are 50 % smaller in position, 50 % smaller in velocity and 50 % smaller in body rates."
         );
         assert!(said(1.0).starts_with("b predicts as well as a"));
-        assert!(said(2.0).starts_with("No model predicts better than a; nearest comes b"));
+        assert!(said(2.0).starts_with("No model predicts better than a; the next best is b"));
     }
 }

@@ -14,11 +14,12 @@ use crate::study::{Predicted, StudyError};
 use crate::text::significant;
 
 /// What a law of the rates is.
-const BY_RATE_LAW: &str = "over 0.5 s these flights' body rates or attitude are predicted better by no change at all than by the torques \
-                           of the model: calm flight under a controller says little of them. Open-loop predictions use an \
-                           empirical law of the rates instead (\"rate_law\"): it holds for this vehicle under this \
-                           controller, it is no property of the vehicle. model.toml does not hold it and alone predicts these worse than no change does. \
-                           A trajectory that turns the vehicle more (`mavid plan`) makes the torques show";
+const BY_RATE_LAW: &str = "over 0.5 s, no change at all predicts these flights' body rates or attitude better than the \
+                           torques of the model do: calm flight under a controller says little about them. Open-loop \
+                           predictions use an empirical law of the rates instead (\"rate_law\"). It is valid for this \
+                           vehicle under this controller and is no property of the vehicle. model.toml does not contain \
+                           it, so a simulation of the model alone predicts them worse than no change does. With a \
+                           trajectory that turns the vehicle more (`mavid plan`), the torques can be compared";
 
 /// A flight that was used, or a part of it, shows nothing as a hold-out.
 pub(super) fn refuse_shared(flights: &Prepared, held: &Prepared) -> Result<(), StudyError> {

@@ -56,7 +56,7 @@ pub struct Located {
     pub field: Option<Field>,
 }
 
-/// Axes and states below this share are not listed, percent.
+/// Axes and states below this share are not listed, percent. Chosen; not measured.
 const LEAST_SHARE_PERCENT: f64 = 1.0;
 const WORLD: [&str; 3] = ["x", "y", "z"];
 

@@ -3,7 +3,7 @@
 use crate::diagnose::signatures::{ALL, signature_of};
 use crate::diagnose::{Named, NamedParameter, Strength};
 
-/// Drag along the rotor axis within this share of that across it is one isotropic drag.
+/// Drag along the rotor axis within this share of that across it is one isotropic drag. Chosen; not measured.
 const ISOTROPIC: f64 = 0.35;
 
 /// Drag along the rotor axis exceeds that across it beyond this many standard errors. Chosen; not measured.

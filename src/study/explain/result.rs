@@ -123,8 +123,9 @@ pub struct AxisFit {
 }
 
 /// Why moments of inertia are not determined where the excitation is too small.
-pub(in crate::study) const BY_CONTROL: &str = "hardly anything but the controller's answer to the noise of the gyroscopes turned the vehicle; fly an \
-                          identification trajectory, which excites the rotation";
+pub(in crate::study) const BY_CONTROL: &str = "almost all rotation was the controller's answer to the noise of the \
+                                               gyroscopes; fly an identification trajectory, which excites the \
+                                               rotation";
 
 impl ExplainStudy {
     /// Puts it together, not shown on anything yet.
@@ -292,7 +293,7 @@ impl ExplainStudy {
                 unit = by.unit
             ),
             Difference::Residual { channel, ratio } => {
-                format!("even a fit of its own leaves {ratio:.1} times as much of {channel} there as here")
+                format!("even after its own fit, the residual of {channel} is {ratio:.1} times the one here")
             }
         })
     }

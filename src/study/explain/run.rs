@@ -18,7 +18,7 @@ use crate::study::{Progress, Stage, StudyError, effects_of};
 use crate::text;
 use crate::vehicle::Vehicle;
 
-/// Share of the flight that may be saturated without a word.
+/// Share of the flight that may be saturated without a word. Chosen; not measured.
 const SATURATED: f64 = 0.3;
 /// What a recording without velocity cannot tell.
 const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar), or no attitude, is recorded: drag, wind and \

@@ -1,4 +1,4 @@
-//! The flights that an improvement is shown on.
+//! The flights that were used to measure the improvement.
 
 use crate::study::InputFile;
 

@@ -1,6 +1,6 @@
 //! Mass, inertia and, where asked for, effects from recorded flights.
 
-mod beside;
+mod joint_estimate;
 mod recorded;
 mod request;
 mod result;

@@ -1,6 +1,6 @@
 //! The result of identifying: what went in, the estimates, and what is to be known of them.
 
-use super::beside::{Beside, beside, without_inertia};
+use super::joint_estimate::{EstimateWithEffects, joint_estimate, without_inertia};
 use crate::diagnose::CHANNEL_NAMES;
 use crate::diagnose::joint::JointEstimate;
 use crate::draft::Draft;
@@ -43,7 +43,7 @@ pub struct IdentifyStudy {
 #[derive(Debug, Clone)]
 pub struct WithEffects {
     /// what was found
-    pub together: JointEstimate,
+    pub joint: JointEstimate,
     /// where the signals come from, flight by flight
     pub quality: Vec<Quality>,
 }
@@ -65,7 +65,7 @@ impl WithEffects {
     /// What is left of each channel that was used.
     #[must_use]
     pub fn misfits(&self) -> Vec<Misfit> {
-        let channels = CHANNEL_NAMES.into_iter().zip(self.together.misfit());
+        let channels = CHANNEL_NAMES.into_iter().zip(self.joint.misfit());
         let known = channels.filter_map(|(name, misfit)| {
             let (without, with) = misfit?;
             let unit = if name.starts_with("torque") { "N m" } else { "N" };
@@ -91,8 +91,8 @@ impl IdentifyStudy {
         let mut identification = identify(&flights, &vehicle, settings)?;
         let alone = &identification.best.result.estimated;
         let (mut effects, mut turned_by_control) = (Vec::new(), false);
-        match beside(explained, &vehicle, alone) {
-            Ok(Beside { best, effects: found, turned_by_control: by_control }) => {
+        match joint_estimate(explained, &vehicle, alone) {
+            Ok(EstimateWithEffects { best, effects: found, turned_by_control: by_control }) => {
                 identification.methods.push(best.result.clone());
                 identification.best = best;
                 (effects, turned_by_control) = (found, by_control);
@@ -132,14 +132,14 @@ impl IdentifyStudy {
     /// The rigid body of the answer: with the effects where some were asked for, by the recommended method elsewhere.
     #[must_use]
     pub fn body(&self) -> &MethodResult {
-        self.with.as_ref().map_or(&self.identification.best.result, |with| &with.together.body)
+        self.with.as_ref().map_or(&self.identification.best.result, |with| &with.joint.body)
     }
 
     /// How the errors of what was estimated go together.
     #[must_use]
     pub fn correlation(&self) -> Correlation {
         match &self.with {
-            Some(with) => Correlation::of_fit(&with.together.after),
+            Some(with) => Correlation::of_fit(&with.joint.after),
             None => self.method_correlation(),
         }
     }
@@ -153,7 +153,7 @@ impl IdentifyStudy {
     /// Why the answer is doubtful, clause by clause; none where nothing speaks against it.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
-        let scale = self.with.as_ref().map_or(self.scale.as_ref(), |with| with.together.scale.as_ref());
+        let scale = self.with.as_ref().map_or(self.scale.as_ref(), |with| with.joint.scale.as_ref());
         let contradictions = contradictions(self.body(), &self.vehicle, scale);
         let flights = self.flights.iter().map(|flight| &flight.quality);
         let mut doubts = doubts(&self.vehicle, flights, &contradictions);

@@ -88,7 +88,7 @@ fn with_effects(
         .map_err(|error| StudyError::Setting { name: "with", why: error.to_string() })?;
     let flights = conditioned(logs, (vehicle, &known.origin), &request.conditioning_with(wanted))?;
     let half_width_s = ExplainSettings::default().half_width_s;
-    let together = identify_jointly(&flights, (vehicle, &effects), wanted, half_width_s)
+    let joint = identify_jointly(&flights, (vehicle, &effects), wanted, half_width_s)
         .map_err(|source| StudyError::Joint { logs: names(&request.logs), source })?;
-    Ok(WithEffects { together, quality: flights.into_iter().map(|signals| signals.quality).collect() })
+    Ok(WithEffects { joint, quality: flights.into_iter().map(|signals| signals.quality).collect() })
 }

@@ -47,7 +47,7 @@ pub struct CaseEffect {
     pub id: String,
     /// its values
     pub parameters: Vec<CaseParameter>,
-    /// identifiers of what it may be taken for
+    /// identifiers of the effects with which it can be confused
     pub confusable_with: Vec<String>,
 }
 

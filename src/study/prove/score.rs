@@ -195,9 +195,9 @@ mod tests {
     use crate::study::prove::case::CaseParameter;
     use std::collections::BTreeMap;
 
-    type Said<'a> = (&'a str, &'a [(&'a str, f64)], &'a [&'a str]);
+    type Reported<'a> = (&'a str, &'a [(&'a str, f64)], &'a [&'a str]);
 
-    fn verdict(word: &str, effects: &[Said<'_>]) -> CaseVerdict {
+    fn verdict(word: &str, effects: &[Reported<'_>]) -> CaseVerdict {
         let effects = effects.iter().map(|(id, parameters, confusable)| CaseEffect {
             id: (*id).to_owned(),
             parameters: parameters

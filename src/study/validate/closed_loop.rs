@@ -35,8 +35,9 @@ pub(super) fn closed_loop(
     for (_, simulated) in &mut flown {
         let how = simulated.as_ref().ok().and_then(|simulated| divergence(&recorded, simulated, span_s));
         if let Some(how) = how {
-            *simulated =
-                Err(format!("the simulation leaves the flight: {how}; its errors would be no predictions"));
+            *simulated = Err(format!(
+                "the simulation diverges from the flight: {how}; its errors say nothing about the model"
+            ));
         }
     }
     let table = closed_loop_table(title, &recorded, &flown, span_s);

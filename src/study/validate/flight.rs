@@ -16,7 +16,7 @@ use crate::study::flight::Flight;
 
 /// Lengths of the playback's windows, s.
 const WINDOWS_S: [f64; 3] = [0.1, 0.5, 1.0];
-/// Cut-off of the low-pass under the regression models, Hz.
+/// Cut-off of the low-pass under the regression models, Hz. Chosen; not measured.
 pub(super) const CUTOFF_HZ: f64 = 5.0;
 
 pub(super) fn flight(

@@ -1,16 +1,17 @@
-//! A vehicle on a link, with which one talks.
+//! A vehicle on a link, and the conversation with it.
 
+use std::pin::Pin;
 use std::time::Duration;
 
-use mavid::autopilot::Stack;
-use mavid::fetch::{Dialogue, Moment, Offer, Survey, Uptime};
-use mavid::fly::{Choice, Roster, heartbeat};
-use mavid::link::{LinkEvent, LinkOptions, LinkReader, LinkWriter, Received, Signing};
-use mavid::wire::{Frame, SystemId, Vehicle};
+use super::OnboardError;
+use crate::autopilot::Stack;
+use crate::fetch::{Dialogue, Moment, Offer, Survey, Uptime};
+use crate::fly::{Choice, Roster, heartbeat};
+use crate::link::{Address, Link, LinkEvent, LinkOptions, LinkReader, LinkWriter, Received};
+use crate::note::{About, Note};
+use crate::wire::{Frame, SystemId, Vehicle};
+use mavlink::dialects::ardupilotmega::MavMessage;
 use tokio::time::{Instant, MissedTickBehavior, interval};
-
-use crate::cli::VehicleLinkArgs;
-use crate::commands::{CommandError, network, output};
 
 /// Between two looks at what is due.
 const TICK: Duration = Duration::from_millis(5);
@@ -19,9 +20,6 @@ const HEARTBEAT: Duration = Duration::from_secs(1);
 const HEARTBEAT_ID: u32 = 0;
 const BASE_MODE: usize = 6;
 const ARMED: u8 = 128;
-/// A vehicle that is not heard within this is not there.
-const THERE_WITHIN: Duration = Duration::from_secs(30);
-
 /// Whether a conversation goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
@@ -31,12 +29,32 @@ pub enum Flow {
     Stop,
 }
 
+/// Until somebody asks for the end of the conversation; the name of the signal.
+pub type Interrupt = Pin<Box<dyn Future<Output = String>>>;
+
+/// With which vehicle one talks, and how.
+pub struct SessionRequest {
+    /// where it is
+    pub address: Address,
+    /// of the link
+    pub options: LinkOptions,
+    /// the vehicle; without it the only one on the link
+    pub system: Option<SystemId>,
+    /// how long its first HEARTBEAT is waited for
+    pub patience: Duration,
+    /// ends the conversation
+    pub interrupt: Interrupt,
+    /// takes what is to be known meanwhile
+    pub tell: fn(&Note),
+}
+
 /// A vehicle on a link.
-#[derive(Debug)]
 pub struct Session {
     reader: LinkReader,
     writer: LinkWriter,
-    signals: network::Signals,
+    address: String,
+    interrupt: Interrupt,
+    tell: fn(&Note),
     start: Instant,
     /// as its last HEARTBEAT says
     armed: bool,
@@ -49,61 +67,42 @@ pub struct Session {
 }
 
 impl Session {
-    /// Opens the link and waits for the vehicle; one that is armed is refused. A host that refuses is not waited for.
-    pub async fn open(args: &VehicleLinkArgs) -> Result<Self, CommandError> {
-        Self::begin(args, LinkOptions::default(), THERE_WITHIN).await
-    }
-
-    /// The same by this station, for a vehicle that has to be heard within this time: its host may still refuse.
-    pub async fn open_as(
-        args: &VehicleLinkArgs,
-        station: SystemId,
-        patience: Duration,
-    ) -> Result<Self, CommandError> {
-        let options = LinkOptions { system: station, patient: true, ..LinkOptions::default() };
-        Self::begin(args, options, patience).await
-    }
-
-    async fn begin(
-        args: &VehicleLinkArgs,
-        options: LinkOptions,
-        patience: Duration,
-    ) -> Result<Self, CommandError> {
-        let address = network::address("--connect", &args.connect)?;
-        let signing = args.signing_key_file.as_deref().map(Signing::open).transpose();
-        let signing = signing.map_err(|error| CommandError::Input(error.to_string()))?;
-        output::signing_warnings(signing.as_ref());
-        let options = LinkOptions { signing, ..options };
-        let (mut reader, writer) = network::open(&address, options).await?;
-        let (start, mut signals) = (Instant::now(), network::Signals::new()?);
-        let wanted = args.system_id.map(SystemId);
+    /// Opens the link and waits for the vehicle. Nothing is sent but heartbeats.
+    ///
+    /// # Errors
+    /// The link cannot be opened, no vehicle is heard in time, the vehicle is not the one that is meant, it is armed, or the
+    /// interrupt came.
+    pub async fn open(request: SessionRequest) -> Result<Self, OnboardError> {
+        let SessionRequest { address, options, system, patience, mut interrupt, tell } = request;
+        let (mut reader, writer) = Link::open(&address, options).await?;
+        let start = Instant::now();
         let mut roster = Roster::default();
         let mut absent = None;
         let mut beats = interval(HEARTBEAT);
         loop {
             tokio::select! {
-                received = reader.receive() => {
-                    match received.map_err(|error| CommandError::Failure(error.to_string()))? {
-                        Received::Frame(frame) => {
-                            if let Some(frame) = Frame::at_start(frame.bytes()) {
-                                roster.hear(start.elapsed(), frame);
-                            }
+                received = reader.receive() => match received? {
+                    Received::Frame(frame) => {
+                        if let Some(frame) = Frame::at_start(frame.bytes()) {
+                            roster.hear(start.elapsed(), frame);
                         }
-                        Received::Event(event) => note_absence(&args.connect, &event, &mut absent),
                     }
-                }
+                    Received::Event(event) => note_absence(&address, &event, &mut absent, tell),
+                },
                 _ = beats.tick() => {
                     // while nobody is there, there is nobody to tell
                     let _ = writer.send_message(&heartbeat());
                 }
-                name = signals.next() => return Err(interrupted(name?)),
+                signal = &mut interrupt => return Err(OnboardError::Ended(signal)),
             }
-            match roster.choose(start.elapsed(), wanted) {
+            match roster.choose(start.elapsed(), system) {
                 Choice::Vehicle(vehicle, _, stack) => {
                     return Ok(Self {
                         reader,
                         writer,
-                        signals,
+                        address: address.to_string(),
+                        interrupt,
+                        tell,
                         start,
                         armed: false,
                         only_disarmed: false,
@@ -111,14 +110,13 @@ impl Session {
                         stack,
                     });
                 }
-                Choice::Refuse(why) => return Err(CommandError::Input(why)),
+                Choice::Refuse(why) => return Err(OnboardError::Refused(why)),
                 Choice::Wait if start.elapsed() > patience => {
-                    return Err(CommandError::Failure(format!(
-                        "{}: expected a HEARTBEAT of a vehicle within {} s, heard {}",
-                        args.connect,
-                        patience.as_secs(),
-                        absent.map_or_else(|| roster.heard(), |why| format!("nobody ({why})"))
-                    )));
+                    return Err(OnboardError::Absent {
+                        address: address.to_string(),
+                        within_s: patience.as_secs(),
+                        heard: absent.map_or_else(|| roster.heard(), |why| format!("nobody ({why})")),
+                    });
                 }
                 Choice::Wait => {}
             }
@@ -126,43 +124,47 @@ impl Session {
     }
 
     /// What the vehicle offers.
-    pub async fn offer(&mut self) -> Result<Offer, CommandError> {
+    ///
+    /// # Errors
+    /// Those of [`talk`](Self::talk).
+    pub async fn offer(&mut self) -> Result<Offer, OnboardError> {
         let mut survey = Survey::new(self.vehicle);
         self.talk(&mut survey, |_| Ok(Flow::On)).await?;
         Ok(survey.offer())
     }
 
     /// Now, with the vehicle's time since its start.
-    pub async fn moment(&mut self) -> Result<Moment, CommandError> {
+    ///
+    /// # Errors
+    /// Those of [`talk`](Self::talk).
+    pub async fn moment(&mut self) -> Result<Moment, OnboardError> {
         let mut uptime = Uptime::new(self.vehicle);
         self.talk(&mut uptime, |_| Ok(Flow::On)).await?;
         Ok(Moment::now(uptime.up_s()))
     }
 
     /// Talks until the dialogue is done, or `each` has enough, which is asked again and again.
+    ///
+    /// # Errors
+    /// The dialogue or `each` fails, the link is lost, or the interrupt came.
     pub async fn talk<D: Dialogue>(
         &mut self,
         dialogue: &mut D,
-        mut each: impl FnMut(&mut D) -> Result<Flow, CommandError>,
-    ) -> Result<Flow, CommandError> {
+        mut each: impl FnMut(&mut D) -> Result<Flow, OnboardError>,
+    ) -> Result<Flow, OnboardError> {
         let mut ticks = interval(TICK);
         ticks.set_missed_tick_behavior(MissedTickBehavior::Skip);
         let mut beat = None;
         loop {
             if self.only_disarmed && self.armed {
-                let system = self.vehicle.system;
-                return Err(CommandError::Failure(format!(
-                    "system {system} was armed meanwhile: expected it disarmed while its parameters are set"
-                )));
+                return Err(OnboardError::Armed(self.vehicle.system));
             }
             let now = self.start.elapsed();
             if beat.is_none_or(|beat| now.saturating_sub(beat) >= HEARTBEAT) {
                 beat = Some(now);
                 let _ = self.writer.send_message(&heartbeat());
             }
-            while let Some(message) =
-                dialogue.poll(now).map_err(|error| CommandError::Failure(error.to_string()))?
-            {
+            while let Some(message) = dialogue.poll(now)? {
                 // one that does not leave is asked again as one that gets lost
                 let _ = self.writer.send_message(&message);
             }
@@ -174,20 +176,22 @@ impl Session {
             }
             tokio::select! {
                 received = self.reader.receive() => {
-                    let received = received.map_err(|error| CommandError::Failure(error.to_string()))?;
-                    self.take(dialogue, received);
+                    self.take(dialogue, received?);
                     while let Ok(Some(received)) = self.reader.try_receive() {
                         self.take(dialogue, received);
                     }
                 }
                 _ = ticks.tick() => {}
-                name = self.signals.next() => return Err(interrupted(name?)),
+                signal = &mut self.interrupt => return Err(OnboardError::Ended(signal)),
             }
         }
     }
 
     /// Talks until the dialogue is done, and no longer than the vehicle is disarmed.
-    pub async fn talk_disarmed(&mut self, dialogue: &mut impl Dialogue) -> Result<(), CommandError> {
+    ///
+    /// # Errors
+    /// Those of [`talk`](Self::talk), and [`OnboardError::Armed`].
+    pub async fn talk_disarmed(&mut self, dialogue: &mut impl Dialogue) -> Result<(), OnboardError> {
         self.only_disarmed = true;
         let done = self.talk(dialogue, |_| Ok(Flow::On)).await;
         self.only_disarmed = false;
@@ -206,37 +210,40 @@ impl Session {
     }
 
     /// The last message of a conversation, which nobody answers.
-    pub async fn say(&self, message: &mavlink::dialects::ardupilotmega::MavMessage) {
+    pub async fn say(&self, message: &MavMessage) {
         let _ = self.writer.send_message(message);
         let _ = tokio::time::timeout(Duration::from_millis(500), self.writer.flush()).await;
     }
 
+    /// Tells what is to be known of the vehicle.
+    pub(super) fn warn(&self, text: String) {
+        (self.tell)(&Note::warning(About::Link(self.address.clone()), text));
+    }
+
     /// By which name the vehicle is known from one run to the next: two simulated ones may say the same number.
+    #[must_use]
     pub fn known_as(&self, offer: &Offer) -> String {
         let name = format!("{}-system-{}", self.stack.id, self.vehicle.system);
         offer.uid.iter().fold(name, |name, uid| format!("{name}-{uid}"))
     }
 
     /// Since the link was opened.
+    #[must_use]
     pub fn elapsed(&self) -> Duration {
         self.start.elapsed()
     }
 }
 
 /// Says once that nobody is at the other end.
-fn note_absence(connect: &str, event: &LinkEvent, absent: &mut Option<String>) {
+fn note_absence(address: &Address, event: &LinkEvent, absent: &mut Option<String>, tell: fn(&Note)) {
     match event {
         LinkEvent::Waiting { why } => {
             if absent.is_none() {
-                output::message(&format!("{connect}: {event}"));
+                tell(&Note::remark(About::Link(address.to_string()), event.to_string()));
             }
             *absent = Some(why.clone());
         }
         LinkEvent::Connected { .. } | LinkEvent::Restored { .. } => *absent = None,
         _ => {}
     }
-}
-
-fn interrupted(name: &str) -> CommandError {
-    CommandError::Ended(format!("ended by {name}"))
 }

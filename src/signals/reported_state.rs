@@ -1,10 +1,10 @@
-//! When a vehicle may be in the air by the autopilot's own words: armed, landed, and whether it asked for thrust.
+//! The state that the autopilot reports: armed, landed, and whether it commanded thrust.
 
 use crate::recording::{Quantity, Recording, Stream};
 
 /// What an autopilot says of being in the air.
 #[derive(Debug, Clone, Copy)]
-pub struct Said<'a> {
+pub struct ReportedState<'a> {
     landed: Option<&'a Stream>,
     armed: Option<&'a Stream>,
     asks: bool,
@@ -16,7 +16,7 @@ pub struct Said<'a> {
 /// Measured on copies of two flights with 1 % of their bytes wrong, six seeds: they came out 0.7 s too long at most.
 const DAMAGED_S: f64 = 1.0;
 
-impl<'a> Said<'a> {
+impl<'a> ReportedState<'a> {
     /// What a recording holds of it.
     #[must_use]
     pub fn of(recording: &'a Recording) -> Self {
@@ -119,7 +119,7 @@ mod tests {
         let armed = stream(&[1.0, 9.0], &[1.0, 0.0]);
         let landed = stream(&[2.0, 3.0, 7.0, 8.0], &[1.0, 2.0, 4.0, 1.0]);
         let said = recording(&[(Quantity::Armed, armed), (Quantity::LandedState, landed)]);
-        let said = Said::of(&said);
+        let said = ReportedState::of(&said);
         let times_s = [0.0, 1.5, 2.5, 3.5, 7.5, 8.5, 9.5];
         assert_eq!(times_s.map(|t_s| said.may_fly(t_s)), [true, true, false, true, false, false, false]);
         assert_eq!(
@@ -128,14 +128,17 @@ mod tests {
         );
         assert!(said.tells_landed() && !said.never_armed());
         let idle = recording(&[(Quantity::Armed, stream(&[0.0, 1.0], &[0.0, 0.0]))]);
-        assert!(Said::of(&idle).never_armed() && !Said::of(&Recording::default()).never_armed());
+        assert!(
+            ReportedState::of(&idle).never_armed() && !ReportedState::of(&Recording::default()).never_armed()
+        );
     }
 
     #[test]
     fn a_damaged_log_flies_no_longer_than_its_words_are_certain() {
         let landed = stream(&[0.0, 3.0, 9.0], &[1.0, 2.0, 1.0]);
         let mut damaged = recording(&[(Quantity::LandedState, landed)]);
-        let at = |recording: &Recording| [3.5, 4.5, 7.5, 8.5].map(|t_s| Said::of(recording).may_fly(t_s));
+        let at =
+            |recording: &Recording| [3.5, 4.5, 7.5, 8.5].map(|t_s| ReportedState::of(recording).may_fly(t_s));
         assert_eq!(at(&damaged), [true; 4]);
         damaged.is_damaged = true;
         assert_eq!(at(&damaged), [false, true, true, false]);
@@ -144,10 +147,10 @@ mod tests {
     #[test]
     fn an_autopilot_that_never_asks_for_thrust_does_not_fly() {
         let (nought, thrust) = (stream(&[0.0, 1.0], &[0.0, 0.0]), stream(&[0.0, 1.0], &[0.0, 0.4]));
-        assert!(!Said::of(&recording(&[(Quantity::ThrustSetpoint, nought.clone())])).may_fly(0.5));
-        assert!(Said::of(&recording(&[(Quantity::ThrustSetpoint, thrust)])).may_fly(0.5));
+        assert!(!ReportedState::of(&recording(&[(Quantity::ThrustSetpoint, nought.clone())])).may_fly(0.5));
+        assert!(ReportedState::of(&recording(&[(Quantity::ThrustSetpoint, thrust)])).may_fly(0.5));
         let armed = (Quantity::Armed, stream(&[0.0], &[1.0]));
-        assert!(Said::of(&recording(&[(Quantity::ThrustSetpoint, nought), armed])).may_fly(0.5));
-        assert!(Said::of(&Recording::default()).may_fly(0.5));
+        assert!(ReportedState::of(&recording(&[(Quantity::ThrustSetpoint, nought), armed])).may_fly(0.5));
+        assert!(ReportedState::of(&Recording::default()).may_fly(0.5));
     }
 }

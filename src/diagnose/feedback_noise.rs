@@ -1,5 +1,5 @@
-//! Gyroscopes' noise that the controller answers: commands and measured motion share it, and least squares takes the answer
-//! for the vehicle.
+//! Noise of the gyroscopes that the controller feeds back. Commands and measured motion share it, and least squares attributes
+//! the controller's reaction to the vehicle.
 
 use super::trace::Trace;
 

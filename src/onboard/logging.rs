@@ -1,14 +1,12 @@
 //! What the autopilot will log, what is changed of it, and how that is put back.
 
-use mavid::autopilot::{LogAwaited, LogChange, LogPlan};
-use mavid::fetch::{Known, Moment, Noted, Notes, ReadParameters, SetParameters};
-
-use super::session::{Flow, Session};
-use crate::commands::CommandError;
+use super::{Flow, OnboardError, Session};
+use crate::autopilot::{LogAwaited, LogChange, LogPlan};
+use crate::fetch::{Known, Moment, Noted, Notes, ReadParameters, SetParameters};
 
 /// What a vehicle will log, with its parameters.
 #[derive(Debug, Default)]
-pub struct Prepared {
+pub struct LoggingState {
     known: Known,
     /// what it logs, and what should be changed
     pub plan: LogPlan,
@@ -33,51 +31,32 @@ pub struct PutBack {
     pub restart: bool,
 }
 
-fn failed(error: impl std::fmt::Display) -> CommandError {
-    CommandError::Failure(error.to_string())
-}
-
 /// Asks the vehicle for its parameters of logging, and whether it was restarted since an earlier run set them.
-pub async fn look(session: &mut Session, notes: &Notes) -> Result<Prepared, CommandError> {
-    let names: Vec<&str> =
+///
+/// # Errors
+/// It answers for none of them, the notes cannot be read, or those of [`Session::talk`].
+pub async fn look(session: &mut Session, notes: &Notes) -> Result<LoggingState, OnboardError> {
+    let names: Vec<&'static str> =
         session.stack.log_settings.settings.iter().map(|setting| setting.parameter).collect();
     let known = read(session, &names).await?;
     if names.iter().all(|name| known.value(name).is_none()) {
-        return Err(CommandError::Failure(format!(
-            "expected an answer for {}, the vehicle gave none",
-            names.join(", ")
-        )));
+        return Err(OnboardError::Unanswered(names));
     }
-    let noted = notes.read().map_err(failed)?;
-    let mut prepared = Prepared { known, noted, ..Prepared::default() };
-    wait_for_start(session, &mut prepared).await?;
-    let known = &prepared.known;
-    prepared.plan = session.stack.log_plan_until_start(|name| known.value(name), &prepared.awaited);
-    Ok(prepared)
-}
-
-/// Fails where the vehicle did not answer for what sets the rates of its log: that was to be set.
-///
-/// # Errors
-/// It did not.
-pub fn expect_rates(session: &Session, prepared: &Prepared) -> Result<(), CommandError> {
-    let unknown = session.stack.rates_unknown(&prepared.plan).join(", ");
-    if unknown.is_empty() {
-        return Ok(());
-    }
-    Err(CommandError::Failure(format!(
-        "--set-logging: expected an answer for {unknown}, which sets the rates of the log, the vehicle gave none: it is not set. \
-         Try again on a better link, or set it with another ground station"
-    )))
+    let noted = notes.read()?;
+    let mut state = LoggingState { known, noted, ..LoggingState::default() };
+    wait_for_start(session, &mut state).await?;
+    let known = &state.known;
+    state.plan = session.stack.log_plan_until_start(|name| known.value(name), &state.awaited);
+    Ok(state)
 }
 
 /// Which of the noted parameters count only after a restart that has not come.
-async fn wait_for_start(session: &mut Session, prepared: &mut Prepared) -> Result<(), CommandError> {
+async fn wait_for_start(session: &mut Session, state: &mut LoggingState) -> Result<(), OnboardError> {
     let settings = session.stack.log_settings.settings.iter().filter(|setting| setting.restarts);
     let set: Vec<(&'static str, &Noted)> = settings
         .filter_map(|setting| {
-            let noted = prepared.noted.iter().find(|noted| noted.name == setting.parameter)?;
-            (prepared.known.value(&noted.name) == Some(noted.set)).then_some((setting.parameter, noted))
+            let noted = state.noted.iter().find(|noted| noted.name == setting.parameter)?;
+            (state.known.value(&noted.name) == Some(noted.set)).then_some((setting.parameter, noted))
         })
         .collect();
     if set.is_empty() {
@@ -92,7 +71,7 @@ async fn wait_for_start(session: &mut Session, prepared: &mut Prepared) -> Resul
             None => unsure.push(parameter),
         }
     }
-    (prepared.awaited, prepared.unsure) = (awaited, unsure);
+    (state.awaited, state.unsure) = (awaited, unsure);
     Ok(())
 }
 
@@ -100,19 +79,22 @@ fn has_restarted(noted: &Noted, now: &Moment) -> Option<bool> {
     noted.at.and_then(|at| at.restarted_until(now))
 }
 
-async fn read(session: &mut Session, names: &[&str]) -> Result<Known, CommandError> {
-    let mut reading = ReadParameters::new(session.vehicle, names).map_err(failed)?;
+async fn read(session: &mut Session, names: &[&str]) -> Result<Known, OnboardError> {
+    let mut reading = ReadParameters::new(session.vehicle, names)?;
     session.talk(&mut reading, |_| Ok(Flow::On)).await?;
     Ok(reading.known())
 }
 
 /// Notes what was found, then changes it.
+///
+/// # Errors
+/// The notes cannot be written, the vehicle does not take a value, it is armed, or those of [`Session::talk`].
 pub async fn change(
     session: &mut Session,
-    prepared: &Prepared,
+    state: &LoggingState,
     changes: &[LogChange],
     notes: &Notes,
-) -> Result<(), CommandError> {
+) -> Result<(), OnboardError> {
     let at = Some(session.moment().await?);
     let noted = |change: &LogChange| Noted {
         name: change.parameter.to_owned(),
@@ -120,17 +102,20 @@ pub async fn change(
         set: change.wanted,
         at,
     };
-    notes.add(&changes.iter().map(noted).collect::<Vec<_>>()).map_err(failed)?;
+    notes.add(&changes.iter().map(noted).collect::<Vec<_>>())?;
     let wanted: Vec<(&str, f64)> = changes.iter().map(|change| (change.parameter, change.wanted)).collect();
-    let mut setting = SetParameters::new(session.vehicle, &prepared.known, &wanted).map_err(failed)?;
+    let mut setting = SetParameters::new(session.vehicle, &state.known, &wanted)?;
     session.talk_disarmed(&mut setting).await?;
-    let failures: Vec<String> = setting.failures().map(|(_, why)| why.to_string()).collect();
-    if failures.is_empty() { Ok(()) } else { Err(CommandError::Failure(failures.join("; "))) }
+    let failures: Vec<_> = setting.failures().map(|(_, why)| why).collect();
+    if failures.is_empty() { Ok(()) } else { Err(OnboardError::NotSet(failures)) }
 }
 
 /// Puts back what an earlier run changed, as far as nobody else changed it since. What cannot be put back stays noted.
-pub async fn put_back(session: &mut Session, notes: &Notes) -> Result<PutBack, CommandError> {
-    let noted = notes.read().map_err(failed)?;
+///
+/// # Errors
+/// The notes cannot be read or written, the vehicle is armed, or those of [`Session::talk`].
+pub async fn put_back(session: &mut Session, notes: &Notes) -> Result<PutBack, OnboardError> {
+    let noted = notes.read()?;
     let names: Vec<&str> = noted.iter().map(|noted| noted.name.as_str()).collect();
     let known = read(session, &names).await?;
     let mut put_back = PutBack::default();
@@ -145,7 +130,7 @@ pub async fn put_back(session: &mut Session, notes: &Notes) -> Result<PutBack, C
         }
     }
     let values: Vec<(&str, f64)> = wanted.iter().map(|noted| (noted.name.as_str(), noted.found)).collect();
-    let mut setting = SetParameters::new(session.vehicle, &known, &values).map_err(failed)?;
+    let mut setting = SetParameters::new(session.vehicle, &known, &values)?;
     session.talk_disarmed(&mut setting).await?;
     let names: Vec<&str> = values.iter().map(|(name, _)| *name).collect();
     if needs_restart(session, &names) {
@@ -161,11 +146,12 @@ pub async fn put_back(session: &mut Session, notes: &Notes) -> Result<PutBack, C
             None => put_back.done.push(noted.clone()),
         }
     }
-    notes.keep(put_back.failed.iter().map(|(noted, _)| noted.clone()).collect()).map_err(failed)?;
+    notes.keep(put_back.failed.iter().map(|(noted, _)| noted.clone()).collect())?;
     Ok(put_back)
 }
 
 /// Whether the autopilot must start anew for one of these to count.
+#[must_use]
 pub fn needs_restart(session: &Session, names: &[&str]) -> bool {
     let settings = session.stack.log_settings.settings;
     settings.iter().any(|setting| setting.restarts && names.contains(&setting.parameter))

@@ -1,5 +1,5 @@
-//! What values a quantity can have. Logs that vehicles write have no checksums: a damaged message may hold any number, and one of
-//! 1e30 outweighs all others in every sum.
+//! The possible values of each quantity. On-board logs have no checksums, so a damaged message may hold any number, and one of
+//! 1e30 dominates every sum.
 
 use super::quantity::Quantity;
 

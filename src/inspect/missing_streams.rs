@@ -1,4 +1,4 @@
-//! Streams that a quantity needs and the log lacks, and how to have them.
+//! Streams that a quantity needs and the log does not hold, and how to record them.
 
 use super::evidence::Evidence;
 use crate::recording::Quantity;

@@ -1,12 +1,13 @@
-//! After the search: which effects stay in the model, and what has no noise of the autopilot's own tells their sizes.
+//! Refinement of the model after the search: which effects stay, and their sizes by estimators that the autopilot's noise does
+//! not bias (flight path reconstruction, instruments).
 
 use super::base::Base;
-use super::fed_back::is_fed_back;
-use super::felt::{Felt, shows_in_forces};
+use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
 use super::floors::{FORM, add_floors};
 use super::left_over::add_left_over;
 use super::limits::is_beyond_showing;
+use super::measured_force::{Felt, shows_in_forces};
 use super::named::Strength;
 use super::other_law::add_other_laws;
 use super::physical::make_physical;
@@ -27,18 +28,18 @@ use nalgebra::{DMatrix, DVector};
 /// and instruments tell them, leaves the model. Chosen; not measured.
 const STAYS: f64 = 3.0;
 /// How often the model is estimated again after effects left it. Chosen; not measured.
-const SETTLINGS: usize = 6;
+const ROUNDS: usize = 6;
 
 /// Leaves effects without a name out, and estimates the sizes of the others by what has no noise of the autopilot's own: forces
 /// with the flight path, torques by instruments.
-pub(super) fn settle(
+pub(super) fn refine(
     (flights, traces): (&[Signals], &[Trace]),
     vehicle: &Vehicle,
     found: &mut Search,
 ) -> Result<(), PhysicsError> {
     leave_out_unnamed(traces, found)?;
     let mut by_instruments = Vec::new();
-    for left in (0..SETTLINGS).rev() {
+    for left in (0..ROUNDS).rev() {
         tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, traces, found))?;
         if is_fed_back(traces) {
             by_instruments = tracing::info_span!("instruments")

@@ -1,4 +1,4 @@
-//! What identification and diagnosis would make of a log: tried on its liveliest two minutes.
+//! Forecast of identification and diagnosis: both are tried on the two minutes of the log with the most excitation.
 
 use crate::diagnose::{ExpectedError, LAW_OF_THRUST, LAW_OF_TORQUE, expected_errors};
 use crate::draft::{Given, draft};
@@ -21,7 +21,7 @@ const ASSUMED_KG: f64 = 1.0;
 
 /// What would come out of a log.
 #[derive(Debug)]
-pub(super) struct Foreseen {
+pub(super) struct Forecast {
     /// by which vehicle: the given one, or one drafted from the log
     pub vehicle: Vehicle,
     /// mass and size are assumed: only what is relative counts
@@ -34,7 +34,7 @@ pub(super) struct Foreseen {
     pub effects: Result<Vec<ExpectedError>, String>,
 }
 
-impl Foreseen {
+impl Forecast {
     /// The vehicle of assumed mass and size, and the rigid body that would come out; `None` where one was given.
     pub(super) fn assumed(&self) -> Option<(&Vehicle, &Estimated)> {
         Some((&self.vehicle, self.body.as_ref()?)).filter(|_| self.assumed)
@@ -45,10 +45,10 @@ impl Foreseen {
 ///
 /// # Errors
 /// Why it cannot be conditioned; `None` where no vehicle is given and none can be drafted.
-pub(super) fn foresee(
+pub(super) fn forecast(
     window: &Recording,
     vehicle: Option<&Vehicle>,
-) -> Result<Foreseen, Option<SignalsError>> {
+) -> Result<Forecast, Option<SignalsError>> {
     let given = Given { mass_kg: ASSUMED_KG, size_m: None, frame: None };
     let known = vehicle.cloned().or_else(|| Some(draft(window, &given, "assumed").ok()?.vehicle));
     let mut known = known.ok_or(None)?;
@@ -68,7 +68,7 @@ pub(super) fn foresee(
         _ => None,
     };
     let of_effects = std::slice::from_ref(of_effects.as_ref().unwrap_or(&signals));
-    Ok(Foreseen {
+    Ok(Forecast {
         contradictions: vehicle.map(|vehicle| contradicted(&signals, vehicle)).unwrap_or_default(),
         body: body(&signals, &known),
         effects: expected_errors(of_effects, &known).map_err(|error| error.to_string()),

@@ -1,5 +1,7 @@
-//! Whether the accelerometer feels a force that was found: what acts on the vehicle shows in both readings of the force, a slow error
-//! of the autopilot's velocity in the second one only.
+//! Check that the accelerometer measures a force that was found.
+//!
+//! A force on the vehicle appears in the accelerometer and in the derivative of the autopilot's velocity. A slow error of that
+//! velocity appears in the derivative only.
 
 use super::channels::{Channels, SECOND};
 use super::evidence::{Evidence, Weighted};

@@ -1,4 +1,4 @@
-//! Mass and inertia together with what the flights show beside them: the estimator of `explain`.
+//! Mass and inertia by the estimator of `explain`, together with the effects that the flights show.
 
 use crate::diagnose::{ExplainError, ExplainSettings, Explanation, Verdict, brief, explain};
 use crate::estimate::{
@@ -11,7 +11,7 @@ use crate::vehicle::Vehicle;
 
 /// The recommended estimate, and what was estimated beside mass and inertia.
 #[derive(Debug)]
-pub(super) struct Beside {
+pub(super) struct EstimateWithEffects {
     pub(super) best: Recommendation,
     /// identifiers of effects
     pub(super) effects: Vec<&'static str>,
@@ -31,11 +31,11 @@ pub(super) fn without_inertia(result: &mut MethodResult) {
 ///
 /// # Errors
 /// [`ExplainError`] where the flights are too short, or lack what a search needs.
-pub(super) fn beside(
+pub(super) fn joint_estimate(
     flights: &[Signals],
     vehicle: &Vehicle,
     alone: &Estimated,
-) -> Result<Beside, ExplainError> {
+) -> Result<EstimateWithEffects, ExplainError> {
     let found = explain(flights, vehicle, &ExplainSettings::default())?;
     let unexplained = found.verdict == Verdict::Unexplained;
     // what serves as no explanation is not in the model
@@ -48,7 +48,7 @@ pub(super) fn beside(
     }
     let effects: Vec<&'static str> = found.named.iter().map(|named| named.id).collect();
     let best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(&found, vehicle));
-    Ok(Beside { best, effects, turned_by_control: found.turned_by_control })
+    Ok(EstimateWithEffects { best, effects, turned_by_control: found.turned_by_control })
 }
 
 /// The reason for the user.
@@ -56,13 +56,13 @@ fn why(found: &Explanation, vehicle: &Vehicle) -> String {
     let names: Vec<String> = found.named.iter().map(|named| brief(named, vehicle, false)).collect();
     match (found.verdict, names.join(", ")) {
         (Verdict::Unexplained, _) => {
-            "mass and inertia alone: something acts in these flights that no known effect explains, and \
-                                      `mavid explain` shows where"
+            "mass and inertia alone: something acts in these flights that no known effect explains, and `mavid explain` \
+             shows where"
                 .to_owned()
         }
-        (_, names) if names.is_empty() => "these flights show nothing beside mass and inertia".to_owned(),
+        (_, names) if names.is_empty() => "these flights show no effect beside mass and inertia".to_owned(),
         (_, names) => format!(
-            "mass and inertia are estimated together with what these flights show beside them: {names} (`mavid explain` tells \
+            "mass and inertia are estimated together with the other effects in these flights: {names} (`mavid explain` gives \
              their sizes)"
         ),
     }

@@ -1,0 +1,63 @@
+//! The vehicle that the arguments name, on its link.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
+
+use mavid::autopilot::{Autopilot, Stack};
+use mavid::link::{LinkOptions, Signing};
+use mavid::onboard::{Session, SessionRequest, read_as_needed};
+use mavid::wire::SystemId;
+
+use crate::cli::VehicleLinkArgs;
+use crate::commands::{CommandError, network, output};
+
+/// A vehicle that is not heard within this is not there.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Opens the link and waits for the vehicle; one that is armed is refused. A host that refuses is not waited for.
+pub(super) async fn open(args: &VehicleLinkArgs) -> Result<Session, CommandError> {
+    begin(args, LinkOptions::default(), PATIENCE).await
+}
+
+/// The same by this station, for a vehicle that has to be heard within this time: its host may still refuse.
+pub(super) async fn open_as(
+    args: &VehicleLinkArgs,
+    station: SystemId,
+    patience: Duration,
+) -> Result<Session, CommandError> {
+    begin(args, LinkOptions { system: station, patient: true, ..LinkOptions::default() }, patience).await
+}
+
+async fn begin(
+    args: &VehicleLinkArgs,
+    options: LinkOptions,
+    patience: Duration,
+) -> Result<Session, CommandError> {
+    let address = network::address("--connect", &args.connect)?;
+    let signing = args.signing_key_file.as_deref().map(Signing::open).transpose();
+    let signing = signing.map_err(|error| CommandError::Input(error.to_string()))?;
+    output::signing_warnings(signing.as_ref());
+    let mut signals = network::Signals::new()?;
+    let interrupt = async move { signals.next().await.map_or_else(|why| why.to_string(), str::to_owned) };
+    let request = SessionRequest {
+        address,
+        options: LinkOptions { signing, ..options },
+        system: args.system_id.map(SystemId),
+        patience,
+        interrupt: Box::pin(interrupt),
+        tell: output::note,
+    };
+    Ok(Session::open(request).await?)
+}
+
+/// What is `needed` of the vehicle's parameters, as [`read_as_needed`] asks for it.
+pub fn parameters_of_vehicle(
+    link: &VehicleLinkArgs,
+    needed: impl Fn(&Stack, &BTreeMap<String, f64>) -> BTreeSet<String>,
+) -> Result<(Autopilot, BTreeMap<String, f64>), CommandError> {
+    network::block_on(async {
+        let mut session = open(link).await?;
+        let known = read_as_needed(&mut session, needed).await?;
+        Ok((session.stack.autopilot, known))
+    })
+}

@@ -1,0 +1,23 @@
+//! A vehicle on a link while it does not fly: its logs are listed and fetched, the parameters of its logging are read, set
+//! and put back.
+//!
+//! The dialogues themselves are those of [`crate::fetch`], which do no I/O; here they are held over a link. Nothing that
+//! moves a vehicle is sent, and no log on it is erased.
+//!
+//! ```text
+//! Session::open -> offer -> list -> fetch        the logs
+//!                        -> look -> change       the parameters of logging
+//!                        -> put_back             what an earlier run changed of them
+//! ```
+
+mod download;
+mod error;
+mod logging;
+mod parameters;
+mod session;
+
+pub use download::{Download, Listed, Progress, fetch, list};
+pub use error::OnboardError;
+pub use logging::{LoggingState, PutBack, change, look, needs_restart, put_back};
+pub use parameters::read_as_needed;
+pub use session::{Flow, Interrupt, Session, SessionRequest};
