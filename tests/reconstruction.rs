@@ -92,6 +92,7 @@ fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
         as_recorded: AsRecorded {
             specific_force: Some(Arc::new(stream(&felt))),
             velocity: Some(Arc::new(stream(&velocity))),
+            gps_velocity: None,
         },
         attitude: Some(attitude.into()),
         rate: Some(rates.into()),

@@ -73,3 +73,37 @@ fn lateness_s(stream: &Stream, samples: &[usize], (grid, velocity): (&Grid, &[Ve
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map_or(0.0, |found| found.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(t: f64) -> Vector3<f64> {
+        Vector3::new((1.3 * t).sin(), (0.7 * t).cos(), 0.2 * t.sin())
+    }
+
+    #[test]
+    fn a_receiver_that_is_late_is_put_where_it_measured() {
+        let grid = Grid { start_s: 0.0, step_s: 0.01, count: 3000 };
+        let estimated: Vec<Vector3<f64>> = (0..grid.count).map(|index| at(grid.time_s(index))).collect();
+        let time_s: Vec<f64> = (0..200).map(|index| 1.0 + 0.1 * f64::from(index)).collect();
+        // 0.13 s late, without a climb
+        let seen = time_s.iter().map(|t| at(t - 0.13)).flat_map(|v| [v.x, v.y, f64::NAN]).collect();
+        let stream = Stream { time_s, width: 3, values: seen };
+        let cells: Vec<f64> = (0..600).map(|index| f64::from(index) * STEP_S).collect();
+        let received = Received::of(&stream, (&grid, &estimated), &cells);
+        assert!(received.seen.len() > 190, "{}", received.seen.len());
+        for seen in &received.seen {
+            let true_m_s = at(cells[seen.cell] + seen.share * STEP_S);
+            assert!((seen.velocity_m_s - true_m_s).xy().norm() < 1e-3 && !seen.climbs, "{seen:?}");
+        }
+    }
+
+    #[test]
+    fn a_few_samples_teach_nothing() {
+        let stream = Stream { time_s: vec![1.0, 1.2], width: 3, values: vec![0.0; 6] };
+        let grid = Grid { start_s: 0.0, step_s: 0.01, count: 300 };
+        let still = vec![Vector3::zeros(); 300];
+        assert!(Received::of(&stream, (&grid, &still), &[0.0, 1.0, 2.0]).seen.is_empty());
+    }
+}

@@ -60,7 +60,7 @@ impl Question {
             origin_m: stand_m.map_or_else(Vector3::zeros, |stand_m| flight.offset_m(&stand_m)),
             stand_m,
             vehicle: vehicle.clone(),
-            limits: sortie.limits.clone(),
+            limits: sortie.limits,
             tracking_max_m: sortie.settings.tracking_max_m,
             parameters,
             log_awaited: sortie.settings.log_awaited.clone(),
