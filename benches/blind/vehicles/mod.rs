@@ -1,0 +1,15 @@
+//! Several flights of one vehicle, with an estimator in the loop.
+
+mod made;
+
+use std::path::PathBuf;
+
+use crate::support::Arguments;
+
+/// Runs what is asked for.
+pub fn run(arguments: &Arguments) {
+    let seed = arguments.number("--seed", 1_u64);
+    if let Some(folder) = arguments.text("--write").map(PathBuf::from) {
+        made::write(&folder, seed, arguments.number("--count", 40_u64));
+    }
+}
