@@ -43,8 +43,8 @@ pub struct BalanceChange {
 pub struct BalanceFound {
     /// the most likely; `None`: nothing known accounts for it alone
     pub what: Option<What>,
-    /// of a rotor: thrust for the same command, after over before, with standard error
-    pub factor: Option<(f64, f64)>,
+    /// of a rotor: thrust for the same command over that before
+    pub factor: Option<Moved>,
     /// of the centre of mass: how far it moved along body x and y, arms, with standard errors
     pub offset: Option<[(f64, f64); 2]>,
     /// what accounts for it nearly as well
@@ -77,13 +77,12 @@ pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> B
     let scale = scatter(balance, groups);
     let pair = Pair { balance, groups, scale };
     let moved: [Moved; AXES] = std::array::from_fn(|axis| pair.moved(axis));
-    let by = Vector3::from(moved.map(|moved| moved.by.0));
-    let variances = Vector3::from(moved.map(|moved| moved.by.1.powi(2)));
+    let (by, variances) = (difference(&moved), variances_of(&moved, |moved| moved.by));
     let before = Vector3::from(moved.map(|moved| moved.before.0));
     let known = explanations(vehicle, &before);
     let strength = by.component_mul(&by).component_div(&variances).sum();
     let shares: Vec<f64> = (0..vehicle.rotors.len()).map(|rotor| pair.share(rotor)).collect();
-    let mut found = found(&known, (&by, &variances), &shares, strength);
+    let mut found = found(&known, &moved, &shares, strength);
     if let Some(found) = &mut found {
         found.carried_by = carriers(&pair, found, &known);
     }
@@ -96,13 +95,22 @@ pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> B
     BalanceChange { moved, strength, scatter: scale, found, least }
 }
 
+fn difference(moved: &[Moved; AXES]) -> Vector3<f64> {
+    Vector3::from(moved.map(|moved| moved.by.0))
+}
+
+fn variances_of(moved: &[Moved; AXES], of: fn(&Moved) -> (f64, f64)) -> Vector3<f64> {
+    Vector3::from(moved.map(|moved| of(&moved).1.powi(2)))
+}
+
 /// What accounts for a move, if anything has to.
 fn found(
     known: &[Explanation],
-    (by, variances): (&Vector3<f64>, &Vector3<f64>),
+    moved: &[Moved; AXES],
     shares: &[f64],
     strength: f64,
 ) -> Option<BalanceFound> {
+    let (by, variances) = (&difference(moved), &variances_of(moved, |moved| moved.by));
     let mut accounts: Vec<(Account, f64)> = known
         .iter()
         .map(|explanation| {
@@ -132,7 +140,15 @@ fn found(
     Some(BalanceFound {
         what: fits.then_some(best.what),
         factor: match best.what {
-            What::Rotor(rotor) if fits => Some(factor(amounts[0], shares[rotor])),
+            What::Rotor(rotor) if fits => {
+                let rotors = known.iter().find(|explanation| explanation.what == best.what);
+                let alone = |of: fn(&Moved) -> (f64, f64)| {
+                    rotors.map_or(f64::NAN, |known| known.std(&variances_of(moved, of)) / shares[rotor])
+                };
+                let (after, std) = factor(amounts[0], shares[rotor]);
+                let errors = [alone(|moved| moved.before), alone(|moved| moved.after)];
+                Some(Moved { before: (1.0, errors[0]), after: (after, errors[1]), by: (after - 1.0, std) })
+            }
             _ => None,
         },
         // the thrust has to act where the centre of mass went
@@ -149,14 +165,13 @@ fn carriers(pair: &Pair, found: &BalanceFound, known: &[Explanation]) -> Vec<usi
         let groups = Groups { before: pair.groups.before.clone(), after: vec![**flight] };
         let one = Pair { groups: &groups, ..*pair };
         let moved: [Moved; AXES] = std::array::from_fn(|axis| one.moved(axis));
-        let by = Vector3::from(moved.map(|moved| moved.by.0));
-        let variances = Vector3::from(moved.map(|moved| moved.by.1.powi(2)));
+        let (by, variances) = (difference(&moved), variances_of(&moved, |moved| moved.by));
         let Some(explanation) = known.iter().find(|known| Some(known.what) == found.what) else {
             return by.component_mul(&by).component_div(&variances).sum() >= NAMED;
         };
         let account = explanation.accounts(&by, &variances);
         let is_same_way = match found.factor {
-            Some((factor, _)) => (factor < 1.0) == (account.amounts[0].0 > 0.0),
+            Some(factor) => (factor.by.0 < 0.0) == (account.amounts[0].0 > 0.0),
             None => true,
         };
         is_same_way && account.amounts.iter().any(|(amount, std)| amount.abs() > SAYS * std)

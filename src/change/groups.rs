@@ -39,6 +39,13 @@ pub struct Moved {
 }
 
 impl Moved {
+    /// In another unit.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        let of = |(value, std): (f64, f64)| (factor * value, factor.abs() * std);
+        Self { before: of(self.before), after: of(self.after), by: of(self.by) }
+    }
+
     /// The difference in standard errors.
     #[must_use]
     pub fn sigmas(&self) -> f64 {

@@ -4,6 +4,7 @@ mod acceptance;
 mod along;
 mod averaged;
 mod base;
+mod by_flight;
 mod candidates;
 mod channels;
 mod columns;
@@ -71,6 +72,7 @@ mod words;
 
 pub use along::wrench_along;
 pub use base::Base;
+pub use by_flight::{FlightParameter, Owner, by_flight};
 pub use candidates::{Candidate, candidates};
 pub use channels::{AXES, CHANNEL_NAMES, CHANNELS, Channels, Nuisance, NuisanceColumn, SECOND};
 pub use empirical::{Along, Empirical};

@@ -6,6 +6,7 @@
 
 mod after_flight;
 mod both_logs;
+mod compare;
 mod correlation;
 mod doubts;
 mod effects;
@@ -24,6 +25,9 @@ mod vehicle;
 mod vehicle_given;
 
 pub use after_flight::{AfterFlight, FlightLogs, after_flight};
+pub use compare::{
+    Change, Changed, CompareRequest, CompareStudy, Compared, ComparedFlight, LeastChange, Track, compare,
+};
 pub use correlation::Correlation;
 pub use effects::{effects_file, effects_of, effects_text, with_further, with_stated_lag};
 pub use error::StudyError;
