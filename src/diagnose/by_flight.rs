@@ -126,7 +126,8 @@ fn parameters(fitted: &Fitted, explanation: &Explanation, terms: &[EffectTerm]) 
                 let is_amount = present.signature.amounts.contains(&slot);
                 let is_known = terms.iter().any(|term| is_same(term, present));
                 let day = present.signature.role.of_the_day;
-                let estimate = (present.values[slot], fitted.std_of(column, (present.values[slot], parameter.unit)));
+                let estimate =
+                    (present.values[slot], fitted.std_of(column, (present.values[slot], parameter.unit)));
                 if is_amount && (is_known || day) && estimate.1 > 0.0 {
                     out.push(FlightParameter {
                         name: named(present, parameter.name),

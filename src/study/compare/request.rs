@@ -33,7 +33,9 @@ impl CompareRequest {
     pub fn check(&self) -> Result<(), StudyError> {
         check_transient(self.transient_s)?;
         if self.before.is_empty() || self.before.len() + self.after.len() < 2 {
-            let why = "expected at least two recordings: one before --with and one after it, or a row of them".to_owned();
+            let why =
+                "expected at least two recordings: one before --with and one after it, or a row of them"
+                    .to_owned();
             return Err(StudyError::Setting { name: "with", why });
         }
         self.read.check(self.before.iter().chain(&self.after))

@@ -66,7 +66,8 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     } else {
         tracks(&flights.signals, &vehicle)
     };
-    let task = Task { vehicle: &vehicle, balance: &balance, tracks: &tracks, is_known: request.vehicle.is_some() };
+    let task =
+        Task { vehicle: &vehicle, balance: &balance, tracks: &tracks, is_known: request.vehicle.is_some() };
     let count = flights.signals.len();
     let groups = (first < count).then(|| Groups::split(count, first));
     let compared = groups.as_ref().map(|groups| task.compared(groups));
@@ -76,10 +77,8 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         (strongest > 0.0).then_some((strongest, compared))
     });
     let compared_flights = flights.inputs.iter().zip(&flights.recordings).zip(&flights.signals).zip(reasons);
-    let compared_flights = compared_flights.map(|(((input, recording), signals), balance_only)| ComparedFlight {
-        input: input.clone(),
-        power_w: power_w(recording, signals),
-        balance_only,
+    let compared_flights = compared_flights.map(|(((input, recording), signals), balance_only)| {
+        ComparedFlight { input: input.clone(), power_w: power_w(recording, signals), balance_only }
     });
     Ok(CompareStudy {
         flights: compared_flights.collect(),
@@ -116,7 +115,9 @@ impl Task<'_> {
         let balance = judge_balance(self.balance, groups, self.vehicle);
         let mut changes = self.of_balance(&balance);
         let mut least = self.least_of_balance(&balance);
-        for (place, track) in self.tracks.iter().enumerate().filter(|(_, track)| track.owner == Owner::Vehicle) {
+        for (place, track) in
+            self.tracks.iter().enumerate().filter(|(_, track)| track.owner == Owner::Vehicle)
+        {
             let Some(judged) = judge_parameter(&track.values, groups, &track.spread) else { continue };
             let (what, unit) = (Changed::Parameter(place), track.unit);
             least.push(LeastChange { what, size: judged.least, unit });
@@ -167,12 +168,13 @@ impl Task<'_> {
 
     fn least_of_balance(&self, balance: &BalanceChange) -> Vec<LeastChange> {
         let (arm, length) = self.arm();
-        let of_rotor = |(rotor, size): (usize, &f64)| LeastChange { what: Changed::Rotor(rotor), size: *size, unit: "-" };
-        let centre = LeastChange {
-            what: Changed::CentreOfMass(0),
-            size: balance.least.centre * arm,
-            unit: length,
+        let of_rotor = |(rotor, size): (usize, &f64)| LeastChange {
+            what: Changed::Rotor(rotor),
+            size: *size,
+            unit: "-",
         };
+        let centre =
+            LeastChange { what: Changed::CentreOfMass(0), size: balance.least.centre * arm, unit: length };
         balance.least.rotors.iter().enumerate().map(of_rotor).chain([centre]).collect()
     }
 }
