@@ -6,9 +6,11 @@ mod explanation;
 mod groups;
 mod history;
 mod parameter;
+mod together;
 
 pub use balance_change::{BalanceChange, BalanceFound, Least, NAMED, judge_balance};
 pub use explanation::What;
 pub use groups::{Groups, Moved};
 pub use history::{Step, steps};
 pub use parameter::{ParameterChange, Spread, judge_parameter};
+pub use together::together;

@@ -9,7 +9,7 @@ use crate::maker::dice;
 use crate::maker::realistic::one_vehicle::OneVehicle;
 
 /// What is left of the rotor that is weak after.
-const LEFT: f64 = 0.97;
+pub const LEFT: f64 = 0.97;
 /// Vehicles of a seed before it is given up.
 const DRAWS: u64 = 8;
 
@@ -62,13 +62,14 @@ pub fn several(folder: &Path, seed: u64, count: u64, rotor: Option<usize>) -> Re
     Err(why)
 }
 
-/// Writes pairs, unchanged and with one weak rotor, into folders.
-pub fn write(folder: &Path, seed: u64, count: u64) {
-    (0..count).into_par_iter().for_each(|place| {
-        for changed in [false, true] {
+/// Writes flights of one vehicle each into folders; of pairs, also those with a weak rotor.
+pub fn write(folder: &Path, seed: u64, count: u64, flights: u64) {
+    (seed..seed + count).into_par_iter().for_each(|seed| {
+        for changed in [false, true].into_iter().take(if flights == 2 { 2 } else { 1 }) {
             let kind = if changed { "weak" } else { "same" };
-            let at = folder.join(format!("{kind}_{}", seed + place));
-            match pair(&at, seed + place, changed) {
+            let at = folder.join(format!("{kind}_{seed}"));
+            let made = if flights == 2 { pair(&at, seed, changed) } else { several(&at, seed, flights, None) };
+            match made {
                 Ok(made) => println!("{} {:?}", at.display(), made.weak),
                 Err(why) => println!("{}: not flown: {why}", at.display()),
             }

@@ -1,6 +1,7 @@
-//! Several flights of one vehicle, with an estimator in the loop.
+//! Several flights of one vehicle, with an estimator in the loop: pairs that are compared, and eight that are put together.
 
 mod made;
+mod pairs;
 
 use std::path::PathBuf;
 
@@ -10,6 +11,11 @@ use crate::support::Arguments;
 pub fn run(arguments: &Arguments) {
     let seed = arguments.number("--seed", 1_u64);
     if let Some(folder) = arguments.text("--write").map(PathBuf::from) {
-        made::write(&folder, seed, arguments.number("--count", 40_u64));
+        made::write(&folder, seed, arguments.number("--count", 40_u64), arguments.number("--flights", 2_u64));
+        return;
+    }
+    let compared = arguments.number("--compared", 40_u64);
+    if compared > 0 {
+        pairs::run(seed, compared);
     }
 }

@@ -53,7 +53,11 @@ pub(super) fn sentence(study: &CompareStudy, change: &Change) -> String {
     let (before, after, by) = moved.unwrap_or_default();
     let unit = spaced(change.unit);
     let told = match change.what {
-        Changed::Rotor(_) => format!("{} gives {after} of the thrust that it gave for the same command", name(study, change.what)),
+        // what is compared errs in both
+        Changed::Rotor(_) => {
+            let whole = change.moved.map_or_else(String::new, |moved| with_error(moved.after.0, moved.by.1));
+            format!("{} gives {whole} of the thrust that it gave for the same command", name(study, change.what))
+        }
         Changed::CentreOfMass(_) => {
             format!("{} moved by {by}{unit} (a load or a battery that sits elsewhere does the same)", name(study, change.what))
         }
