@@ -25,7 +25,9 @@ mod tests {
 
     #[test]
     fn flights_that_agree_halve_the_error_of_four_and_flights_that_do_not_widen_it() {
-        let (mean, std) = together(&[Some((1.0, 0.2)), None, Some((1.1, 0.2)), Some((0.9, 0.2)), Some((1.0, 0.2))]).unwrap();
+        let (mean, std) =
+            together(&[Some((1.0, 0.2)), None, Some((1.1, 0.2)), Some((0.9, 0.2)), Some((1.0, 0.2))])
+                .unwrap();
         assert!((mean - 1.0).abs() < 1e-12 && (std - 0.1).abs() < 1e-12);
         let (_, wide) = together(&[Some((1.0, 0.1)), Some((2.0, 0.1)), Some((3.0, 0.1))]).unwrap();
         assert!(wide > 0.2);

@@ -1,16 +1,24 @@
 //! What each of several flights says of the vehicle's parameters, with its day's own beside them.
 //!
-//! Every flight is fitted alone to all that any of them shows of the vehicle: its mass, its wind and its sensors are its own, and the
+//! Every flight is fitted alone to all that is known to act on the vehicle: its mass, its wind and its sensors are its own, and the
 //! covariance of what is left has them in it. Put together by their information, such values are what one fit of all flights gives.
 
 use super::base::Base;
 use super::explain::ExplainSettings;
 use super::explanation::{Explanation, Verdict};
+use super::fed_back::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
+use super::floors::add_floors;
+use super::latency::LatencyFinding;
+use super::left_over::add_left_over;
+use super::reconstructed::reconstruct;
 use super::recorded::Recorded;
 use super::signature::EffectTerm;
+use super::tested::Search;
+use super::torques_by_instruments::torques_by_instruments;
 use super::trace::Trace;
-use crate::estimate::{NAMES, THETA, UNITS};
+use crate::estimate::{NAMES, UNITS};
+use crate::physics::PhysicsError;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
 use rayon::prelude::*;
@@ -20,7 +28,7 @@ use rayon::prelude::*;
 pub enum Owner {
     /// the same in every flight
     Vehicle,
-    /// of the day: load and battery
+    /// of the day: load, battery, wind
     Flight,
 }
 
@@ -35,8 +43,12 @@ pub struct FlightParameter {
     pub owner: Owner,
     /// effect of which it is; `None`: of the rigid body
     pub effect: Option<&'static str>,
-    /// value and standard error
+    /// value at which the effect is none
+    pub nothing: f64,
+    /// value, and its standard error by this flight
     pub estimate: (f64, f64),
+    /// standard error by how far the laws hold, which all flights have in common
+    pub law_std: f64,
 }
 
 /// The parameters of each flight, fitted with every effect of the vehicle that one of the explanations has; there is one explanation a
@@ -52,18 +64,32 @@ pub fn by_flight(
     let one = |(signals, explanation): (&Signals, &&Explanation)| {
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let base = with_terms(explanation, &terms, (vehicle, &trace));
-        let traces = [trace];
-        let fitted = fit(&traces, base, Newton::Held).ok()?;
-        Some(parameters(&fitted, explanation, &terms))
+        let fitted = settled(signals, trace, base, explanation.search.latency).ok()?;
+        Some(parameters(&fitted, explanation.turned_by_control, &terms))
     };
     let each: Vec<_> = flights.par_iter().zip(explanations).map(one).collect();
     each.into_iter().map(Option::unwrap_or_default).collect()
 }
 
-/// Whether an effect stays with the vehicle from flight to flight.
-fn is_of_the_vehicle(term: &EffectTerm) -> bool {
+/// The parameters of each flight, fitted alone to the model of one explanation of all of them, with what is its own of the day.
+#[must_use]
+pub fn each_with_model_of_all(
+    flights: &[Signals],
+    explanation: &Explanation,
+    vehicle: &Vehicle,
+    settings: &ExplainSettings,
+) -> Vec<Vec<FlightParameter>> {
+    by_flight(flights, &vec![explanation; flights.len()], vehicle, settings)
+}
+
+/// Whether an effect may be compared from flight to flight at all.
+fn is_comparable(term: &EffectTerm) -> bool {
+    term.signature.role.moment.is_none() && !term.free.is_empty()
+}
+
+fn owner(term: &EffectTerm) -> Owner {
     let role = &term.signature.role;
-    !role.of_the_day && role.moment.is_none() && !term.free.is_empty()
+    if role.of_the_day || role.of_the_loading || role.hangs_below { Owner::Flight } else { Owner::Vehicle }
 }
 
 /// Each effect of the vehicle that was named, once; each rotor may have its own.
@@ -72,7 +98,8 @@ fn of_the_vehicle(explanations: &[&Explanation]) -> Vec<EffectTerm> {
     for explanation in explanations.iter().filter(|one| one.verdict != Verdict::Unexplained) {
         let named = |term: &&EffectTerm| explanation.named.iter().any(|named| named.id == term.id());
         for term in explanation.search.after.base.present.iter().filter(named) {
-            if is_of_the_vehicle(term) && !terms.iter().any(|known| is_same(known, term)) {
+            let is_known = terms.iter().any(|known| is_same(known, term));
+            if is_comparable(term) && owner(term) == Owner::Vehicle && !is_known {
                 terms.push(term.clone());
             }
         }
@@ -100,43 +127,65 @@ fn with_terms(explanation: &Explanation, terms: &[EffectTerm], (vehicle, trace):
     base
 }
 
-fn parameters(fitted: &Fitted, explanation: &Explanation, terms: &[EffectTerm]) -> Vec<FlightParameter> {
+/// One flight fitted to a model, its sizes and errors as an explanation has them, but for how far the laws hold.
+fn settled(
+    signals: &Signals,
+    trace: Trace,
+    base: Base,
+    latency: LatencyFinding,
+) -> Result<Fitted, PhysicsError> {
+    let traces = [trace];
+    let after = fit(&traces, base, Newton::Held)?;
+    let mut found = Search { before: after.clone(), after, latency, steps: Vec::new(), last: Vec::new() };
+    reconstruct(std::slice::from_ref(signals), &traces, &mut found)?;
+    let by_instruments = if is_fed_back(&traces) {
+        torques_by_instruments(&traces, latency.std_s, &mut found.after)?
+    } else {
+        Vec::new()
+    };
+    add_left_over(&mut found.after, &by_instruments);
+    Ok(found.after)
+}
+
+fn parameters(fitted: &Fitted, turned_by_control: bool, terms: &[EffectTerm]) -> Vec<FlightParameter> {
+    let mut of_laws = fitted.clone();
+    add_floors(&mut of_laws);
+    let law_std = |before: f64, after: f64| (after - before).max(0.0).sqrt();
     let mut out = Vec::new();
-    let body = fitted.rigid_body();
-    let tells_inertia = fitted.rows.compares_torques && !explanation.turned_by_control;
+    let (body, with_laws) = (fitted.rigid_body(), of_laws.rigid_body());
+    let tells_inertia = fitted.rows.compares_torques && !turned_by_control;
     // products say nothing that the moments do not
-    for index in [0, 1, 4, 6].into_iter().filter(|index| *index < THETA && (*index == 0 || tells_inertia)) {
-        let std = body.covariance[(index, index)].max(0.0).sqrt();
-        if body.theta[index].is_finite() && std > 0.0 {
-            let owner = if index == 0 { Owner::Flight } else { Owner::Vehicle };
-            let estimate = (body.theta[index], std);
+    for index in [0, 1, 4, 6].into_iter().filter(|index| *index == 0 || tells_inertia) {
+        let variance = body.covariance[(index, index)];
+        if body.theta[index].is_finite() && variance > 0.0 {
             out.push(FlightParameter {
                 name: NAMES[index].to_owned(),
                 unit: UNITS[index],
-                owner,
+                owner: if index == 0 { Owner::Flight } else { Owner::Vehicle },
                 effect: None,
-                estimate,
+                nothing: 0.0,
+                estimate: (body.theta[index], variance.sqrt()),
+                law_std: law_std(variance, with_laws.covariance[(index, index)]),
             });
         }
     }
     let mut column = fitted.rows.nuisances.len();
     for present in &fitted.base.present {
         for &slot in &present.free {
-            if let Some(parameter) = present.parameter(slot) {
-                let is_amount = present.signature.amounts.contains(&slot);
-                let is_known = terms.iter().any(|term| is_same(term, present));
-                let day = present.signature.role.of_the_day;
-                let estimate =
-                    (present.values[slot], fitted.std_of(column, (present.values[slot], parameter.unit)));
-                if is_amount && (is_known || day) && estimate.1 > 0.0 {
-                    out.push(FlightParameter {
-                        name: named(present, parameter.name),
-                        unit: parameter.unit,
-                        owner: if day { Owner::Flight } else { Owner::Vehicle },
-                        effect: Some(present.id()),
-                        estimate,
-                    });
-                }
+            let is_known = terms.iter().any(|term| is_same(term, present)) || owner(present) == Owner::Flight;
+            if let Some(parameter) = present.parameter(slot).filter(|_| present.is_amount(slot) && is_known) {
+                let value = present.values[slot];
+                let std = fitted.std_of(column, (value, parameter.unit));
+                let whole = of_laws.std_of(column, (value, parameter.unit));
+                out.extend((std > 0.0).then(|| FlightParameter {
+                    name: named(present, parameter.name),
+                    unit: parameter.unit,
+                    owner: owner(present),
+                    effect: Some(present.id()),
+                    nothing: present.signature.nothing,
+                    estimate: (value, std),
+                    law_std: law_std(std * std, whole * whole),
+                }));
             }
             column += 1;
         }

@@ -67,6 +67,8 @@ pub(super) struct Prepared {
     pub(super) recordings: Vec<Recording>,
     pub(super) signals: Vec<Signals>,
     pub(super) inputs: Vec<InputFile>,
+    /// seen with the wind: not where the setpoints are; empty: none is
+    pub(super) drift: Vec<bool>,
 }
 
 impl Prepared {
@@ -82,12 +84,14 @@ impl Prepared {
     /// As flights that a model is shown on.
     pub(super) fn held_out(&self) -> Vec<HeldOut<'_>> {
         let each = self.recordings.iter().zip(&self.signals).zip(&self.inputs);
-        each.map(|((recording, signals), input)| HeldOut {
-            name: &input.path,
-            signals,
-            recording: Some(recording),
-        })
-        .collect()
+        let drifts = |place: usize| self.drift.get(place).copied().unwrap_or(false);
+        each.enumerate()
+            .map(|(place, ((recording, signals), input))| HeldOut {
+                name: &input.path,
+                signals,
+                recording: (!drifts(place)).then_some(recording),
+            })
+            .collect()
     }
 }
 

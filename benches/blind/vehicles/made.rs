@@ -68,7 +68,8 @@ pub fn write(folder: &Path, seed: u64, count: u64, flights: u64) {
         for changed in [false, true].into_iter().take(if flights == 2 { 2 } else { 1 }) {
             let kind = if changed { "weak" } else { "same" };
             let at = folder.join(format!("{kind}_{seed}"));
-            let made = if flights == 2 { pair(&at, seed, changed) } else { several(&at, seed, flights, None) };
+            let made =
+                if flights == 2 { pair(&at, seed, changed) } else { several(&at, seed, flights, None) };
             match made {
                 Ok(made) => println!("{} {:?}", at.display(), made.weak),
                 Err(why) => println!("{}: not flown: {why}", at.display()),

@@ -2,6 +2,7 @@
 
 mod made;
 mod pairs;
+mod together;
 
 use std::path::PathBuf;
 
@@ -17,5 +18,9 @@ pub fn run(arguments: &Arguments) {
     let compared = arguments.number("--compared", 40_u64);
     if compared > 0 {
         pairs::run(seed, compared);
+    }
+    let vehicles = arguments.number("--together", 0_u64);
+    if vehicles > 0 {
+        together::run(seed, vehicles, arguments.number("--flights", 8_u64));
     }
 }

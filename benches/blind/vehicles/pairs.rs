@@ -20,8 +20,10 @@ struct Said {
 
 /// Compares `count` unchanged pairs and as many with a weak rotor.
 pub fn run(seed: u64, count: u64) {
-    let wanted: Vec<(u64, bool)> =
-        [false, true].into_iter().flat_map(|changed| (seed..seed + count).map(move |seed| (seed, changed))).collect();
+    let wanted: Vec<(u64, bool)> = [false, true]
+        .into_iter()
+        .flat_map(|changed| (seed..seed + count).map(move |seed| (seed, changed)))
+        .collect();
     let said: Vec<Said> = wanted.par_iter().filter_map(|(seed, changed)| one(*seed, *changed)).collect();
     let (same, weak): (Vec<&Said>, Vec<&Said>) = said.iter().partition(|said| said.weak.is_none());
     let called: Vec<&&Said> = same.iter().filter(|said| said.changed).collect();
@@ -78,7 +80,9 @@ fn said(seed: u64, made: &Logs, study: &CompareStudy) -> Said {
     let told: Vec<String> = compared
         .changes
         .iter()
-        .map(|change| format!("{:?} {:?} may be {:?}", change.what, change.moved.map(|moved| moved.by), change.rivals))
+        .map(|change| {
+            format!("{:?} {:?} may be {:?}", change.what, change.moved.map(|moved| moved.by), change.rivals)
+        })
         .collect();
     Said {
         weak: made.weak,

@@ -77,7 +77,11 @@ fn truth(case: &RealCase, name: &str) -> Option<f64> {
     let inside = &case.case;
     let inertia = &inside.craft.inertia;
     let of = |id: &str, parameter: &str| {
-        inside.truth.iter().find(|(other, name, _)| *other == id && *name == parameter).map(|(.., value)| *value)
+        inside
+            .truth
+            .iter()
+            .find(|(other, name, _)| *other == id && *name == parameter)
+            .map(|(.., value)| *value)
     };
     match name {
         "mass" => Some(inside.craft.mass),
@@ -95,7 +99,9 @@ fn figures(all: &[Put], seconds: &mut [f64]) {
     for put in all {
         by_name.entry(&put.name).or_default().push(put);
     }
-    println!("parameter, vehicles, smaller than the best single flight's, with a truth, covered, median error over best single");
+    println!(
+        "parameter, vehicles, smaller than the best single flight's, with a truth, covered, median error over best single"
+    );
     for (name, put) in &by_name {
         tell(name, put);
     }

@@ -4,7 +4,7 @@ use super::words::{answer, rival_name, sentence};
 use crate::change::Moved;
 use crate::diagnose::Owner;
 use crate::note::Note;
-use crate::study::{Change, Changed, CompareStudy, InputFile, LeastChange};
+use crate::study::{Change, Changed, CompareStudy, InputFile, LeastChange, Track};
 use serde::Serialize;
 
 /// The JSON document of `compare`.
@@ -82,6 +82,8 @@ struct TrackEntry {
     unit: &'static str,
     owner: &'static str,
     values: Vec<Option<Estimate>>,
+    /// of all flights, where nothing changed of it
+    together: Option<Estimate>,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -176,11 +178,12 @@ fn flight(study: &CompareStudy, place: usize) -> FlightEntry {
     }
 }
 
-fn track(of: &crate::study::Track) -> TrackEntry {
+fn track(of: &Track) -> TrackEntry {
     TrackEntry {
         name: of.name.clone(),
         unit: of.unit,
         owner: if of.owner == Owner::Flight { "flight" } else { "vehicle" },
-        values: of.values.iter().map(|value| value.map(estimate)).collect(),
+        values: (0..of.values.len()).map(|flight| of.alone(flight).map(estimate)).collect(),
+        together: of.together().map(estimate),
     }
 }

@@ -6,5 +6,5 @@ mod result;
 mod run;
 
 pub use request::CompareRequest;
-pub use result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange, Track};
+pub use result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange};
 pub use run::compare;

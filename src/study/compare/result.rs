@@ -1,10 +1,9 @@
 //! The result of comparing: every flight, what changed, and what could not have been seen.
 
-use crate::change::{BalanceChange, Groups, Moved, Spread, Step, What};
-use crate::diagnose::Owner;
+use crate::change::{BalanceChange, Groups, Moved, Step, What};
 use crate::draft::Draft;
 use crate::note::Note;
-use crate::study::InputFile;
+use crate::study::{InputFile, Track};
 use crate::trim::{Balance, mean_arm_m};
 use crate::vehicle::Vehicle;
 
@@ -42,21 +41,6 @@ pub struct ComparedFlight {
     pub power_w: Option<f64>,
     /// why its motion was not compared; `None`: it was
     pub balance_only: Option<String>,
-}
-
-/// A parameter along the flights.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Track {
-    /// `mass`, `ixx` ... or `effect.parameter`
-    pub name: String,
-    /// SI
-    pub unit: &'static str,
-    /// the flight's own parameters are told and never a change
-    pub owner: Owner,
-    /// value and standard error of each flight; `None` where it does not determine it
-    pub values: Vec<Option<(f64, f64)>>,
-    /// how it differs between flights of one vehicle beside its error
-    pub spread: Spread,
 }
 
 /// What was compared between two groups, and what came out.

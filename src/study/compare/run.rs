@@ -2,7 +2,7 @@
 
 use super::motion::tracks;
 use super::request::CompareRequest;
-use super::result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange, Track};
+use super::result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange};
 use crate::change::{BalanceChange, Groups, What, judge_balance, judge_parameter, steps};
 use crate::config::LoadedVehicle;
 use crate::diagnose::Owner;
@@ -13,7 +13,7 @@ use crate::signals::{ConditionSettings, Signals, ThrustPreference, best};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
-use crate::study::{Progress, Stage, StudyError, VehicleGiven};
+use crate::study::{Progress, Stage, StudyError, Track, VehicleGiven};
 use crate::trim::{Balance, Leg, balance, legs, mean_arm_m};
 use crate::vehicle::Vehicle;
 

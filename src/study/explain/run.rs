@@ -1,5 +1,6 @@
 //! Opens, conditions, holds out, explains, tries again, shows, and designs the next flight.
 
+use super::along::with_own_winds;
 use super::hold_out::{hold_back, refuse_shared};
 use super::request::ExplainRequest;
 use super::result::{ExplainStudy, Given};
@@ -57,8 +58,15 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
         ..ConditionSettings::default()
     };
     let mut flights = prepare(logs, (&vehicle, &origin), &settings).map_err(or_unflown)?;
-    let held = prepare(held, (&vehicle, &origin), &settings).map_err(of_holdout)?;
+    let mut held = prepare(held, (&vehicle, &origin), &settings).map_err(of_holdout)?;
     refuse_shared(&flights, &held)?;
+    // the wind of one flight is for its explanation to name
+    let several = flights.signals.len() > 1;
+    let winds_m_s = if several { with_own_winds(&mut flights, &vehicle) } else { Vec::new() };
+    if several {
+        with_own_winds(&mut held, &vehicle);
+    }
+    let whole_flights = if several { flights.signals.clone() } else { Vec::new() };
     let whole = flights.signals.last().cloned();
     let (shown_on, back) =
         if held.is_empty() { hold_back(&mut flights) } else { (ShownOn::Flights(held.inputs.clone()), None) };
@@ -74,6 +82,9 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let traces =
         flights.signals.iter().filter_map(|signals| Trace::new(signals, &vehicle, half_width_s).ok());
     study.traces = traces.collect();
+    if several {
+        study.tell_along(&whole_flights, winds_m_s);
+    }
     study.drafted = draft;
     if request.design_next {
         progress.stage(Stage::Designing);
