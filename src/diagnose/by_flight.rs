@@ -45,10 +45,10 @@ pub struct FlightParameter {
     pub effect: Option<&'static str>,
     /// value at which the effect is none
     pub nothing: f64,
-    /// value, and its standard error by this flight
+    /// value and standard error
     pub estimate: (f64, f64),
-    /// standard error by how far the laws hold, which all flights have in common
-    pub law_std: f64,
+    /// part of that error which goes the same way in every flight of the vehicle: how far laws hold, and what they leave over
+    pub common_std: f64,
 }
 
 /// The parameters of each flight, fitted with every effect of the vehicle that one of the explanations has; there is one explanation a
@@ -64,8 +64,8 @@ pub fn by_flight(
     let one = |(signals, explanation): (&Signals, &&Explanation)| {
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let base = with_terms(explanation, &terms, (vehicle, &trace));
-        let fitted = settled(signals, trace, base, explanation.search.latency).ok()?;
-        Some(parameters(&fitted, explanation.turned_by_control, &terms))
+        let (fitted, by_instruments) = settled(signals, trace, base, explanation.search.latency).ok()?;
+        Some(parameters((&fitted, &by_instruments), explanation.turned_by_control, &terms))
     };
     let each: Vec<_> = flights.par_iter().zip(explanations).map(one).collect();
     each.into_iter().map(Option::unwrap_or_default).collect()
@@ -80,6 +80,57 @@ pub fn each_with_model_of_all(
     settings: &ExplainSettings,
 ) -> Vec<Vec<FlightParameter>> {
     by_flight(flights, &vec![explanation; flights.len()], vehicle, settings)
+}
+
+/// The rigid body's parameters of each flight, fitted without any effect.
+#[must_use]
+pub fn rigid_by_flight(
+    flights: &[Signals],
+    explanation: &Explanation,
+    vehicle: &Vehicle,
+    settings: &ExplainSettings,
+) -> Vec<Vec<FlightParameter>> {
+    let one = |signals: &Signals| {
+        let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
+        let base = explanation.search.before.base.clone();
+        let (fitted, by_instruments) = settled(signals, trace, base, explanation.search.latency).ok()?;
+        Some(parameters((&fitted, &by_instruments), explanation.turned_by_control, &[]))
+    };
+    flights.par_iter().map(one).map(Option::unwrap_or_default).collect()
+}
+
+impl Explanation {
+    /// The same models, `before` and `after`, with other values: mass, moments of inertia and effects by the names of
+    /// [`FlightParameter`], SI. What is not among them stays.
+    #[must_use]
+    pub fn with_values(&self, before: &[(&str, f64)], after: &[(&str, f64)]) -> Self {
+        let mut moved = self.clone();
+        set_values(&mut moved.search.before.base, before);
+        set_values(&mut moved.search.after.base, after);
+        moved
+    }
+}
+
+fn set_values(base: &mut Base, values: &[(&str, f64)]) {
+    let of = |name: &str| values.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
+    let body = &mut base.vehicle.body;
+    // a vehicle that was weighed has its mass
+    if let Some(mass_kg) = of(NAMES[0]).filter(|_| base.weighed_kg.is_none()) {
+        body.mass_kg = mass_kg;
+    }
+    for (axis, name) in [NAMES[1], NAMES[4], NAMES[6]].into_iter().enumerate() {
+        if let Some(moment) = of(name) {
+            body.inertia_kg_m2[(axis, axis)] = moment;
+        }
+    }
+    for present in &mut base.present {
+        for slot in present.free.clone() {
+            let name = present.parameter(slot).map(|parameter| named(present, parameter.name));
+            if let Some(value) = name.and_then(|name| of(&name)) {
+                present.values[slot] = value;
+            }
+        }
+    }
 }
 
 /// Whether an effect may be compared from flight to flight at all.
@@ -127,13 +178,14 @@ fn with_terms(explanation: &Explanation, terms: &[EffectTerm], (vehicle, trace):
     base
 }
 
-/// One flight fitted to a model, its sizes and errors as an explanation has them, but for how far the laws hold.
+/// One flight fitted to a model, its sizes and errors as an explanation has them, but for what all flights have in common; and which
+/// coefficients the instruments have told.
 fn settled(
     signals: &Signals,
     trace: Trace,
     base: Base,
     latency: LatencyFinding,
-) -> Result<Fitted, PhysicsError> {
+) -> Result<(Fitted, Vec<usize>), PhysicsError> {
     let traces = [trace];
     let after = fit(&traces, base, Newton::Held)?;
     let mut found = Search { before: after.clone(), after, latency, steps: Vec::new(), last: Vec::new() };
@@ -143,16 +195,20 @@ fn settled(
     } else {
         Vec::new()
     };
-    add_left_over(&mut found.after, &by_instruments);
-    Ok(found.after)
+    Ok((found.after, by_instruments))
 }
 
-fn parameters(fitted: &Fitted, turned_by_control: bool, terms: &[EffectTerm]) -> Vec<FlightParameter> {
-    let mut of_laws = fitted.clone();
-    add_floors(&mut of_laws);
-    let law_std = |before: f64, after: f64| (after - before).max(0.0).sqrt();
+fn parameters(
+    (fitted, by_instruments): (&Fitted, &[usize]),
+    turned_by_control: bool,
+    terms: &[EffectTerm],
+) -> Vec<FlightParameter> {
+    let mut whole = fitted.clone();
+    add_left_over(&mut whole, by_instruments);
+    add_floors(&mut whole);
+    let common = |own: f64, all: f64| (all - own).max(0.0).sqrt();
     let mut out = Vec::new();
-    let (body, with_laws) = (fitted.rigid_body(), of_laws.rigid_body());
+    let (body, with_common) = (fitted.rigid_body(), whole.rigid_body());
     let tells_inertia = fitted.rows.compares_torques && !turned_by_control;
     // products say nothing that the moments do not
     for index in [0, 1, 4, 6].into_iter().filter(|index| *index == 0 || tells_inertia) {
@@ -164,8 +220,8 @@ fn parameters(fitted: &Fitted, turned_by_control: bool, terms: &[EffectTerm]) ->
                 owner: if index == 0 { Owner::Flight } else { Owner::Vehicle },
                 effect: None,
                 nothing: 0.0,
-                estimate: (body.theta[index], variance.sqrt()),
-                law_std: law_std(variance, with_laws.covariance[(index, index)]),
+                estimate: (body.theta[index], with_common.covariance[(index, index)].sqrt()),
+                common_std: common(variance, with_common.covariance[(index, index)]),
             });
         }
     }
@@ -176,15 +232,15 @@ fn parameters(fitted: &Fitted, turned_by_control: bool, terms: &[EffectTerm]) ->
             if let Some(parameter) = present.parameter(slot).filter(|_| present.is_amount(slot) && is_known) {
                 let value = present.values[slot];
                 let std = fitted.std_of(column, (value, parameter.unit));
-                let whole = of_laws.std_of(column, (value, parameter.unit));
+                let of_whole = whole.std_of(column, (value, parameter.unit));
                 out.extend((std > 0.0).then(|| FlightParameter {
                     name: named(present, parameter.name),
                     unit: parameter.unit,
                     owner: owner(present),
                     effect: Some(present.id()),
                     nothing: present.signature.nothing,
-                    estimate: (value, std),
-                    law_std: law_std(std * std, whole * whole),
+                    estimate: (value, of_whole),
+                    common_std: common(std * std, of_whole * of_whole),
                 }));
             }
             column += 1;

@@ -29,8 +29,8 @@ pub struct Track {
     pub nothing: f64,
     /// value and standard error of each flight; `None` where it does not determine it
     pub values: Vec<Option<(f64, f64)>>,
-    /// standard error by how far the laws hold, which all flights have in common
-    pub law_std: f64,
+    /// part of each flight's error that goes the same way in every flight of the vehicle
+    pub common_std: Vec<f64>,
     /// how it differs between flights of one vehicle beside its error
     pub spread: Spread,
 }
@@ -49,7 +49,7 @@ impl Track {
             effect: parameter.effect,
             nothing: parameter.nothing,
             values: vec![None; flights],
-            law_std: 0.0,
+            common_std: vec![0.0; flights],
             spread,
         }
     }
@@ -65,7 +65,7 @@ impl Track {
                     tracks.len() - 1
                 });
                 tracks[at].values[place] = Some(parameter.estimate);
-                tracks[at].law_std = tracks[at].law_std.max(parameter.law_std);
+                tracks[at].common_std[place] = parameter.common_std;
             }
         }
         tracks
@@ -74,14 +74,13 @@ impl Track {
     /// The value that all flights have in common, with its standard error; `None` where no flight has one.
     #[must_use]
     pub fn together(&self) -> Option<(f64, f64)> {
-        together(&self.values).map(|(value, std)| (value, std.hypot(self.law_std)))
+        together(&self.values, &self.common_std)
     }
 
-    /// The value of one flight alone, with its whole standard error.
+    /// The value of one flight alone, with its standard error.
     #[must_use]
     pub fn alone(&self, flight: usize) -> Option<(f64, f64)> {
-        let (value, std) = self.values.get(flight).copied().flatten()?;
-        Some((value, std.hypot(self.law_std)))
+        self.values.get(flight).copied().flatten()
     }
 
     /// Whether a flight alone shows that the effect is there.
