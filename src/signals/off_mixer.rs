@@ -32,6 +32,14 @@ pub struct OffMixer {
     pub stopped_s: Option<f64>,
 }
 
+impl OffMixer {
+    /// For whoever wants to use the log.
+    #[must_use]
+    pub fn advice(&self) -> String {
+        format!("warning: {self}. From there on the log says nothing of the vehicle's laws")
+    }
+}
+
 impl fmt::Display for OffMixer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { output, left_s, held, stopped_s } = self;
@@ -59,6 +67,9 @@ pub fn outputs_off_mixer(recording: &Recording) -> Vec<OffMixer> {
     let outputs = Outputs { stream, range, motors: &motors, said };
     let mut found: Vec<OffMixer> = motors.iter().filter_map(|&channel| outputs.off(channel)).collect();
     found.sort_by(|a, b| a.left_s.total_cmp(&b.left_s));
+    // from a stopped motor on the vehicle falls, and the others go to their bounds or come to rest on the ground
+    let first_stop_s = found.iter().filter_map(|off| off.stopped_s).fold(f64::INFINITY, f64::min);
+    found.retain(|off| off.left_s <= first_stop_s);
     // all at once is a vehicle that came to rest
     if 2 * found.len() > motors.len() { Vec::new() } else { found }
 }
@@ -142,7 +153,8 @@ impl Outputs<'_> {
     fn stands_apart(&self, samples: std::ops::Range<usize>, channel: usize) -> bool {
         let seconds = self.stream.time_s[samples.end - 1] - self.stream.time_s[samples.start];
         let share = self.share(samples.start, channel);
-        let is_inside = (AT_BOUND..=1.0 - AT_BOUND).contains(&share) || share <= STOPPED;
+        // below the least command in flight a motor is stopped, not saturated
+        let is_inside = (AT_BOUND..=1.0 - AT_BOUND).contains(&share) || share < -AT_BOUND;
         if seconds < HELD_S || !is_inside || !samples.clone().all(|index| self.flies(index, channel)) {
             return false;
         }
