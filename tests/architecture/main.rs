@@ -133,7 +133,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         "report",
         &[
             "note", "text", "vehicle", "physics", "signals", "estimate", "inspect", "config", "compare",
-            "plan", "diagnose", "trim", "change", "study",
+            "plan", "diagnose", "change", "study",
         ],
     ),
     ("export", &["units", "text", "vehicle", "physics"]),
