@@ -14,6 +14,7 @@ use super::left_over::add_left_over;
 use super::reconstructed::reconstruct;
 use super::recorded::Recorded;
 use super::signature::EffectTerm;
+use super::signatures::ALL;
 use super::tested::Search;
 use super::torques_by_instruments::torques_by_instruments;
 use super::trace::Trace;
@@ -43,6 +44,8 @@ pub struct FlightParameter {
     pub owner: Owner,
     /// effect of which it is; `None`: of the rigid body
     pub effect: Option<&'static str>,
+    /// of a wind: 0 to north, 1 to west, 2 up
+    pub wind_axis: Option<usize>,
     /// value at which the effect is none
     pub nothing: f64,
     /// value and standard error
@@ -71,15 +74,34 @@ pub fn by_flight(
     each.into_iter().map(Option::unwrap_or_default).collect()
 }
 
-/// The parameters of each flight, fitted alone to the model of one explanation of all of them, with what is its own of the day.
+/// The parameters of each flight, fitted alone to the model of one explanation of all of them. A flight that drifts is seen with its own
+/// wind, and what is left of the wind is a parameter of its day.
 #[must_use]
 pub fn each_with_model_of_all(
     flights: &[Signals],
+    drifts: &[bool],
     explanation: &Explanation,
-    vehicle: &Vehicle,
-    settings: &ExplainSettings,
+    (vehicle, settings): (&Vehicle, &ExplainSettings),
 ) -> Vec<Vec<FlightParameter>> {
-    by_flight(flights, &vec![explanation; flights.len()], vehicle, settings)
+    let terms = of_the_vehicle(&[explanation]);
+    let one = |(signals, drifts): (&Signals, &bool)| {
+        let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
+        let mut base = with_terms(explanation, &terms, (vehicle, &trace));
+        if *drifts {
+            base.present.extend(wind_beside(&base));
+        }
+        let (fitted, by_instruments) = settled(signals, trace, base, explanation.search.latency).ok()?;
+        Some(parameters((&fitted, &by_instruments), explanation.turned_by_control, &terms))
+    };
+    flights.par_iter().zip(drifts).map(one).map(Option::unwrap_or_default).collect()
+}
+
+/// A wind along the ground, about none, where a force of the air is there through which it acts.
+fn wind_beside(base: &Base) -> Option<EffectTerm> {
+    let acts = base.present.iter().any(|term| term.signature.role.of_air);
+    let is_there = base.present.iter().any(|term| term.signature.role.wind.is_some());
+    let carried = ALL.iter().find_map(|signature| signature.role.wind)?().into_iter().next()?;
+    (acts && !is_there).then_some(carried.term)
 }
 
 /// The rigid body's parameters of each flight, fitted without any effect.
@@ -219,6 +241,7 @@ fn parameters(
                 unit: UNITS[index],
                 owner: if index == 0 { Owner::Flight } else { Owner::Vehicle },
                 effect: None,
+                wind_axis: None,
                 nothing: 0.0,
                 estimate: (body.theta[index], with_common.covariance[(index, index)].sqrt()),
                 common_std: common(variance, with_common.covariance[(index, index)]),
@@ -238,6 +261,7 @@ fn parameters(
                     unit: parameter.unit,
                     owner: owner(present),
                     effect: Some(present.id()),
+                    wind_axis: present.signature.role.wind.map(|_| slot),
                     nothing: present.signature.nothing,
                     estimate: (value, of_whole),
                     common_std: common(std * std, of_whole * of_whole),

@@ -18,7 +18,7 @@ use super::window::{WindowRecorder, windows_of};
 use crate::autopilot::{Autopilot, VehicleKind};
 use crate::log::{self, Input, LogError, OpenOptions, Opened, Place, ReadReport};
 use crate::recording::{Event, Recording, StreamKey, StreamStats};
-use crate::signals::SignalsError;
+use crate::signals::{OffMixer, SignalsError};
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
 
@@ -355,11 +355,7 @@ impl Found {
             at_most: assessment.flight.usable_s > MOSTLY * most_s,
         });
         let (verdict, mut advice) = verdict(&evidence, &identifiability, &self.vehicle);
-        let told = assessment
-            .off_mixer
-            .iter()
-            .map(|off| format!("warning: {off}. From there on the log says nothing of the vehicle's laws"));
-        advice.splice(0..0, told);
+        advice.splice(0..0, assessment.off_mixer.iter().map(OffMixer::advice));
         advice.extend(tally.parameters.notes(self.autopilot, &flown_s).iter().map(ToString::to_string));
         Inspection {
             verdict,

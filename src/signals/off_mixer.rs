@@ -12,8 +12,6 @@ const HELD_S: f64 = 0.8;
 const OTHERS_MOVE: f64 = 0.02;
 /// An output within so much of its range from an end is at its bound: a saturated motor still follows its mixer. Chosen.
 const AT_BOUND: f64 = 0.03;
-/// A vehicle flies for no longer with a motor that stopped, s. Chosen; not measured.
-const DOWN_S: f64 = 10.0;
 /// Below this share of the range a motor does not turn. Chosen; not measured.
 const STOPPED: f64 = 0.02;
 /// Mean of the others, share of the range, from which on they carry the vehicle. Chosen; not measured.
@@ -32,6 +30,14 @@ pub struct OffMixer {
     pub held: f64,
     /// s: its first sample at which the motor is stopped
     pub stopped_s: Option<f64>,
+}
+
+impl OffMixer {
+    /// For whoever wants to use the log.
+    #[must_use]
+    pub fn advice(&self) -> String {
+        format!("warning: {self}. From there on the log says nothing of the vehicle's laws")
+    }
 }
 
 impl fmt::Display for OffMixer {
@@ -61,13 +67,9 @@ pub fn outputs_off_mixer(recording: &Recording) -> Vec<OffMixer> {
     let outputs = Outputs { stream, range, motors: &motors, said };
     let mut found: Vec<OffMixer> = motors.iter().filter_map(|&channel| outputs.off(channel)).collect();
     found.sort_by(|a, b| a.left_s.total_cmp(&b.left_s));
-    // the controllers may command a motor to its lower bound for one that does not follow them
-    let first_s = found.first().map_or(0.0, |first| first.left_s);
-    let stops = |off: &OffMixer| off.held <= range.0 + STOPPED * (range.1 - range.0);
-    found.retain(|off| off.left_s <= first_s || !stops(off));
-    // without one of its motors a vehicle is soon on the ground
-    let stopped_s = found.first().and_then(|first| first.stopped_s).unwrap_or(f64::INFINITY);
-    found.retain(|off| off.left_s < stopped_s + DOWN_S);
+    // from a stopped motor on the vehicle falls, and the others go to their bounds or come to rest on the ground
+    let first_stop_s = found.iter().filter_map(|off| off.stopped_s).fold(f64::INFINITY, f64::min);
+    found.retain(|off| off.left_s <= first_stop_s);
     // all at once is a vehicle that came to rest
     if 2 * found.len() > motors.len() { Vec::new() } else { found }
 }
@@ -151,7 +153,8 @@ impl Outputs<'_> {
     fn stands_apart(&self, samples: std::ops::Range<usize>, channel: usize) -> bool {
         let seconds = self.stream.time_s[samples.end - 1] - self.stream.time_s[samples.start];
         let share = self.share(samples.start, channel);
-        let is_inside = (AT_BOUND..=1.0 - AT_BOUND).contains(&share) || share <= STOPPED;
+        // below the least command in flight a motor is stopped, not saturated
+        let is_inside = (AT_BOUND..=1.0 - AT_BOUND).contains(&share) || share < -AT_BOUND;
         if seconds < HELD_S || !is_inside || !samples.clone().all(|index| self.flies(index, channel)) {
             return false;
         }

@@ -25,6 +25,8 @@ pub struct Track {
     pub owner: Owner,
     /// effect of which it is; `None`: of the rigid body
     pub effect: Option<&'static str>,
+    /// of a wind: 0 to north, 1 to west, 2 up
+    pub wind_axis: Option<usize>,
     /// value at which the effect is none
     pub nothing: f64,
     /// value and standard error of each flight; `None` where it does not determine it
@@ -47,6 +49,7 @@ impl Track {
             unit: parameter.unit,
             owner: parameter.owner,
             effect: parameter.effect,
+            wind_axis: parameter.wind_axis,
             nothing: parameter.nothing,
             values: vec![None; flights],
             common_std: vec![0.0; flights],

@@ -230,3 +230,51 @@ fn scatter_of(left: &[f64]) -> (f64, f64) {
     let correlated = (products / squares).clamp(0.0, MOST_CORRELATED);
     (scatter, (1.0 + correlated) / (1.0 - correlated))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Legs of a flight in an air that pushes by `felt` on the mean, whose balance in still air is `own`.
+    fn flight(own: [f64; AXES], felt: f64) -> Vec<Leg> {
+        let leg = |place: u32| {
+            let time_s = 2.0 * f64::from(place);
+            let push = felt + 0.02 * (1.3 * time_s).sin();
+            let (turning, rate) = (0.3 * (0.7 * time_s).sin(), 0.2 * (0.4 * time_s).cos());
+            let noise = 0.002 * (17.0 * time_s).sin();
+            let of = |axis: usize| {
+                let air = if axis < 2 { 0.9 * push } else { 0.0 };
+                own[axis] + air + 0.1 * turning + 0.05 * rate + noise
+            };
+            Leg {
+                time_s,
+                lean: [of(0), of(1), of(2)],
+                felt: [push; 2],
+                turning: [turning; AXES],
+                rate: [rate; AXES],
+                shares: vec![0.25; 4],
+                lift: Some(2.0),
+                voltage_v: None,
+            }
+        };
+        (0..30).map(leg).collect()
+    }
+
+    #[test]
+    fn wind_and_turning_are_told_apart_from_the_balance() {
+        let own = [[0.01, -0.02, 0.03], [0.04, -0.05, -0.01]];
+        let found = balance(&[flight(own[0], 0.0), flight(own[1], 0.06)]);
+        for (flight, own) in own.iter().enumerate() {
+            for axis in 0..AXES {
+                let (value, std) = (found.flights[flight].lean[axis], found.std(flight, axis));
+                assert!(
+                    (value - own[axis]).abs() < 3.0 * std && std < 0.006,
+                    "{flight} {axis}: {value} +- {std}"
+                );
+            }
+        }
+        assert!(found.air_lever.iter().all(|(lever, std)| (lever - 0.9).abs() < 3.0 * std));
+        let wide = found.covariance_of(0, 2.0);
+        assert!(wide[(0, 0)] > found.covariance[0][(0, 0)]);
+    }
+}

@@ -3,7 +3,7 @@
 use super::motion::tracks;
 use super::request::CompareRequest;
 use super::result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange};
-use crate::change::{BalanceChange, Groups, What, judge_balance, judge_parameter, steps};
+use crate::change::{BalanceChange, Groups, Step, What, judge_balance, judge_parameter, steps};
 use crate::config::LoadedVehicle;
 use crate::diagnose::Owner;
 use crate::draft::Given;
@@ -13,7 +13,7 @@ use crate::signals::{ConditionSettings, Signals, ThrustPreference, best};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
-use crate::study::{Progress, Stage, StudyError, Track, VehicleGiven};
+use crate::study::{InputFile, Progress, Stage, StudyError, Track, VehicleGiven};
 use crate::trim::{Balance, Leg, balance, legs, mean_arm_m};
 use crate::vehicle::Vehicle;
 
@@ -54,11 +54,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     flights.recordings.extend(later.recordings);
     flights.inputs.extend(later.inputs);
     flights.signals.extend(later.signals);
-    let of_data = flights.each().flat_map(|(input, signals)| {
-        let doubts = signals.quality.notes.iter().filter(|note| note.is_warning());
-        doubts.map(|doubt| Note::warning(About::File(input.path.clone()), doubt.text.as_str()))
-    });
-    notes.extend(of_data);
+    notes.extend(doubts(&flights));
     let balance = balance(&legs_of(&flights, &vehicle)?);
     progress.stage(Stage::Explaining);
     let (tracks, reasons) = if request.balance_only || request.vehicle.is_none() {
@@ -71,17 +67,9 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let count = flights.signals.len();
     let groups = (first < count).then(|| Groups::split(count, first));
     let compared = groups.as_ref().map(|groups| task.compared(groups));
-    let history = steps(count, &|groups: &Groups| {
-        let compared = task.compared(groups);
-        let strongest = compared.changes.iter().map(|change| change.sigmas).fold(0.0, f64::max);
-        (strongest > 0.0).then_some((strongest, compared))
-    });
-    let compared_flights = flights.inputs.iter().zip(&flights.recordings).zip(&flights.signals).zip(reasons);
-    let compared_flights = compared_flights.map(|(((input, recording), signals), balance_only)| {
-        ComparedFlight { input: input.clone(), power_w: power_w(recording, signals), balance_only }
-    });
+    let history = task.history(count);
     Ok(CompareStudy {
-        flights: compared_flights.collect(),
+        flights: each_compared(&flights, reasons),
         is_known: request.vehicle.is_some(),
         drafted: draft.filter(|_| request.vehicle.is_some()),
         vehicle,
@@ -94,8 +82,27 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     })
 }
 
+/// What is doubtful about the flights' data.
+fn doubts(flights: &Prepared) -> Vec<Note> {
+    let of = |(input, signals): (&InputFile, &Signals)| -> Vec<Note> {
+        let doubts = signals.quality.notes.iter().filter(|note| note.is_warning());
+        doubts.map(|doubt| Note::warning(About::File(input.path.clone()), doubt.text.as_str())).collect()
+    };
+    flights.each().flat_map(of).collect()
+}
+
+fn each_compared(flights: &Prepared, reasons: Vec<Option<String>>) -> Vec<ComparedFlight> {
+    let each = flights.inputs.iter().zip(&flights.recordings).zip(&flights.signals).zip(reasons);
+    each.map(|(((input, recording), signals), balance_only)| ComparedFlight {
+        input: input.clone(),
+        power_w: power_w(recording, signals),
+        balance_only,
+    })
+    .collect()
+}
+
 fn legs_of(flights: &Prepared, vehicle: &Vehicle) -> Result<Vec<Vec<Leg>>, StudyError> {
-    let one = |(input, signals): (&crate::study::InputFile, &Signals)| {
+    let one = |(input, signals): (&InputFile, &Signals)| {
         legs(signals, vehicle)
             .map_err(|why| StudyError::File { file: input.path.clone(), why: why.to_string() })
     };
@@ -111,6 +118,15 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
+    /// Where along all flights something changed.
+    fn history(&self, flights: usize) -> Vec<Step<Compared>> {
+        steps(flights, &|groups: &Groups| {
+            let compared = self.compared(groups);
+            let strongest = compared.changes.iter().map(|change| change.sigmas).fold(0.0, f64::max);
+            (strongest > 0.0).then_some((strongest, compared))
+        })
+    }
+
     fn compared(&self, groups: &Groups) -> Compared {
         let balance = judge_balance(self.balance, groups, self.vehicle);
         let mut changes = self.of_balance(&balance);

@@ -26,10 +26,24 @@ pub(super) fn with_own_winds(flights: &mut Prepared, vehicle: &Vehicle) -> Vec<O
 
 impl ExplainStudy {
     /// Fits each flight alone to the model of all.
-    pub(super) fn tell_along(&mut self, flights: &[Signals], winds_m_s: Vec<Option<[f64; 2]>>) {
+    pub(super) fn tell_along(&mut self, flights: &[Signals], mut winds_m_s: Vec<Option<[f64; 2]>>) {
         let (vehicle, settings) = (&self.given.vehicle, &self.given.settings);
-        let each = each_with_model_of_all(flights, &self.explanation, vehicle, settings);
-        let tracks = Track::all(each.into_iter().enumerate().collect(), flights.len());
+        let drifts: Vec<bool> = winds_m_s.iter().map(Option::is_some).collect();
+        let each = each_with_model_of_all(flights, &drifts, &self.explanation, (vehicle, settings));
+        let mut tracks = Track::all(each.into_iter().enumerate().collect(), flights.len());
+        if drifts.iter().any(|drifts| *drifts) {
+            // what was left of a wind belongs to it
+            for (track, axis) in tracks.iter().filter_map(|track| Some((track, track.wind_axis?))) {
+                for (wind, left) in winds_m_s.iter_mut().zip(&track.values) {
+                    if let (Some(part), Some((left, _))) =
+                        (wind.as_mut().and_then(|wind| wind.get_mut(axis)), left)
+                    {
+                        *part += left;
+                    }
+                }
+            }
+            tracks.retain(|track| track.wind_axis.is_none());
+        }
         let of = |id: &'static str| {
             let shows = |flight: &usize| {
                 tracks.iter().any(|track| track.effect == Some(id) && track.is_shown_by(*flight))
