@@ -116,11 +116,8 @@ impl Outcome<'_> {
         let told = |part: &&Outlook| Some(format!("{}: {}", part.name, why(part)?));
         let first = missing.first().and_then(why);
         let is_of_all = missing.len() == asked.body.len() && missing.iter().all(|part| why(part) == first);
-        let reasons: Vec<String> = if is_of_all {
-            first.into_iter().collect()
-        } else {
-            missing.iter().filter_map(told).collect()
-        };
+        let reasons: Vec<String> =
+            if is_of_all { first.into_iter().collect() } else { missing.iter().filter_map(told).collect() };
         let at_most = self.at_most && by_window.is_some() && !expected.is_empty();
         let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
         let fly = reason.is_some().then_some(asked.fly);

@@ -210,7 +210,10 @@ mod tests {
             "{texts:?}"
         );
         assert!(texts[1].starts_with("SERVO1_FUNCTION changed from 33 to 34"), "{texts:?}");
-        assert!(texts[2].contains("34 to 1 at 38.0 s, in the air: from then on output 2 does not follow"), "{texts:?}");
+        assert!(
+            texts[2].contains("34 to 1 at 38.0 s, in the air: from then on output 2 does not follow"),
+            "{texts:?}"
+        );
         assert!(texts[3].starts_with("ATC_RAT_RLL_P") && !notes[3].is_warning(), "{texts:?}");
         assert_eq!(changes_in_the_air(Autopilot::ArduPilot, &changes, &[], &taken), []);
     }

@@ -17,7 +17,8 @@ const LEAST_COMMANDED_M_S2: f64 = 0.02;
 /// measured velocity if no acceleration was commanded. `None` without both.
 #[must_use]
 pub fn highest_harmonic_hz(signals: &Signals) -> Option<f64> {
-    let commanded = signals.reference.as_ref().map(|reference| -> &[Vector3<f64>] { &reference.acceleration });
+    let commanded =
+        signals.reference.as_ref().map(|reference| -> &[Vector3<f64>] { &reference.acceleration });
     let commanded = commanded.filter(|series| rms(series, &signals.usable) >= LEAST_COMMANDED_M_S2);
     let series: &[Vector3<f64>] = match (commanded, &signals.velocity) {
         (Some(acceleration), _) => acceleration,
@@ -53,6 +54,7 @@ pub fn highest_harmonic_hz(signals: &Signals) -> Option<f64> {
 /// Root mean square over the usable instants; 0 without one.
 fn rms(series: &[Vector3<f64>], usable: &[bool]) -> f64 {
     let used = series.iter().zip(usable).filter(|(_, usable)| **usable);
-    let (count, sum) = used.fold((0.0, 0.0), |(count, sum), (value, _)| (count + 1.0, sum + value.norm_squared()));
+    let (count, sum) =
+        used.fold((0.0, 0.0), |(count, sum), (value, _)| (count + 1.0, sum + value.norm_squared()));
     if count > 0.0 { f64::sqrt(sum / count) } else { 0.0 }
 }

@@ -157,13 +157,19 @@ mod tests {
         let found = check(&[needed("body rates", &good), outputs], &flight, Autopilot::Px4).unwrap();
         let said = found.note.unwrap().text;
         assert!(!found.torques && said.contains("torques averaged over seconds"), "{said}");
-        assert!(said.contains("actuator outputs (SERVO_OUTPUT_RAW) at 9.5 Hz; 20 Hz are the least"), "{said}");
+        assert!(
+            said.contains("actuator outputs (SERVO_OUTPUT_RAW) at 9.5 Hz; 20 Hz are the least"),
+            "{said}"
+        );
         assert!(!said.contains("body rates (ATTITUDE)"), "{said}");
         assert!(said.contains("set SDLOG_PROFILE = 9"), "{said}");
         let slower = stream(7.0, 60.0);
         let outputs_slower = ("actuator outputs", "SERVO_OUTPUT_RAW", &slower, LEAST_ACTUATOR_HZ);
         let error = check(&[outputs_slower], &flight, Autopilot::Px4).unwrap_err().to_string();
-        assert!(error.contains("actuator outputs (SERVO_OUTPUT_RAW) at 7.0 Hz; 8 Hz are the least"), "{error}");
+        assert!(
+            error.contains("actuator outputs (SERVO_OUTPUT_RAW) at 7.0 Hz; 8 Hz are the least"),
+            "{error}"
+        );
         assert!(error.contains("set SDLOG_PROFILE = 9"), "{error}");
         // seldom for a minute on the ground, then as asked for
         let mut late = stream(1.0, 60.0);

@@ -1,6 +1,7 @@
 //! What the checks before the flight are made of, once all of it is known. Judging it takes a moment, in which the flight goes
 //! on.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use crate::autopilot::LogAwaited;
@@ -22,7 +23,7 @@ pub(super) struct Told {
 /// All that is judged.
 #[derive(Debug)]
 pub(super) struct Question {
-    path: FlightPath,
+    path: Arc<FlightPath>,
     origin_m: Vector3<f64>,
     stand_m: Option<Vector3<f64>>,
     vehicle: Vehicle,
@@ -55,11 +56,11 @@ impl Question {
         let (status, sortie) = (flight.status(now), flight.sortie());
         let stand_m = status.position_m.map(Vector3::from);
         Self {
-            path: sortie.course.path().clone(),
+            path: Arc::clone(sortie.course.path()),
             origin_m: stand_m.map_or_else(Vector3::zeros, |stand_m| flight.offset_m(&stand_m)),
             stand_m,
             vehicle: vehicle.clone(),
-            limits: sortie.limits.clone(),
+            limits: sortie.limits,
             tracking_max_m: sortie.settings.tracking_max_m,
             parameters,
             log_awaited: sortie.settings.log_awaited.clone(),

@@ -70,7 +70,8 @@ impl Topic {
     fn was_ahead(&mut self, stamp_us: u64) -> bool {
         let Some(last_us) = self.last_us.filter(|last_us| stamp_us < *last_us) else { return false };
         let follows = |behind: &Behind| {
-            behind.last_us == last_us && (behind.stamp_us..=behind.stamp_us.saturating_add(FOLLOWS_US)).contains(&stamp_us)
+            behind.last_us == last_us
+                && (behind.stamp_us..=behind.stamp_us.saturating_add(FOLLOWS_US)).contains(&stamp_us)
         };
         let count = self.behind.filter(follows).map_or(1, |behind| behind.count + 1);
         self.behind = Some(Behind { last_us, stamp_us, count });
