@@ -5,6 +5,7 @@ use super::inspection::{Outlook, Unflown, VehicleSummary};
 use super::missing_streams::{SOUND_COPY, lack};
 use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION};
 use crate::autopilot::VehicleKind;
+use crate::diagnose::LEAST_FLIGHT_S;
 use crate::estimate::{POOR, contradicts_file, rescaled, rests_on_guessed_curve};
 use crate::note::About;
 use crate::recording::Quantity;
@@ -154,7 +155,10 @@ fn with_vehicle(evidence: &Evidence<'_>, good: &[&Outlook], bad: &[&str], time: 
             doubts.join("; ")
         );
     }
-    format!("This log is {parts}{not}: {time}. Next: `mavid identify`.")
+    // what else acts is then part of mass and inertia
+    let alone = evidence.assessment.flight.usable_s < LEAST_FLIGHT_S;
+    let alone = if alone { "too short for a search of effects, and of a rigid body alone " } else { "" };
+    format!("This log is {alone}{parts}{not}: {time}. Next: `mavid identify`.")
 }
 
 /// What speaks against the vehicle file, clause by clause.

@@ -56,7 +56,12 @@ impl<T> Leap<T> {
         self.back += usize::from(is_back);
         self.elsewhere += usize::from(stamp_s.is_some() && !is_ahead && !is_back);
         self.waiting.push((if is_ahead { Side::Ahead } else { Side::Other }, message));
-        self.ahead >= AHEAD || self.back >= self.enough() || self.waiting.len() >= MOST
+        self.is_ahead() || self.back >= self.enough() || self.waiting.len() >= MOST
+    }
+
+    /// Stamps go on from it.
+    fn is_ahead(&self) -> bool {
+        self.ahead >= AHEAD && self.ahead > self.elsewhere
     }
 
     /// So many stamps from before the leap tell that it was damage.
@@ -67,7 +72,7 @@ impl<T> Leap<T> {
     /// What it was, as far as it has been told.
     pub(super) fn settle(self) -> Settled<T> {
         let is_last = self.ahead == 1 && self.leapt_s - self.before_s > LAST_S;
-        let is_told = self.ahead >= AHEAD || self.ahead > self.back.max(self.elsewhere);
+        let is_told = self.is_ahead() || self.ahead > self.back.max(self.elsewhere);
         let has_passed = self.back < self.enough() && is_told && !is_last;
         let messages = self.waiting.into_iter();
         if has_passed {

@@ -231,8 +231,10 @@ fn is_same(a: PwmRange, b: PwmRange) -> bool {
 #[must_use]
 pub fn holds_fractions(recording: &Recording) -> bool {
     moving_commands(recording).any(|stream| {
-        let channels: Vec<usize> = (0..stream.width).collect();
-        in_unit(stream, &channels, Actuator::Speed)
+        let zeros = |channel: usize| (0..stream.len()).filter(|i| stream.sample(*i)[channel] == 0.0).count();
+        let used: Vec<usize> =
+            (0..stream.width).filter(|channel| 2 * zeros(*channel) < stream.len()).collect();
+        in_unit(stream, &used, Actuator::Speed)
     })
 }
 

@@ -56,7 +56,7 @@ impl Question {
         let (status, sortie) = (flight.status(now), flight.sortie());
         let stand_m = status.position_m.map(Vector3::from);
         Self {
-            path: sortie.course.path().clone(),
+            path: Arc::clone(sortie.course.path()),
             origin_m: stand_m.map_or_else(Vector3::zeros, |stand_m| flight.offset_m(&stand_m)),
             stand_m,
             vehicle: vehicle.clone(),

@@ -13,6 +13,8 @@ const FORWARD_US: u64 = 2_000_000;
 const AGREES_US: u64 = 2_000_000;
 /// So many stamps in a row that agree with each other but not with the clock: it has leapt or started anew.
 const WITNESSES: u8 = 3;
+/// So many stamps in a row that fit and are far behind the latest one: damage put that ahead.
+const BEHIND: u8 = 64;
 /// Time goes on by this much where the clock started anew: how long that took is not known.
 const RESTART_US: i128 = 1_000_000;
 
@@ -38,6 +40,8 @@ pub(super) struct Clock {
     last_us: u64,
     /// a stamp has fitted
     runs: bool,
+    /// stamps in a row that fit and are far behind the latest
+    behind: u8,
     suspect_us: u64,
     suspects: u8,
     /// times that stamps ran back for good, though no other log began
@@ -86,6 +90,11 @@ impl Clock {
     /// Takes a stamp that goes on from the last ones.
     #[inline]
     pub(super) fn go_on(&mut self, stamp_us: u64) {
+        let is_behind = stamp_us.saturating_add(BACKWARD_US) < self.last_us;
+        self.behind = if is_behind { self.behind + 1 } else { 0 };
+        if self.behind >= BEHIND {
+            (self.last_us, self.behind) = (stamp_us, 0);
+        }
         self.last_us = self.last_us.max(stamp_us);
         self.runs = true;
         self.suspects = 0;
@@ -165,6 +174,19 @@ mod tests {
             assert_eq!(clock.place(odd, Some(10_000_000)), placed, "{odd}");
             assert_eq!(clock.place(10_010_000, Some(10_000_000)), Placed::At);
         }
+    }
+
+    #[test]
+    fn stamps_that_damage_puts_ahead_bit_by_bit_do_not_move_the_clock_for_long() {
+        let mut clock = Clock::default();
+        clock.begin(0);
+        for stamp_us in [1_000_000, 2_900_000, 4_800_000] {
+            assert_eq!(clock.place(stamp_us, None), Placed::At);
+        }
+        for order in 0..u64::from(BEHIND) {
+            assert_eq!(clock.place(1_010_000 + 100 * order, Some(1_000_000)), Placed::At);
+        }
+        assert!((clock.last_s() - 1.0163).abs() < 1e-9);
     }
 
     #[test]

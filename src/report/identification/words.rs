@@ -1,5 +1,6 @@
 //! Words and numbers that several views of an identification have in common.
 
+use crate::diagnose::LEAST_FLIGHT_S;
 use crate::diagnose::joint::{ParameterFound, Physical};
 use crate::estimate::{Finding, MethodResult, Nominal, POOR, size_of};
 use crate::report::thrust_source::thrust_name;
@@ -37,19 +38,25 @@ pub(super) fn verdict(study: &IdentifyStudy, result: &MethodResult) -> String {
             Finding::Given { .. } => {}
         }
     }
+    let usable_s: f64 = study.flights.iter().map(|flight| flight.quality.usable.usable_s).sum();
+    // what else acts is then part of mass and inertia
+    let alone = if usable_s < LEAST_FLIGHT_S { ALONE } else { "" };
     if poor.is_empty() && no.is_empty() {
         let all = if scale.is_some() { "thrust and all of the inertia" } else { "all of mass and inertia" };
-        return format!("good for {all}");
+        return format!("{alone}good for {all}");
     }
     let part = |word: &str, names: String| (!names.is_empty()).then(|| format!("{word} {names}"));
     let parts = [part("good for", good.join(", ")), part("poor for", poor.join(", "))];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     match part("not for", no.join(", ")) {
         _ if parts.is_empty() => "determines none of the parameters".into(),
-        Some(not) => format!("{}; {not}", parts.join("; ")),
-        None => parts.join("; "),
+        Some(not) => format!("{alone}{}; {not}", parts.join("; ")),
+        None => format!("{alone}{}", parts.join("; ")),
     }
 }
+
+/// Before the verdict on a flight in which no effects can be searched for.
+const ALONE: &str = "too short for a search of effects, and of a rigid body alone ";
 
 /// Five digits after the point if they show the value, otherwise a power of ten.
 pub(super) fn number(value: f64) -> String {
