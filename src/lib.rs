@@ -43,6 +43,7 @@
 //! | [`regression`], [`estimate`] | mass and inertia |
 //! | [`diagnose`] | the effects that the model lacks |
 //! | [`compare`] | models against recordings |
+//! | [`trim`], [`change`] | the balance of a vehicle in flight, and what changed of it between flights |
 //! | [`simulate`], [`physics`] | flights that never happened; the equations of motion and of the effects |
 //! | [`sitl`] | a simulated vehicle that speaks MAVLink |
 //! | [`study`], [`report`], [`export`] | a whole piece of work as one function, its report, and its model for other simulators |
@@ -131,6 +132,7 @@
 //! [`fly::run`] needs a subscriber with [`fly::event_layer`], which writes the flight's log of events.
 
 pub mod autopilot;
+pub mod change;
 pub mod compare;
 pub mod config;
 pub mod diagnose;
@@ -162,6 +164,7 @@ pub mod stats;
 pub mod study;
 pub mod text;
 pub mod trajectory;
+pub mod trim;
 pub mod units;
 pub mod vehicle;
 pub mod wire;

@@ -20,6 +20,7 @@ mod realistic;
 mod score;
 #[path = "../support/mod.rs"]
 mod support;
+mod vehicles;
 mod write;
 
 use std::path::PathBuf;
@@ -40,6 +41,9 @@ struct Request {
 }
 
 fn main() {
+    if Arguments::of_process().has("--vehicles") {
+        return vehicles::run(&Arguments::of_process());
+    }
     if Arguments::of_process().has("--realistic") {
         return realistic::run(&Arguments::of_process());
     }

@@ -1,6 +1,7 @@
 //! The command line: one struct a verb.
 
 mod address;
+mod compare;
 mod flight;
 mod given;
 mod live;
@@ -11,6 +12,7 @@ mod recording;
 mod verb;
 mod verbosity;
 
+pub use compare::CompareArgs;
 pub use flight::{CheckName, FlyArgs, OriginName};
 pub use given::{DraftArgs, ShapeArgs};
 pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};

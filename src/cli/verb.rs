@@ -2,6 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
+use super::compare::CompareArgs;
 use super::flight::FlyArgs;
 use super::live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 use super::model::{ExportArgs, SimulateArgs, VehicleArgs};
@@ -25,7 +26,7 @@ pub struct Cli {
     pub verb: Verb,
 }
 
-const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss.";
+const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss, 4 done and something changed (compare).";
 
 /// The verbs.
 #[derive(Debug, Subcommand)]
@@ -56,6 +57,8 @@ pub enum Verb {
     Replay(ReplayArgs),
     /// Locate the mismatch between model and recording and name the missing physical effects
     Explain(ExplainArgs),
+    /// Say what changed of a vehicle between flights: which rotor, the centre of mass, which parameter
+    Compare(CompareArgs),
     /// Write a model for another simulator
     Export(ExportArgs),
     /// Explain a folder of cases and score the sealed verdicts against their answers

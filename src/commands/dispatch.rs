@@ -2,8 +2,8 @@
 
 use super::standard_error::StandardError;
 use super::{
-    CommandError, Outcome, demo, explain, export, fly, identify, inspect, log, plan, prove, record, replay,
-    simulate, sitl, validate, vehicle,
+    CommandError, Outcome, compare, demo, explain, export, fly, identify, inspect, log, plan, prove, record,
+    replay, simulate, sitl, validate, vehicle,
 };
 use crate::cli::{Cli, Verb};
 
@@ -23,6 +23,7 @@ pub fn run(cli: &Cli, stderr: &StandardError) -> Result<Outcome, CommandError> {
         Verb::Record(args) => record::run(cli.json, stderr, args),
         Verb::Replay(args) => replay::run(cli.json, stderr, args),
         Verb::Explain(args) => explain::run(cli.json, stderr, args),
+        Verb::Compare(args) => compare::run(cli.json, stderr, args),
         Verb::Export(args) => export::run(cli.json, args),
         Verb::Prove(args) => prove::run(cli.json, args),
     }

@@ -4,6 +4,7 @@
 //! that draws on standard error takes the handle of it as well.
 
 mod after_flight;
+mod compare;
 mod demo;
 mod dispatch;
 mod error;

@@ -9,6 +9,8 @@ pub enum Outcome {
     Done,
     /// done, but something was lost or left out; the output says what
     DoneWithLoss,
+    /// done: what was compared is not the same
+    Changed,
 }
 
 impl From<Outcome> for ExitCode {
@@ -16,6 +18,7 @@ impl From<Outcome> for ExitCode {
         match outcome {
             Outcome::Done => Self::SUCCESS,
             Outcome::DoneWithLoss => Self::from(3),
+            Outcome::Changed => Self::from(4),
         }
     }
 }

@@ -115,7 +115,7 @@ mod tests {
         assert_eq!(of(&flight(1.3, 3.0), (0.0, 20.0)), None);
         let left = of(&flight(9.0, 1.0), (0.0, 20.0)).unwrap();
         assert!(
-            left.to_string().starts_with("it is 24.") && left.to_string().contains("in a flight of 6.0 m"),
+            left.to_string().starts_with("it is 24.") && left.to_string().contains("over 6.0 m"),
             "{left}"
         );
         let swings = of(&flight(1.0, 50.0), (0.0, 20.0)).unwrap();

@@ -9,7 +9,9 @@ use super::motion::Motion;
 use crate::estimate::{Estimated, flights_apart};
 use crate::note::Note;
 use crate::recording::{Quantity, Recording};
-use crate::signals::{ConditionSettings, Quality, Signals, SignalsError, Usable, condition};
+use crate::signals::{
+    ConditionSettings, OffMixer, Quality, Signals, SignalsError, Usable, condition, outputs_off_mixer,
+};
 use crate::vehicle::Vehicle;
 
 /// Segments kept; a log with more is counted.
@@ -37,6 +39,7 @@ pub(super) struct Assessor<'a> {
     offsets: Vec<OffsetSum>,
     notes: Vec<Note>,
     refusal: Option<SignalsError>,
+    off_mixer: Vec<OffMixer>,
     /// the window with the most seconds that can be used, and these
     liveliest: Option<(f64, Recording)>,
 }
@@ -65,6 +68,8 @@ pub(super) struct Assessment {
     pub notes: Vec<Note>,
     /// why the vehicle file and the log do not go together, where no window could be conditioned
     pub refusal: Option<SignalsError>,
+    /// outputs that left the mixer in the air, each once
+    pub off_mixer: Vec<OffMixer>,
     /// the window with the most seconds that can be used, and these
     pub liveliest: Option<(f64, Recording)>,
 }
@@ -84,6 +89,7 @@ impl<'a> Assessor<'a> {
     pub(super) fn window(&mut self, recording: &Recording) {
         self.restarted |= !recording.clock_resets_s.is_empty();
         self.anew |= !recording.clock_resets_s.is_empty();
+        self.off_mixer(recording);
         let commands = normalized_commands(recording);
         let airborne = airborne(recording, commands.as_ref(), &mut self.before);
         self.flight.airborne_from = airborne.from;
@@ -121,6 +127,15 @@ impl<'a> Assessor<'a> {
             self.liveliest = Some((usable_s, recording.clone()));
         }
         self.flown |= !airborne.flown_s.is_empty();
+    }
+
+    /// Outputs that left the mixer in it and not before.
+    fn off_mixer(&mut self, recording: &Recording) {
+        for off in outputs_off_mixer(recording) {
+            if self.off_mixer.iter().all(|known| known.output != off.output) {
+                self.off_mixer.push(off);
+            }
+        }
     }
 
     /// What identification would learn from the window: its own weak form, solved.
@@ -209,6 +224,7 @@ impl<'a> Assessor<'a> {
             apart: flights_apart(&each),
             offsets: self.offsets.iter().map(offset).collect(),
             notes: self.notes,
+            off_mixer: self.off_mixer,
             liveliest: self.liveliest,
         }
     }

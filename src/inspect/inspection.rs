@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::onboard::OnboardReading;
 use super::quantity::QuantitySummary;
+use crate::signals::OffMixer;
 
 /// What is in a log, and what it is good for.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -31,6 +32,8 @@ pub struct Inspection {
     pub timeline: Timeline,
     /// flight segments
     pub flight: FlightSummary,
+    /// outputs that left the mixer in the air
+    pub outputs_off_mixer: Vec<OffMixer>,
     /// how the vehicle was moved; none where nothing flew or nothing measured motion
     pub excitation: Option<Excitation>,
     /// offsets between streams, from kinematics; only with a vehicle

@@ -355,6 +355,11 @@ impl Found {
             at_most: assessment.flight.usable_s > MOSTLY * most_s,
         });
         let (verdict, mut advice) = verdict(&evidence, &identifiability, &self.vehicle);
+        let told = assessment
+            .off_mixer
+            .iter()
+            .map(|off| format!("warning: {off}. From there on the log says nothing of the vehicle's laws"));
+        advice.splice(0..0, told);
         advice.extend(tally.parameters.notes(self.autopilot, &flown_s).iter().map(ToString::to_string));
         Inspection {
             verdict,
@@ -367,6 +372,7 @@ impl Found {
             streams: self.streams.iter().map(summary_of).collect(),
             timeline: if self.timed { tally.timeline.summary(modes) } else { Timeline::default() },
             flight: assessment.flight,
+            outputs_off_mixer: assessment.off_mixer,
             excitation: assessment.excitation,
             stream_offsets: assessment.offsets,
             quantities,

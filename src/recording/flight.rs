@@ -54,6 +54,16 @@ impl Recording {
         strays + leaps
     }
 
+    /// Leaves out everything from this time on, s.
+    pub fn end_at(&mut self, time_s: f64) {
+        for stream in self.streams.values_mut() {
+            let kept = stream.time_s.partition_point(|stamp_s| *stamp_s < time_s);
+            stream.time_s.truncate(kept);
+            stream.values.truncate(kept * stream.width);
+        }
+        self.parameter_changes.retain(|change| change.time_s < time_s);
+    }
+
     /// Adds the streams of another log of the same flight, its stamps brought to this recording's clock by `to_own_s` (s to s).
     /// Of streams and parameters that both have, its own stay. Times of resets are in order, those of both logs.
     pub fn add_log(&mut self, other: Recording, to_own_s: impl Fn(f64) -> f64) {

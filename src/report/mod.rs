@@ -3,6 +3,7 @@
 //! Nothing here fits, computes a statistic, or prints.
 
 mod chart;
+mod comparison;
 mod explanation;
 mod html;
 mod identification;
@@ -18,6 +19,7 @@ mod value;
 mod vehicle;
 
 pub use chart::{Band, Bars, Line, Panel, Strip, Stroke, svg};
+pub use comparison::{ComparisonDocument, comparison_html, comparison_text};
 pub use explanation::{
     ExplanationDocument, explained_model, explanation_answer, explanation_html, explanation_text,
 };

@@ -3,7 +3,7 @@
 use super::{InputFile, StudyError};
 use crate::log::{Details, ReadReport};
 use crate::recording::Recording;
-use crate::signals::{ConditionSettings, Signals, condition};
+use crate::signals::{ConditionSettings, OffMixer, Signals, condition};
 use crate::text;
 use crate::vehicle::Vehicle;
 use std::path::Path;
@@ -36,6 +36,8 @@ pub(super) struct Flight {
     pub(super) recording: Recording,
     /// name, hash, losses
     pub(super) input: InputFile,
+    /// outputs that left the mixer: the recording ends where the first did
+    pub(super) off_mixer: Vec<OffMixer>,
 }
 
 impl Flight {

@@ -10,7 +10,7 @@ use crate::log::{
 };
 use crate::note::{About, Note};
 use crate::recording::{Recording, shared_share};
-use crate::signals::{ConditionSettings, ReportedState, Signals, settle_parameters};
+use crate::signals::{ConditionSettings, ReportedState, Signals, outputs_off_mixer, settle_parameters};
 use crate::text;
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
@@ -67,6 +67,8 @@ pub(super) struct Prepared {
     pub(super) recordings: Vec<Recording>,
     pub(super) signals: Vec<Signals>,
     pub(super) inputs: Vec<InputFile>,
+    /// seen with the wind: not where the setpoints are; empty: none is
+    pub(super) drift: Vec<bool>,
 }
 
 impl Prepared {
@@ -82,12 +84,14 @@ impl Prepared {
     /// As flights that a model is shown on.
     pub(super) fn held_out(&self) -> Vec<HeldOut<'_>> {
         let each = self.recordings.iter().zip(&self.signals).zip(&self.inputs);
-        each.map(|((recording, signals), input)| HeldOut {
-            name: &input.path,
-            signals,
-            recording: Some(recording),
-        })
-        .collect()
+        let drifts = |place: usize| self.drift.get(place).copied().unwrap_or(false);
+        each.enumerate()
+            .map(|(place, ((recording, signals), input))| HeldOut {
+                name: &input.path,
+                signals,
+                recording: (!drifts(place)).then_some(recording),
+            })
+            .collect()
     }
 }
 
@@ -185,6 +189,11 @@ fn whose(report: &ReadReport) -> Option<String> {
 fn of_log(flights: Vec<LogFlight>, log: &InputFile, logged_by: LoggedBy) -> Vec<Flight> {
     let of = flights.len();
     let named = |(index, mut flight): (usize, LogFlight)| {
+        // what an output was when it left the mixer is no setting of the flight before
+        let off_mixer = outputs_off_mixer(&flight.recording);
+        if let Some(first) = off_mixer.first() {
+            flight.recording.end_at(first.left_s);
+        }
         settle_parameters(&mut flight.recording);
         let mut input = log.clone();
         if index > 0 {
@@ -193,7 +202,10 @@ fn of_log(flights: Vec<LogFlight>, log: &InputFile, logged_by: LoggedBy) -> Vec<
         if let Some((from_s, to_s)) = flight.part_s {
             input.path = format!("{}, flight {} of {of} ({from_s:.0} to {to_s:.0} s)", log.path, index + 1);
         }
-        Flight { logged_by, recording: flight.recording, input }
+        let about = || About::File(input.path.clone());
+        let told: Vec<Note> = off_mixer.iter().map(|off| Note::warning(about(), off.to_string())).collect();
+        input.notes.extend(told);
+        Flight { logged_by, recording: flight.recording, input, off_mixer }
     };
     flights.into_iter().enumerate().map(named).collect()
 }
@@ -238,6 +250,31 @@ pub(super) fn ready<T>(
     let Some((first, _)) = ready.first_mut() else { return Err(why) };
     first.input.notes.splice(0..0, notes);
     Ok(ready)
+}
+
+/// Seconds of flight before an output left the mixer, from which on effects are searched in them. Chosen: no flight of less shows them all.
+const LEAST_BEFORE_S: f64 = 40.0;
+
+/// Where an output left the mixer, what is to be explained is in the outputs themselves: a flight that was short until then gets no
+/// name.
+pub(super) fn refuse_off_mixer<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) -> Result<(), StudyError> {
+    for flight in logs.flatten().filter(|flight| !flight.off_mixer.is_empty()) {
+        let said = ReportedState::of(&flight.recording);
+        let commands = flight.recording.streams.values().flat_map(|stream| &stream.time_s);
+        let flown = || commands.clone().copied().filter(|time_s| said.may_fly(*time_s));
+        let seconds = flown().fold(f64::MIN, f64::max) - flown().fold(f64::MAX, f64::min);
+        if seconds < LEAST_BEFORE_S {
+            let all: Vec<String> = flight.off_mixer.iter().map(ToString::to_string).collect();
+            let why = format!(
+                "{}: the log shows the cause itself, and no hidden effect is searched for; before that there are {:.0} s of flight, expected \
+                 {LEAST_BEFORE_S:.0} s at least",
+                all.join("; "),
+                seconds.max(0.0)
+            );
+            return Err(StudyError::File { file: flight.input.path.clone(), why });
+        }
+    }
+    Ok(())
 }
 
 /// The share (0..1) of a recording that the other holds as well, where it is more than chance.

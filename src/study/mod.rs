@@ -6,6 +6,7 @@
 
 mod after_flight;
 mod both_logs;
+mod compare;
 mod correlation;
 mod doubts;
 mod effects;
@@ -18,19 +19,23 @@ mod input;
 mod plan;
 mod progress;
 mod prove;
+mod track;
 mod unflown;
 mod validate;
 mod vehicle;
 mod vehicle_given;
 
 pub use after_flight::{AfterFlight, FlightLogs, after_flight};
+pub use compare::{
+    Change, Changed, CompareRequest, CompareStudy, Compared, ComparedFlight, LeastChange, compare,
+};
 pub use correlation::Correlation;
 pub use effects::{effects_file, effects_of, effects_text, with_further, with_stated_lag};
 pub use error::StudyError;
 pub use explain::{
-    AxisFit, AxisResidual, AxisShare, BodyParameter, Estimate, ExplainRequest, ExplainStudy, Field, Figures,
-    Followed, Given, Harmonics, Heat, LeftAlongTime, Located, Predicted, QUANTITIES, RecordedAndSimulated,
-    ShownOn, StateShare, Tried, TriedAs, explain, for_readers, stored_trajectory,
+    AlongFlights, AxisFit, AxisResidual, AxisShare, BodyParameter, Estimate, ExplainRequest, ExplainStudy,
+    Field, Figures, Followed, Given, Harmonics, Heat, LeftAlongTime, Located, Predicted, QUANTITIES,
+    RecordedAndSimulated, ShownOn, StateShare, Tried, TriedAs, explain, for_readers, stored_trajectory,
 };
 pub use flights::{ReadSettings, unread};
 pub use identify::{
@@ -43,6 +48,7 @@ pub use prove::{
     CaseEffect, CaseParameter, CaseVerdict, Gain, Proof, ProofSummary, ScoredCase, SealedVerdicts, SizeError,
     case_folders, prove, seal, verdict,
 };
+pub use track::Track;
 pub use validate::{
     Column, ErrorRow, ErrorTable, Prediction, ValidateRequest, ValidateStudy, ValidatedFlight,
     ValidatedModel, closed_loop_table, playback_table, prediction_table, validate,

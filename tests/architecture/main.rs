@@ -41,6 +41,10 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("replay", &["text", "wire", "log", "link"]),
     // vehicle: from actuator values to force
     ("signals", &["note", "stats", "autopilot", "vehicle", "recording"]),
+    // the balance of a vehicle, over seconds
+    ("trim", &["stats", "vehicle", "signals"]),
+    // one vehicle over its flights
+    ("change", &["vehicle", "trim"]),
     // flight path and parameters of the motion at once
     ("reconstruction", &["vehicle", "physics", "recording", "signals"]),
     // what a thrust stand measured of a rotor
@@ -120,6 +124,8 @@ const LAYERS: &[(&str, &[&str])] = &[
             "compare",
             "plan",
             "diagnose",
+            "trim",
+            "change",
         ],
     ),
     // config: a model file is a vehicle file. Of the stages it names what a study holds, and fits nothing
@@ -127,7 +133,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         "report",
         &[
             "note", "text", "vehicle", "physics", "signals", "estimate", "inspect", "config", "compare",
-            "plan", "diagnose", "study",
+            "plan", "diagnose", "change", "study",
         ],
     ),
     ("export", &["text", "vehicle", "physics"]),

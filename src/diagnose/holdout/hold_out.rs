@@ -22,12 +22,26 @@ pub fn on_holdout(
     vehicle: &Vehicle,
     settings: &HoldoutSettings,
 ) -> Result<HoldoutFit, HoldoutError> {
+    on_left_out(explained, &vec![explained; flights.len()], flights, (vehicle, settings))
+}
+
+/// The same on flights that were explained, each predicted by models `of_others` that rest on the other flights; `all` is the explanation
+/// of all of them.
+///
+/// # Errors
+/// As [`on_holdout`].
+pub fn on_left_out(
+    all: Explained,
+    of_others: &[Explained],
+    flights: &[HeldOut],
+    (vehicle, settings): (&Vehicle, &HoldoutSettings),
+) -> Result<HoldoutFit, HoldoutError> {
     let _stage = tracing::info_span!("predict", holdout = true, flights = flights.len()).entered();
-    let Explained { explanation, empirical, .. } = explained;
+    let Explained { explanation, empirical, .. } = all;
     let mut ready = Vec::with_capacity(flights.len());
-    for flight in flights {
+    for (flight, explained) in flights.iter().zip(of_others) {
         let trace = trace_of(flight, vehicle, settings)?;
-        let pair = carried_over(explained, (flight, &trace), vehicle, settings)?;
+        let pair = carried_over(*explained, (flight, &trace), vehicle, settings)?;
         ready.push(Ready { flight, trace, pair });
     }
     if ready.is_empty() {

@@ -106,7 +106,7 @@ struct OwnValue {
 
 pub(super) fn fit_values(study: &ExplainStudy) -> FitValues {
     let (held_back_from_s, reason) = match &study.shown_on {
-        ShownOn::Flights(_) => (None, None),
+        ShownOn::Flights(_) | ShownOn::LeftOut { .. } => (None, None),
         ShownOn::HeldBack { from_s, .. } => (Some(*from_s), None),
         ShownOn::Nothing { reason } => (None, Some(reason.clone())),
     };
@@ -122,6 +122,7 @@ pub(super) fn fit_values(study: &ExplainStudy) -> FitValues {
         shown_on: match study.shown_on {
             ShownOn::Flights(_) => "holdout",
             ShownOn::HeldBack { .. } => "held_back",
+            ShownOn::LeftOut { .. } => "left_out",
             ShownOn::Nothing { .. } => "nothing",
         },
         held_back_from_s,

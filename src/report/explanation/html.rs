@@ -1,5 +1,6 @@
 //! `report.html` of `explain`: each section is one function, and one call in [`explanation_html`].
 
+use super::along::along_section;
 use super::answer::answer;
 use super::figures;
 use super::hold_out::hold_out;
@@ -26,6 +27,7 @@ pub fn explanation_html(study: &ExplainStudy) -> String {
         (found(study))
         (hold_out(study))
         (rigid_body(study))
+        (along_section(study))
         (evidence(study))
         (next_flight(study))
         (limits(study))

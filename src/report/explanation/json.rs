@@ -1,5 +1,6 @@
 //! The JSON document of `explain`.
 
+use super::along::AlongValue;
 use super::answer::answer;
 use super::fit_json::{FitValues, fit_values};
 use crate::diagnose::holdout::RateLaw;
@@ -37,6 +38,8 @@ pub struct ExplanationDocument {
     too_little_excitation: bool,
     data_quality: DataQuality,
     next_flight: Option<NextValue>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    flights_together: Option<AlongValue>,
     warnings: Vec<String>,
 }
 
@@ -224,6 +227,7 @@ impl ExplanationDocument {
             too_little_excitation: study.explanation.too_little_excitation,
             data_quality: data_quality(study),
             next_flight: next(study),
+            flights_together: study.along.as_ref().map(AlongValue::new),
             warnings: study.notes.iter().map(Note::sentence).collect(),
         }
     }

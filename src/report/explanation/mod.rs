@@ -1,5 +1,6 @@
 //! Views of the study of `explain`: the sentence, text for the terminal, JSON, the model file, HTML.
 
+mod along;
 mod answer;
 mod figures;
 mod fit_json;

@@ -68,7 +68,7 @@ fn provenance(text: &mut String, study: &ExplainStudy) {
         ShownOn::HeldBack { from_s, .. } => {
             let _ = writeln!(text, "held_back_from_s = {from_s:?}");
         }
-        ShownOn::Nothing { .. } => {}
+        ShownOn::LeftOut { .. } | ShownOn::Nothing { .. } => {}
     }
     let gates = &study.given.settings.gates;
     let _ = writeln!(

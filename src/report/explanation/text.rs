@@ -1,5 +1,6 @@
 //! The page of `explain` for the terminal.
 
+use super::along::along_lines;
 use super::answer::answer;
 use crate::diagnose::{NO_LATENCY, Named, Verdict, called, clause};
 use crate::estimate::{Finding, ThrustScale};
@@ -20,6 +21,7 @@ pub fn explanation_text(study: &ExplainStudy) -> String {
     located_lines(&mut page, study);
     fit_lines(&mut page, study);
     body_lines(&mut page, study);
+    along_lines(&mut page, study);
     limit_lines(&mut page, study);
     match &study.next {
         Some(Ok(next)) => drop(writeln!(page, "\n  next flight: {}", next.sentence())),

@@ -1,10 +1,11 @@
 //! What the better model is shown on, and how it does there.
 
+use super::left_out::of_others;
 use super::result::ExplainStudy;
 use super::shown_on::ShownOn;
 use crate::diagnose::holdout::{
-    Explained, HeldOut, HoldoutError, HoldoutSettings, IdentificationFit, Split, differing, on_holdout,
-    on_identification, split_last_periods,
+    Explained, HeldOut, HoldoutError, HoldoutFit, HoldoutSettings, IdentificationFit, Split, differing,
+    on_holdout, on_identification, on_left_out, split_last_periods,
 };
 use crate::diagnose::{Empirical, brief};
 use crate::note::{About, Note};
@@ -134,15 +135,35 @@ impl ExplainStudy {
         }
     }
 
+    /// The same on each flight that was explained, by models of the others.
+    pub(super) fn show_left_out(&mut self, flights: &Prepared) {
+        let shown_on = ShownOn::LeftOut { flights: flights.signals.len() };
+        let settings = HoldoutSettings::default();
+        let models = of_others(self, &flights.signals);
+        let explained = |explanation| Explained { explanation, ..self.explained() };
+        let each: Vec<Explained> = models.iter().map(explained).collect();
+        match on_left_out(self.explained(), &each, &flights.held_out(), (&self.given.vehicle, &settings)) {
+            Ok(shown) => self.take_shown(shown, shown_on),
+            Err(error) => {
+                self.notes.push(Note::warning(About::HoldOut, format!("hold-out: {error}")));
+                self.shown_on = ShownOn::Nothing { reason: error.to_string() };
+            }
+        }
+    }
+
     fn shown_on(&mut self, flights: &[HeldOut], shown_on: ShownOn) -> Result<(), HoldoutError> {
         let same_flight = matches!(shown_on, ShownOn::HeldBack { .. });
         let settings = HoldoutSettings { same_flight, ..HoldoutSettings::default() };
         let shown = on_holdout(self.explained(), flights, &self.given.vehicle, &settings)?;
+        self.take_shown(shown, shown_on);
+        Ok(())
+    }
+
+    fn take_shown(&mut self, shown: HoldoutFit, shown_on: ShownOn) {
         let other = shown.other_vehicle.iter();
         self.notes.extend(other.map(|other| Note::warning(About::HoldOut, other.reason.clone())));
         self.holdout = Some(Predicted::from(&shown));
         self.shown = Some(shown);
         self.shown_on = shown_on;
-        Ok(())
     }
 }

@@ -1,9 +1,12 @@
 //! Which physics the model left out: from logs to names, sizes, and the gain on what was not used.
 
+mod along;
+mod along_flights;
 mod doubts;
 mod evidence;
 mod figures;
 mod hold_out;
+mod left_out;
 mod located;
 mod next_flight;
 mod predicted;
@@ -13,6 +16,7 @@ mod result;
 mod run;
 mod shown_on;
 
+pub use along_flights::AlongFlights;
 pub use evidence::{Tried, TriedAs};
 pub use figures::{AxisResidual, Figures, Followed, Harmonics, Heat, LeftAlongTime, RecordedAndSimulated};
 pub use located::{AxisShare, Field, Located, StateShare};

@@ -1,5 +1,6 @@
 //! The result of explaining: what went in, what was found, and what shows it.
 
+use super::along_flights::AlongFlights;
 use super::located::Located;
 use super::predicted::Predicted;
 use super::readers::for_readers;
@@ -76,6 +77,8 @@ pub struct ExplainStudy {
     pub(super) differing: Option<String>,
     /// the vehicle as it was drafted, where it came from no file
     pub drafted: Option<Draft>,
+    /// of several flights: what they have in common, and what is each one's own
+    pub along: Option<AlongFlights>,
     /// the flights that were explained as the weak form sees them
     pub(super) traces: Vec<Trace>,
 }
@@ -145,6 +148,7 @@ impl ExplainStudy {
             notes: Vec::new(),
             differing: None,
             drafted: None,
+            along: None,
             traces: Vec::new(),
             given,
             explanation,

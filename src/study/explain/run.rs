@@ -1,5 +1,6 @@
 //! Opens, conditions, holds out, explains, tries again, shows, and designs the next flight.
 
+use super::along::with_own_winds;
 use super::hold_out::{hold_back, refuse_shared};
 use super::request::ExplainRequest;
 use super::result::{ExplainStudy, Given};
@@ -11,7 +12,7 @@ use crate::diagnose::{ExplainSettings, Explanation, Trace, Verdict};
 use crate::estimate::{Contradiction, inertia_by_wider_window, moved_by_guessed_curve};
 use crate::note::{About, Note};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference};
-use crate::study::flights::{EXPLAINED, Prepared, load_all, names, prepare, refuse_twins};
+use crate::study::flights::{EXPLAINED, Prepared, load_all, names, prepare, refuse_off_mixer, refuse_twins};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{Progress, Stage, StudyError, effects_of};
@@ -50,6 +51,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     };
     let held = load_all(&request.holdout, &request.read, &EXPLAINED).map_err(of_holdout)?;
     refuse_twins(logs.iter().chain(&held))?;
+    refuse_off_mixer(logs.iter().chain(&held))?;
     progress.stage(Stage::Conditioning);
     let settings = ConditionSettings {
         transient_s: Some(request.transient_s),
@@ -57,17 +59,26 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
         ..ConditionSettings::default()
     };
     let mut flights = prepare(logs, (&vehicle, &origin), &settings).map_err(or_unflown)?;
-    let held = prepare(held, (&vehicle, &origin), &settings).map_err(of_holdout)?;
+    let mut held = prepare(held, (&vehicle, &origin), &settings).map_err(of_holdout)?;
     refuse_shared(&flights, &held)?;
+    // the wind of one flight is for its explanation to name
+    let several = flights.signals.len() > 1;
+    let winds_m_s = if several { with_own_winds(&mut flights, &vehicle) } else { Vec::new() };
+    if several {
+        with_own_winds(&mut held, &vehicle);
+    }
     let whole = flights.signals.last().cloned();
-    let (shown_on, back) =
-        if held.is_empty() { hold_back(&mut flights) } else { (ShownOn::Flights(held.inputs.clone()), None) };
+    let (shown_on, back) = match (held.is_empty(), several) {
+        (true, true) => (ShownOn::LeftOut { flights: flights.signals.len() }, None),
+        (true, false) => hold_back(&mut flights),
+        (false, _) => (ShownOn::Flights(held.inputs.clone()), None),
+    };
     notes.extend(of_data(&flights, &held));
-    let task = Task { request, vehicle: &vehicle, notes: &notes, progress };
+    let task = Task { request, vehicle: &vehicle, notes: &notes, winds_m_s: &winds_m_s, progress };
     progress.stage(Stage::Explaining);
     let mut study = task.explained(&flights, (&held, back.as_ref(), shown_on))?;
     // what changed in the part held back, or shortly before it, is nowhere in the part explained
-    if let Some(whole) = whole.filter(|_| held.is_empty() && changes_late(&study)) {
+    if let Some(whole) = whole.filter(|_| back.is_some() && changes_late(&study)) {
         study = task.explained_again(study, &mut flights, whole)?;
     }
     let half_width_s = study.given.settings.half_width_s;
@@ -87,6 +98,8 @@ struct Task<'a> {
     request: &'a ExplainRequest,
     vehicle: &'a Vehicle,
     notes: &'a [Note],
+    /// of each flight, where they are several
+    winds_m_s: &'a [Option<[f64; 2]>],
     progress: &'a dyn Progress,
 }
 
@@ -131,7 +144,14 @@ impl Task<'_> {
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
         study.show_explained(flights);
-        study.show_held_out(held, back, shown_on);
+        if flights.signals.len() > 1 {
+            study.tell_along(&flights.signals, self.winds_m_s.to_vec());
+        }
+        if let ShownOn::LeftOut { .. } = shown_on {
+            study.show_left_out(flights);
+        } else {
+            study.show_held_out(held, back, shown_on);
+        }
         study
     }
 

@@ -14,6 +14,11 @@ pub enum ShownOn {
         /// s of flight
         seconds: f64,
     },
+    /// each flight that was explained, predicted by models that rest on the others
+    LeftOut {
+        /// how many
+        flights: usize,
+    },
     /// nothing was left to show it on
     Nothing {
         /// why
@@ -28,6 +33,7 @@ impl ShownOn {
         match self {
             Self::Flights(_) => "the hold-out",
             Self::HeldBack { .. } => "the part of the flight held back",
+            Self::LeftOut { .. } => "each flight by models of the others",
             Self::Nothing { .. } => "nothing",
         }
     }
@@ -41,6 +47,7 @@ impl ShownOn {
             Self::HeldBack { from_s, seconds } => {
                 format!("held back: {seconds:.0} s from {from_s:.0} s on")
             }
+            Self::LeftOut { flights } => format!("each of {flights} flights by models of the others"),
             Self::Nothing { reason } => format!("no hold-out: {reason}"),
         }
     }

@@ -36,7 +36,7 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     let with = with.transpose().map_err(or_unflown)?;
     let vehicle = (&known.loaded.vehicle, known.origin.as_path());
     let explained = conditioned(&logs, vehicle, &request.conditioning_beside()).unwrap_or_default();
-    let Prepared { recordings, signals, inputs } =
+    let Prepared { recordings, signals, inputs, .. } =
         prepare(logs, vehicle, &request.conditioning()).map_err(or_unflown)?;
     let apart = settings_apart(&recordings);
     apart.iter().for_each(|note| progress.note(note));

@@ -5,6 +5,7 @@ use rand::RngExt;
 
 use super::super::catalogue::{Case, identifier};
 use super::super::flight::Lost;
+use super::super::hidden::Hidden;
 use super::super::path::{Path, Room};
 use super::super::vehicle::Craft;
 use super::super::{AIR_DENSITY, dice};
@@ -135,17 +136,26 @@ impl RealCase {
 
     /// Flies it; `flight` 0 is the one to explain, 1 the one held out.
     pub fn fly(&self, flight: u64) -> Result<Flown, Lost> {
-        let seed = self.seed_of(flight);
-        let Case { craft, hidden, room, .. } = &self.case;
         let duration = if flight > 0 { 30.0 } else { 54.0 };
+        self.fly_as((self.seed_of(flight), duration), &self.case.hidden, &self.senses)
+    }
+
+    /// Flies a path of its own seed, for so many s, with what is concealed and measured on that day.
+    pub fn fly_as(
+        &self,
+        (seed, duration): (u64, f64),
+        hidden: &Hidden,
+        senses: &Senses,
+    ) -> Result<Flown, Lost> {
+        let Case { craft, room, .. } = &self.case;
         let path = if self.mission {
-            let reach = if self.senses.source.motion_capture { 2.2 } else { 7.0 };
+            let reach = if senses.source.motion_capture { 2.2 } else { 7.0 };
             Path::mission(seed, (*room, reach), duration)
         } else {
             let period = dice(seed, 12).random_range(10.5..14.5);
             Path::of_period(seed, *room, (period, duration))
         };
-        fly((craft, hidden), &path, &self.senses, seed)
+        fly((craft, hidden), &path, senses, seed)
     }
 
     /// Its log.

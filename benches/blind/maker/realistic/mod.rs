@@ -8,6 +8,7 @@ pub mod estimator;
 pub mod flight;
 pub mod inertial;
 pub mod low_pass;
+pub mod one_vehicle;
 pub mod position;
 pub mod seen;
 pub mod streams;

@@ -1,0 +1,236 @@
+//! Whether the balance of a vehicle moved between two groups of flights, and what accounts for it.
+
+use super::explanation::{Account, Explanation, What, explanations, factor, lean};
+use super::groups::{Groups, Moved};
+use crate::trim::{AXES, Balance};
+use crate::vehicle::Vehicle;
+use nalgebra::{DVector, Vector3};
+
+/// Sum of squares that an explanation must account for, in standard deviations: 4.5 of them. One of some thousand comparisons of one
+/// component exceeds it by chance where the errors are right, and a heavier tail is allowed for.
+pub const NAMED: f64 = 20.25;
+/// Sum of squares that the best explanation may leave. Chosen: two components exceed it in one of 500.
+const FITS: f64 = 12.0;
+/// Cost of each amount of an explanation, sum of squares. Chosen.
+const PRICE: f64 = 5.0;
+/// An explanation that costs so much more than the best is told apart: one of twenty odds, twice the logarithm.
+const APART: f64 = 6.0;
+/// Standard deviation of the centre of mass from flight to flight by where battery and load sit, arms, a direction: the flight's own.
+/// Chosen; not measured.
+const LOADED: f64 = 0.01;
+/// Flights that the stated scatter counts as.
+const PRIOR: f64 = 6.0;
+/// Share of a flight's own error that says the same.
+const SAYS: f64 = 2.0;
+
+/// What the balance says of a change.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BalanceChange {
+    /// the balance, shares: see [`crate::trim::Leg::lean`]
+    pub moved: [Moved; AXES],
+    /// sum of squares of the move in standard deviations
+    pub strength: f64,
+    /// standard deviations of the groups' scatter over the one that is expected beforehand
+    pub scatter: f64,
+    /// what accounts for it; `None`: nothing that these flights could show
+    pub found: Option<BalanceFound>,
+    /// what would have been shown
+    pub least: Least,
+}
+
+/// A change of the balance and its cause.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BalanceFound {
+    /// the most likely; `None`: nothing known accounts for it alone
+    pub what: Option<What>,
+    /// of a rotor: thrust for the same command over that before
+    pub factor: Option<Moved>,
+    /// of the centre of mass: how far it moved along body x and y, arms, with standard errors
+    pub offset: Option<[(f64, f64); 2]>,
+    /// what accounts for it nearly as well
+    pub rivals: Vec<What>,
+    /// sum of squares that it accounts for, in standard deviations
+    pub strength: f64,
+    /// later flights that each show it alone
+    pub carried_by: Vec<usize>,
+}
+
+/// The smallest changes that would have been named.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Least {
+    /// of each rotor, share of its thrust
+    pub rotors: Vec<f64>,
+    /// of the centre of mass, arms
+    pub centre: f64,
+}
+
+/// The comparison of two groups.
+struct Pair<'a> {
+    balance: &'a Balance,
+    groups: &'a Groups,
+    scale: f64,
+}
+
+/// Judges whether the balance moved between two groups of flights. Neither group is empty.
+#[must_use]
+pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> BalanceChange {
+    let scale = scatter(balance, groups);
+    let pair = Pair { balance, groups, scale };
+    let moved: [Moved; AXES] = std::array::from_fn(|axis| pair.moved(axis));
+    let (by, variances) = (difference(&moved), variances_of(&moved, |moved| moved.by));
+    let before = Vector3::from(moved.map(|moved| moved.before.0));
+    let known = explanations(vehicle, &before);
+    let strength = by.component_mul(&by).component_div(&variances).sum();
+    let shares: Vec<f64> = (0..vehicle.rotors.len()).map(|rotor| pair.share(rotor)).collect();
+    let mut found = found(&known, &moved, &shares, strength);
+    if let Some(found) = &mut found {
+        found.carried_by = carriers(&pair, found, &known);
+    }
+    let least = |explanation: &Explanation| match explanation.what {
+        What::Rotor(rotor) => Some(NAMED.sqrt() * explanation.std(&variances) / shares[rotor]),
+        _ => None,
+    };
+    let worst = variances.x.max(variances.y) + 2.0 * LOADED * LOADED;
+    let least = Least { rotors: known.iter().filter_map(least).collect(), centre: (NAMED * worst).sqrt() };
+    BalanceChange { moved, strength, scatter: scale, found, least }
+}
+
+fn difference(moved: &[Moved; AXES]) -> Vector3<f64> {
+    Vector3::from(moved.map(|moved| moved.by.0))
+}
+
+fn variances_of(moved: &[Moved; AXES], of: fn(&Moved) -> (f64, f64)) -> Vector3<f64> {
+    Vector3::from(moved.map(|moved| of(&moved).1.powi(2)))
+}
+
+/// What accounts for a move, if anything has to.
+fn found(
+    known: &[Explanation],
+    moved: &[Moved; AXES],
+    shares: &[f64],
+    strength: f64,
+) -> Option<BalanceFound> {
+    let (by, variances) = (&difference(moved), &variances_of(moved, |moved| moved.by));
+    let mut accounts: Vec<(Account, f64)> = known
+        .iter()
+        .map(|explanation| {
+            let account = explanation.accounts(by, variances);
+            let cost = account.cost + PRICE * account.amounts.len() as f64;
+            (account, cost)
+        })
+        .collect();
+    accounts.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let (best, cost) = accounts.first()?;
+    if strength - best.left < NAMED {
+        return None;
+    }
+    // where a battery or a load sits is the flight's own
+    let loaded = variances + 2.0 * LOADED * LOADED * Vector3::new(1.0, 1.0, 0.0);
+    let beyond_load = || by.component_mul(by).component_div(&loaded).sum() >= NAMED;
+    if best.what == What::CentreOfMass && !beyond_load() {
+        return None;
+    }
+    let fits = best.left <= FITS;
+    if !fits && !beyond_load() {
+        return None;
+    }
+    let rivals =
+        accounts[1..].iter().filter(|(account, other)| *other < cost + APART && account.left <= FITS);
+    let amounts = &best.amounts;
+    Some(BalanceFound {
+        what: fits.then_some(best.what),
+        factor: match best.what {
+            What::Rotor(rotor) if fits => {
+                let rotors = known.iter().find(|explanation| explanation.what == best.what);
+                let alone = |of: fn(&Moved) -> (f64, f64)| {
+                    rotors.map_or(f64::NAN, |known| known.std(&variances_of(moved, of)) / shares[rotor])
+                };
+                let (after, std) = factor(amounts[0], shares[rotor]);
+                let errors = [alone(|moved| moved.before), alone(|moved| moved.after)];
+                Some(Moved { before: (1.0, errors[0]), after: (after, errors[1]), by: (after - 1.0, std) })
+            }
+            _ => None,
+        },
+        // the thrust has to act where the centre of mass went
+        offset: (fits && best.what == What::CentreOfMass).then(|| [amounts[0], amounts[1]]),
+        rivals: if fits { rivals.map(|(account, _)| account.what).collect() } else { Vec::new() },
+        strength: strength - best.left,
+        carried_by: Vec::new(),
+    })
+}
+
+/// Later flights that each show what was found.
+fn carriers(pair: &Pair, found: &BalanceFound, known: &[Explanation]) -> Vec<usize> {
+    let alone = |flight: &&usize| {
+        let groups = Groups { before: pair.groups.before.clone(), after: vec![**flight] };
+        let one = Pair { groups: &groups, ..*pair };
+        let moved: [Moved; AXES] = std::array::from_fn(|axis| one.moved(axis));
+        let (by, variances) = (difference(&moved), variances_of(&moved, |moved| moved.by));
+        let Some(explanation) = known.iter().find(|known| Some(known.what) == found.what) else {
+            return by.component_mul(&by).component_div(&variances).sum() >= NAMED;
+        };
+        let account = explanation.accounts(&by, &variances);
+        let is_same_way = match found.factor {
+            Some(factor) => (factor.by.0 < 0.0) == (account.amounts[0].0 > 0.0),
+            None => true,
+        };
+        is_same_way && account.amounts.iter().any(|(amount, std)| amount.abs() > SAYS * std)
+    };
+    pair.groups.after.iter().filter(alone).copied().collect()
+}
+
+impl Pair<'_> {
+    /// A component in both groups.
+    fn moved(&self, axis: usize) -> Moved {
+        let covariance = self.balance.covariance_of(axis, self.scale);
+        let count = covariance.nrows();
+        let weights = |group: &[usize]| {
+            let mut weights = DVector::<f64>::zeros(count);
+            for &flight in group {
+                weights[flight] = covariance[(flight, flight)].recip();
+            }
+            let sum = weights.sum();
+            weights / sum
+        };
+        let [before, after] = self.groups.both().map(weights);
+        let value = |weights: &DVector<f64>| -> f64 {
+            self.balance.flights.iter().zip(weights.iter()).map(|(of, weight)| weight * of.lean[axis]).sum()
+        };
+        let std =
+            |weights: &DVector<f64>| (weights.transpose() * &covariance * weights)[(0, 0)].max(0.0).sqrt();
+        Moved {
+            before: (value(&before), std(&before)),
+            after: (value(&after), std(&after)),
+            by: (value(&after) - value(&before), std(&(after - before))),
+        }
+    }
+
+    /// Mean share of a rotor in the commanded thrust after.
+    fn share(&self, rotor: usize) -> f64 {
+        let after = &self.groups.after;
+        after.iter().map(|&flight| self.balance.flights[flight].shares[rotor]).sum::<f64>()
+            / after.len() as f64
+    }
+}
+
+/// Scatter of the flights of each group over what is expected beforehand, learned as far as there are flights to learn it from.
+fn scatter(balance: &Balance, groups: &Groups) -> f64 {
+    let mut squares = 0.0;
+    for axis in 0..AXES {
+        let covariance = balance.covariance_of(axis, 1.0);
+        for group in groups.both() {
+            let weight = |flight: usize| covariance[(flight, flight)].recip();
+            let sum: f64 = group.iter().map(|&flight| weight(flight)).sum();
+            let mean = group
+                .iter()
+                .map(|&flight| weight(flight) * lean(&balance.flights[flight])[axis])
+                .sum::<f64>()
+                / sum;
+            for &flight in group {
+                squares += weight(flight) * (lean(&balance.flights[flight])[axis] - mean).powi(2);
+            }
+        }
+    }
+    let free = (AXES * groups.beside_one()) as f64;
+    ((PRIOR + squares) / (PRIOR + free)).sqrt().max(0.8)
+}

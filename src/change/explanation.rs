@@ -1,0 +1,105 @@
+//! What can move the balance of a vehicle, and the direction in which it does.
+
+use crate::trim::{AXES, FlightBalance, mean_arm_m};
+use crate::vehicle::Vehicle;
+use nalgebra::Vector3;
+
+/// What changed of a vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum What {
+    /// a rotor gives another thrust for its command, by its place in the vehicle's file
+    Rotor(usize),
+    /// the centre of mass is elsewhere: the vehicle's, or that of its load
+    CentreOfMass,
+    /// a torque about the vertical that no single rotor makes
+    YawTorque,
+}
+
+/// A weak rotor gives less torque as well, in proportion to its thrust or not: a shorter blade gives less still, a motor that turns
+/// slower less of both. Standard deviation of torque's share over thrust's. Chosen; not measured.
+const TORQUE_SPREAD: f64 = 0.35;
+/// Times that the spread, which follows the amount, settles in.
+const PASSES: usize = 4;
+
+/// One explanation of a move of the balance.
+#[derive(Debug, Clone)]
+pub(super) struct Explanation {
+    pub(super) what: What,
+    /// how the balance moves with each of its amounts
+    directions: Vec<Vector3<f64>>,
+}
+
+/// How well an explanation accounts for a move.
+#[derive(Debug, Clone)]
+pub(super) struct Account {
+    pub(super) what: What,
+    /// with standard errors
+    pub(super) amounts: Vec<(f64, f64)>,
+    /// sum of squares that is left, in standard deviations
+    pub(super) left: f64,
+    /// twice the negative logarithm of the likelihood beyond that of no change's covariance
+    pub(super) cost: f64,
+}
+
+/// All explanations for a vehicle. `after` is what a changed rotor's share is taken from.
+pub(super) fn explanations(vehicle: &Vehicle, before: &Vector3<f64>) -> Vec<Explanation> {
+    let arm_m = mean_arm_m(vehicle);
+    let rotors = vehicle.rotors.iter().enumerate().map(|(place, rotor)| {
+        let at = (rotor.position_m - vehicle.body.center_of_mass_m) / arm_m;
+        // where the rotor pulls the balance to
+        let pull = Vector3::new(at.x, at.y, rotor.spin.yaw_sign()) - before;
+        Explanation { what: What::Rotor(place), directions: vec![pull] }
+    });
+    let others = [
+        Explanation { what: What::CentreOfMass, directions: vec![Vector3::x(), Vector3::y()] },
+        Explanation { what: What::YawTorque, directions: vec![Vector3::z()] },
+    ];
+    rotors.chain(others).collect()
+}
+
+impl Explanation {
+    /// Accounts for a move with these variances.
+    pub(super) fn accounts(&self, moved: &Vector3<f64>, variances: &Vector3<f64>) -> Account {
+        let mut widened = *variances;
+        let mut found = self.fitted(moved, &widened);
+        if let (What::Rotor(_), [pull]) = (self.what, self.directions.as_slice()) {
+            for _ in 0..PASSES {
+                widened.z = variances.z + (TORQUE_SPREAD * found.amounts[0].0 * pull.z).powi(2);
+                found = self.fitted(moved, &widened);
+            }
+        }
+        found.cost = found.left + (widened.z / variances.z).ln();
+        found
+    }
+
+    fn fitted(&self, moved: &Vector3<f64>, variances: &Vector3<f64>) -> Account {
+        let mut left = *moved;
+        let mut amounts = Vec::new();
+        // directions of one explanation are at right angles
+        for direction in &self.directions {
+            let weighted = direction.component_div(variances);
+            let information = weighted.dot(direction);
+            let amount = weighted.dot(moved) / information;
+            left -= amount * direction;
+            amounts.push((amount, information.recip().sqrt()));
+        }
+        let left = left.component_mul(&left).component_div(variances).sum();
+        Account { what: self.what, amounts, left, cost: left }
+    }
+
+    /// Standard error of the first amount.
+    pub(super) fn std(&self, variances: &Vector3<f64>) -> f64 {
+        self.fitted(&Vector3::zeros(), variances).amounts[0].1
+    }
+}
+
+/// The factor of a rotor's thrust that an amount means, with its standard error: the rotor takes a larger share of the commands.
+pub(super) fn factor((amount, std): (f64, f64), share: f64) -> (f64, f64) {
+    (1.0 - amount / share, std / share)
+}
+
+/// A balance as a vector.
+pub(super) fn lean(of: &FlightBalance) -> Vector3<f64> {
+    let lean: [f64; AXES] = of.lean;
+    Vector3::from(lean)
+}

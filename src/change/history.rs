@@ -1,0 +1,64 @@
+//! Where along a row of flights something changed.
+
+use super::groups::Groups;
+
+/// A place in a row of flights from which on something is otherwise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step<T> {
+    /// the first flight that is otherwise
+    pub from: usize,
+    /// what was compared: the flights since the step before, and those until the next
+    pub groups: Groups,
+    /// what changed
+    pub change: T,
+}
+
+/// The steps of a row of flights, in order: the strongest divides the row, and its parts are searched as the whole was. `judge` gives
+/// what changed between two groups and how strong that is; `None` where nothing did.
+pub fn steps<T>(flights: usize, judge: &impl Fn(&Groups) -> Option<(f64, T)>) -> Vec<Step<T>> {
+    let mut found = Vec::new();
+    search(0, flights, judge, &mut found);
+    found.sort_by_key(|step: &Step<T>| step.from);
+    found
+}
+
+fn search<T>(
+    first: usize,
+    end: usize,
+    judge: &impl Fn(&Groups) -> Option<(f64, T)>,
+    found: &mut Vec<Step<T>>,
+) {
+    let judged = (first + 1..end).filter_map(|from| {
+        let groups = Groups { before: (first..from).collect(), after: (from..end).collect() };
+        let (strength, change) = judge(&groups)?;
+        Some((strength, Step { from, groups, change }))
+    });
+    let Some((_, step)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) else { return };
+    let from = step.from;
+    found.push(step);
+    search(first, from, judge, found);
+    search(from, end, judge, found);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_with_two_steps_is_divided_where_they_are() {
+        let row = [1.0, 1.1, 0.9, 3.0, 3.1, 2.0, 2.1, 1.9];
+        let mean =
+            |places: &[usize]| places.iter().map(|place| row[*place]).sum::<f64>() / places.len() as f64;
+        let judge = |groups: &Groups| {
+            let by: f64 = mean(&groups.after) - mean(&groups.before);
+            let error = (1.0 / groups.before.len() as f64 + 1.0 / groups.after.len() as f64).sqrt();
+            (by.abs() > 0.5 * error).then_some((by.abs() / error, by))
+        };
+        let found = steps(row.len(), &judge);
+        let places: Vec<usize> = found.iter().map(|step| step.from).collect();
+        assert_eq!(places, [3, 5]);
+        assert!(found[0].change > 0.0 && found[1].change < 0.0);
+        assert!(steps(3, &judge).is_empty() || row[..3].len() == 3);
+        assert!(steps(0, &judge).is_empty());
+    }
+}

@@ -1,0 +1,16 @@
+//! What changed of a vehicle between flights: which rotor, the centre of mass, or a parameter, by how much, with its error; and what
+//! could not have been seen.
+
+mod balance_change;
+mod explanation;
+mod groups;
+mod history;
+mod parameter;
+mod together;
+
+pub use balance_change::{BalanceChange, BalanceFound, Least, NAMED, judge_balance};
+pub use explanation::What;
+pub use groups::{Groups, Moved};
+pub use history::{Step, steps};
+pub use parameter::{ParameterChange, Spread, judge_parameter};
+pub use together::together;

@@ -1,0 +1,54 @@
+//! Arguments of `mavid compare`.
+
+use super::given::ShapeArgs;
+use super::recording::ReadArgs;
+use clap::Args;
+use mavid::study::{CompareRequest, VehicleGiven};
+use std::path::PathBuf;
+
+/// Arguments of `mavid compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// recordings of one vehicle, in their order: those before a change, or, without --with, all of them
+    #[arg(required = true, value_name = "LOG")]
+    pub before: Vec<PathBuf>,
+    /// later recordings of the same vehicle: what changed since those before?
+    #[arg(long = "with", value_name = "LOG", num_args = 1..)]
+    pub after: Vec<PathBuf>,
+    /// vehicle.toml or model.toml; without it and without --mass thrusts are compared as shares
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["mass", "size", "frame"])]
+    pub vehicle: Option<PathBuf>,
+    /// in place of --vehicle: mass with battery, kg. The rest comes from the first log's parameters, its flight and rules of thumb
+    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    pub mass: Option<f64>,
+    /// its shape
+    #[command(flatten)]
+    pub shape: ShapeArgs,
+    /// compare the balance of the rotors alone, not what the motion shows
+    #[arg(long)]
+    pub balance_only: bool,
+    /// write report.html and comparison.json into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// how the recordings are read
+    #[command(flatten)]
+    pub read: ReadArgs,
+    /// time left out at the beginning of each flight, s
+    #[arg(long, value_name = "S", default_value_t = CompareRequest::TRANSIENT_S, allow_negative_numbers = true)]
+    pub transient: f64,
+}
+
+impl CompareArgs {
+    /// As the study takes them.
+    pub fn request(&self) -> CompareRequest {
+        let weighed = || self.mass.map(|mass_kg| VehicleGiven::Weighed(self.shape.given(mass_kg)));
+        CompareRequest {
+            before: self.before.clone(),
+            after: self.after.clone(),
+            vehicle: self.vehicle.clone().map(VehicleGiven::File).or_else(weighed),
+            read: self.read.settings(),
+            transient_s: self.transient,
+            balance_only: self.balance_only,
+        }
+    }
+}

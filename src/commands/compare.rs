@@ -1,0 +1,54 @@
+//! `mavid compare BEFORE... --with AFTER...`: what changed of a vehicle between flights.
+
+use std::path::PathBuf;
+
+use mavid::report::{ComparisonDocument, comparison_html, comparison_text};
+use mavid::study::compare;
+use mavid::text;
+
+use super::explain::REPORT;
+use super::identify::tell;
+use super::progress::Spinner;
+use super::standard_error::StandardError;
+use super::words::Word;
+use super::{CommandError, Outcome, output};
+use crate::cli::CompareArgs;
+
+/// Name of the document that is written.
+const DOCUMENT: &str = "comparison.json";
+
+/// Runs the verb.
+pub fn run(json: bool, stderr: &StandardError, args: &CompareArgs) -> Result<Outcome, CommandError> {
+    let request = args.request();
+    request.check()?;
+    check_targets(args)?;
+    let study = compare(&request, &Spinner::new(stderr))?;
+    if let Some(folder) = &args.out {
+        output::file(&folder.join(REPORT), &comparison_html(&study))?;
+        output::file(&folder.join(DOCUMENT), &output::json_text(&ComparisonDocument::new(&study))?)?;
+    }
+    if json {
+        output::json(&ComparisonDocument::new(&study))?;
+    } else {
+        output::text(&comparison_text(&study))?;
+    }
+    study.notes.iter().map(Word::from).for_each(|word| word.say());
+    let read = tell(study.flights.iter().map(|flight| &flight.input));
+    // that something changed is what was asked; the output says what was lost
+    Ok(if study.has_changed() { Outcome::Changed } else { read })
+}
+
+/// A target that cannot be written is told before the work.
+fn check_targets(args: &CompareArgs) -> Result<(), CommandError> {
+    let Some(folder) = &args.out else { return Ok(()) };
+    if folder.exists() && !folder.is_dir() {
+        return Err(CommandError::Input(format!(
+            "--out: expected a folder, {} is a file",
+            text::path(&folder)
+        )));
+    }
+    let inputs: Vec<&PathBuf> = args.before.iter().chain(&args.after).chain(&args.vehicle).collect();
+    let written = [REPORT, DOCUMENT].map(|name| folder.join(name));
+    output::refuse_overwriting(&inputs, &written.iter().collect::<Vec<_>>())?;
+    output::folder(folder)
+}

@@ -1,0 +1,258 @@
+//! What each of several flights says of the vehicle's parameters, with its day's own beside them.
+//!
+//! Every flight is fitted alone to all that is known to act on the vehicle: its mass, its wind and its sensors are its own, and the
+//! covariance of what is left has them in it. Put together by their information, such values are what one fit of all flights gives.
+
+use super::base::Base;
+use super::explain::ExplainSettings;
+use super::explanation::{Explanation, Verdict};
+use super::feedback_noise::is_fed_back;
+use super::fit::{Fitted, Newton, fit};
+use super::floors::add_floors;
+use super::latency::LatencyFinding;
+use super::left_over::add_left_over;
+use super::reconstructed::reconstruct;
+use super::recorded::Recorded;
+use super::signature::EffectTerm;
+use super::tested::Search;
+use super::torques_by_instruments::torques_by_instruments;
+use super::trace::Trace;
+use crate::estimate::{NAMES, UNITS};
+use crate::physics::PhysicsError;
+use crate::signals::Signals;
+use crate::vehicle::Vehicle;
+use rayon::prelude::*;
+
+/// Whose a parameter is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Owner {
+    /// the same in every flight
+    Vehicle,
+    /// of the day: load, battery, wind
+    Flight,
+}
+
+/// A parameter as one flight shows it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlightParameter {
+    /// `mass`, `ixx` ... or `effect.parameter`
+    pub name: String,
+    /// SI
+    pub unit: &'static str,
+    /// whose it is
+    pub owner: Owner,
+    /// effect of which it is; `None`: of the rigid body
+    pub effect: Option<&'static str>,
+    /// value at which the effect is none
+    pub nothing: f64,
+    /// value and standard error
+    pub estimate: (f64, f64),
+    /// part of that error which goes the same way in every flight of the vehicle: how far laws hold, and what they leave over
+    pub common_std: f64,
+}
+
+/// The parameters of each flight, fitted with every effect of the vehicle that one of the explanations has; there is one explanation a
+/// flight. Empty where a flight cannot be fitted so.
+#[must_use]
+pub fn by_flight(
+    flights: &[Signals],
+    explanations: &[&Explanation],
+    vehicle: &Vehicle,
+    settings: &ExplainSettings,
+) -> Vec<Vec<FlightParameter>> {
+    let terms = of_the_vehicle(explanations);
+    let one = |(signals, explanation): (&Signals, &&Explanation)| {
+        let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
+        let base = with_terms(explanation, &terms, (vehicle, &trace));
+        let (fitted, by_instruments) = settled(signals, trace, base, explanation.search.latency).ok()?;
+        Some(parameters((&fitted, &by_instruments), explanation.turned_by_control, &terms))
+    };
+    let each: Vec<_> = flights.par_iter().zip(explanations).map(one).collect();
+    each.into_iter().map(Option::unwrap_or_default).collect()
+}
+
+/// The parameters of each flight, fitted alone to the model of one explanation of all of them, with what is its own of the day.
+#[must_use]
+pub fn each_with_model_of_all(
+    flights: &[Signals],
+    explanation: &Explanation,
+    vehicle: &Vehicle,
+    settings: &ExplainSettings,
+) -> Vec<Vec<FlightParameter>> {
+    by_flight(flights, &vec![explanation; flights.len()], vehicle, settings)
+}
+
+/// The rigid body's parameters of each flight, fitted without any effect.
+#[must_use]
+pub fn rigid_by_flight(
+    flights: &[Signals],
+    explanation: &Explanation,
+    vehicle: &Vehicle,
+    settings: &ExplainSettings,
+) -> Vec<Vec<FlightParameter>> {
+    let one = |signals: &Signals| {
+        let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
+        let base = explanation.search.before.base.clone();
+        let (fitted, by_instruments) = settled(signals, trace, base, explanation.search.latency).ok()?;
+        Some(parameters((&fitted, &by_instruments), explanation.turned_by_control, &[]))
+    };
+    flights.par_iter().map(one).map(Option::unwrap_or_default).collect()
+}
+
+impl Explanation {
+    /// The same models, `before` and `after`, with other values: mass, moments of inertia and effects by the names of
+    /// [`FlightParameter`], SI. What is not among them stays.
+    #[must_use]
+    pub fn with_values(&self, before: &[(&str, f64)], after: &[(&str, f64)]) -> Self {
+        let mut moved = self.clone();
+        set_values(&mut moved.search.before.base, before);
+        set_values(&mut moved.search.after.base, after);
+        moved
+    }
+}
+
+fn set_values(base: &mut Base, values: &[(&str, f64)]) {
+    let of = |name: &str| values.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
+    let body = &mut base.vehicle.body;
+    // a vehicle that was weighed has its mass
+    if let Some(mass_kg) = of(NAMES[0]).filter(|_| base.weighed_kg.is_none()) {
+        body.mass_kg = mass_kg;
+    }
+    for (axis, name) in [NAMES[1], NAMES[4], NAMES[6]].into_iter().enumerate() {
+        if let Some(moment) = of(name) {
+            body.inertia_kg_m2[(axis, axis)] = moment;
+        }
+    }
+    for present in &mut base.present {
+        for slot in present.free.clone() {
+            let name = present.parameter(slot).map(|parameter| named(present, parameter.name));
+            if let Some(value) = name.and_then(|name| of(&name)) {
+                present.values[slot] = value;
+            }
+        }
+    }
+}
+
+/// Whether an effect may be compared from flight to flight at all.
+fn is_comparable(term: &EffectTerm) -> bool {
+    term.signature.role.moment.is_none() && !term.free.is_empty()
+}
+
+fn owner(term: &EffectTerm) -> Owner {
+    let role = &term.signature.role;
+    if role.of_the_day || role.of_the_loading || role.hangs_below { Owner::Flight } else { Owner::Vehicle }
+}
+
+/// Each effect of the vehicle that was named, once; each rotor may have its own.
+fn of_the_vehicle(explanations: &[&Explanation]) -> Vec<EffectTerm> {
+    let mut terms: Vec<EffectTerm> = Vec::new();
+    for explanation in explanations.iter().filter(|one| one.verdict != Verdict::Unexplained) {
+        let named = |term: &&EffectTerm| explanation.named.iter().any(|named| named.id == term.id());
+        for term in explanation.search.after.base.present.iter().filter(named) {
+            let is_known = terms.iter().any(|known| is_same(known, term));
+            if is_comparable(term) && owner(term) == Owner::Vehicle && !is_known {
+                terms.push(term.clone());
+            }
+        }
+    }
+    terms
+}
+
+fn is_same(one: &EffectTerm, other: &EffectTerm) -> bool {
+    let which = one.signature.role.which;
+    one.id() == other.id() && which.is_none_or(|slot| one.values[slot] == other.values[slot])
+}
+
+/// The model of one flight with the effects of all that it can show.
+fn with_terms(explanation: &Explanation, terms: &[EffectTerm], (vehicle, trace): (&Vehicle, &Trace)) -> Base {
+    let search = &explanation.search;
+    let own = if explanation.verdict == Verdict::Unexplained { &search.before } else { &search.after };
+    let mut base = own.base.clone();
+    let recorded = Recorded::new(vehicle, std::slice::from_ref(trace));
+    for term in terms {
+        let is_there = base.present.iter().any(|present| is_same(present, term));
+        if !is_there && recorded.lacks(term.signature.needs).is_none() {
+            base.present.push(term.clone());
+        }
+    }
+    base
+}
+
+/// One flight fitted to a model, its sizes and errors as an explanation has them, but for what all flights have in common; and which
+/// coefficients the instruments have told.
+fn settled(
+    signals: &Signals,
+    trace: Trace,
+    base: Base,
+    latency: LatencyFinding,
+) -> Result<(Fitted, Vec<usize>), PhysicsError> {
+    let traces = [trace];
+    let after = fit(&traces, base, Newton::Held)?;
+    let mut found = Search { before: after.clone(), after, latency, steps: Vec::new(), last: Vec::new() };
+    reconstruct(std::slice::from_ref(signals), &traces, &mut found)?;
+    let by_instruments = if is_fed_back(&traces) {
+        torques_by_instruments(&traces, latency.std_s, &mut found.after)?
+    } else {
+        Vec::new()
+    };
+    Ok((found.after, by_instruments))
+}
+
+fn parameters(
+    (fitted, by_instruments): (&Fitted, &[usize]),
+    turned_by_control: bool,
+    terms: &[EffectTerm],
+) -> Vec<FlightParameter> {
+    let mut whole = fitted.clone();
+    add_left_over(&mut whole, by_instruments);
+    add_floors(&mut whole);
+    let common = |own: f64, all: f64| (all - own).max(0.0).sqrt();
+    let mut out = Vec::new();
+    let (body, with_common) = (fitted.rigid_body(), whole.rigid_body());
+    let tells_inertia = fitted.rows.compares_torques && !turned_by_control;
+    // products say nothing that the moments do not
+    for index in [0, 1, 4, 6].into_iter().filter(|index| *index == 0 || tells_inertia) {
+        let variance = body.covariance[(index, index)];
+        if body.theta[index].is_finite() && variance > 0.0 {
+            out.push(FlightParameter {
+                name: NAMES[index].to_owned(),
+                unit: UNITS[index],
+                owner: if index == 0 { Owner::Flight } else { Owner::Vehicle },
+                effect: None,
+                nothing: 0.0,
+                estimate: (body.theta[index], with_common.covariance[(index, index)].sqrt()),
+                common_std: common(variance, with_common.covariance[(index, index)]),
+            });
+        }
+    }
+    let mut column = fitted.rows.nuisances.len();
+    for present in &fitted.base.present {
+        for &slot in &present.free {
+            let is_known = terms.iter().any(|term| is_same(term, present)) || owner(present) == Owner::Flight;
+            if let Some(parameter) = present.parameter(slot).filter(|_| present.is_amount(slot) && is_known) {
+                let value = present.values[slot];
+                let std = fitted.std_of(column, (value, parameter.unit));
+                let of_whole = whole.std_of(column, (value, parameter.unit));
+                out.extend((std > 0.0).then(|| FlightParameter {
+                    name: named(present, parameter.name),
+                    unit: parameter.unit,
+                    owner: owner(present),
+                    effect: Some(present.id()),
+                    nothing: present.signature.nothing,
+                    estimate: (value, of_whole),
+                    common_std: common(std * std, of_whole * of_whole),
+                }));
+            }
+            column += 1;
+        }
+    }
+    out
+}
+
+/// `effect.parameter`, of a rotor with its number.
+fn named(term: &EffectTerm, parameter: &str) -> String {
+    match term.signature.role.which {
+        Some(slot) => format!("{}[{}].{parameter}", term.id(), term.values[slot]),
+        None => format!("{}.{parameter}", term.id()),
+    }
+}

@@ -1,0 +1,74 @@
+//! The wind of each flight's own day, and the flight as one sees it who drifts with the wind.
+//!
+//! The equations of motion are the same for an observer who moves at a constant velocity. Seen with the air, flights of days with
+//! different winds have the vehicle's parameters in common and no wind.
+
+use super::base::Base;
+use super::explain::ExplainSettings;
+use super::fit::{Newton, fit};
+use super::signatures::ALL;
+use super::trace::Trace;
+use crate::recording::Stream;
+use crate::signals::Signals;
+use crate::vehicle::Vehicle;
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+/// A wind and its drag are believed from so many standard errors on. Chosen; not measured.
+const CERTAIN: f64 = 5.0;
+/// Share of the velocity's scatter under which a wind says nothing: velocity estimates err by as much, m/s.
+const CALM_M_S: f64 = 0.3;
+/// Start of the drag's fit, 1/s of the mass.
+const DRAG_1_S: f64 = 0.1;
+
+/// The steady wind along the ground, world, m/s, that a flight shows with a drag that it acts through; `None` where it shows none.
+#[must_use]
+pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings) -> Option<Vector3<f64>> {
+    let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
+    if !(trace.known.velocity && trace.known.attitude) {
+        return None;
+    }
+    let carried = ALL.iter().find_map(|signature| signature.role.wind)?().into_iter().next()?;
+    let mut base = Base::anchored(vehicle);
+    let mut drag = carried.carrier;
+    for &slot in &drag.free {
+        drag.values[slot] = DRAG_1_S * vehicle.body.mass_kg;
+    }
+    base.present = vec![drag, carried.term];
+    let fitted = fit(&[trace], base, Newton::Free).ok()?;
+    let mut column = fitted.rows.nuisances.len();
+    let mut certain = Vec::new();
+    for present in &fitted.base.present {
+        let of = present.free.iter().map(|&slot| {
+            let std = fitted.covariance[(column, column)].max(0.0).sqrt();
+            column += 1;
+            present.values[slot].abs() > CERTAIN * std
+        });
+        certain.push(of.collect::<Vec<bool>>());
+    }
+    let wind = &fitted.base.present.get(1)?.values;
+    let wind = Vector3::new(wind[0], wind[1], 0.0);
+    let is_shown = certain[0].iter().all(|yes| *yes) && certain[1].iter().any(|yes| *yes);
+    let is_dragged =
+        fitted.base.present[0].free.iter().all(|&slot| fitted.base.present[0].values[slot] > 0.0);
+    (is_shown && is_dragged && wind.norm() > CALM_M_S).then_some(wind)
+}
+
+/// The flight as seen with air that moves at `wind` (world, m/s).
+#[must_use]
+pub fn seen_with_air(signals: &Signals, wind: &Vector3<f64>) -> Signals {
+    let mut seen = signals.clone();
+    let moving =
+        |velocity: &Arc<Vec<Vector3<f64>>>| Arc::new(velocity.iter().map(|v| v - wind).collect::<Vec<_>>());
+    seen.velocity = seen.velocity.as_ref().map(moving);
+    seen.position = seen.position.as_ref().map(|position| {
+        let drifted =
+            position.iter().enumerate().map(|(index, at)| at - wind * (signals.grid.step_s * index as f64));
+        Arc::new(drifted.collect::<Vec<_>>())
+    });
+    seen.as_recorded.velocity = seen.as_recorded.velocity.as_ref().map(|stream| {
+        let values = stream.values.iter().enumerate().map(|(place, value)| value - wind[place % 3]);
+        Arc::new(Stream { values: values.collect(), ..Stream::clone(stream) })
+    });
+    seen
+}

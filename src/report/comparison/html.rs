@@ -1,0 +1,164 @@
+//! `report.html` of `compare`: each section is one function, and one call in [`comparison_html`].
+
+use super::drawing::drawing;
+use super::words::{answer, name, sentence, size, spaced};
+use crate::diagnose::Owner;
+use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
+use crate::report::number::{significant, with_error};
+use crate::study::{Change, CompareStudy};
+use maud::{Markup, html};
+
+/// Standard errors of an interval that covers 95 %.
+const COVERING: f64 = 1.96;
+
+/// The report: one file, nothing loaded from anywhere.
+#[must_use]
+pub fn comparison_html(study: &CompareStudy) -> String {
+    let _stage = tracing::info_span!("report").entered();
+    let tags = [
+        study.vehicle.name.clone(),
+        format!("{} flights", study.flights.len()),
+        if study.has_changed() { "changed" } else { "nothing changed" }.to_owned(),
+    ];
+    let sections = html! {
+        (vehicle(study))
+        (changed(study))
+        (unseen(study))
+        (flights(study))
+        (tracks(study))
+        (history(study))
+        (remarks(study))
+        (provenance(study))
+    };
+    html::page("mavid compare", &answer(study), &tags, &sections)
+}
+
+fn vehicle(study: &CompareStudy) -> Markup {
+    let caption = "From above, forward upwards. Filled: the rotor that changed, with its thrust for the same command over that before.";
+    section("The vehicle", &figure(&drawing(study), caption))
+}
+
+fn changed(study: &CompareStudy) -> Markup {
+    let Some(compared) = study.compared.as_ref().filter(|compared| !compared.changes.is_empty()) else {
+        return Markup::default();
+    };
+    let rows: Vec<Vec<Cell>> = compared.changes.iter().map(|change| row(study, change)).collect();
+    let heads =
+        ["", "before|", "after|", "difference|", "95 % interval|", "standard deviations|", "shown alone by"];
+    section("What changed", &table("Before and after, with standard errors", &heads, &rows))
+}
+
+fn row(study: &CompareStudy, change: &Change) -> Vec<Cell> {
+    let of = |(value, std)| with_error(value, std);
+    let (parts, interval) = change.moved.map_or_else(Default::default, |moved| {
+        let (after, std) = (moved.after.0, moved.by.1);
+        let [low, high] = [-COVERING, COVERING].map(|by| significant(after + by * std, 3));
+        ([of(moved.before), of(moved.after), of(moved.by)], format!("{low} to {high}"))
+    });
+    let say: Vec<&str> =
+        change.carried_by.iter().map(|&flight| study.flights[flight].input.path.as_str()).collect();
+    let unit = spaced(change.unit);
+    let mut cells = vec![text(name(study, change.what))];
+    cells.extend(parts.map(|part| number(format!("{part}{unit}"))));
+    cells.extend([
+        number(format!("{interval}{unit}")),
+        number(significant(change.sigmas, 2)),
+        text(say.join(", ")),
+    ]);
+    cells
+}
+
+fn unseen(study: &CompareStudy) -> Markup {
+    let Some(compared) = &study.compared else { return Markup::default() };
+    let rows: Vec<Vec<Cell>> =
+        compared.least.iter().map(|least| vec![text(name(study, least.what)), number(size(least))]).collect();
+    section(
+        "What would have shown",
+        &table("The smallest change that would have been named", &["", "size|"], &rows),
+    )
+}
+
+fn flights(study: &CompareStudy) -> Markup {
+    let rows = study.flights.iter().zip(&study.balance.flights).enumerate().map(|(place, (flight, of))| {
+        let part = |axis: usize| {
+            number(with_error(of.lean[axis], study.balance.std(place, axis).hypot(of.wander[axis])))
+        };
+        let group = study
+            .groups
+            .as_ref()
+            .map_or("", |groups| if groups.before.contains(&place) { "before" } else { "after" });
+        let own = |value: Option<String>| number(value.unwrap_or_else(|| "-".to_owned()));
+        vec![
+            text(flight.input.path.as_str()),
+            text(group),
+            part(0),
+            part(1),
+            part(2),
+            number(format!("{:+.3}, {:+.3}", of.felt[0], of.felt[1])),
+            own(of.lift.map(|(lift, _)| significant(lift, 3))),
+            own(of.voltage_v.map(|volts| format!("{volts:.1}"))),
+            own(flight.power_w.map(|power| format!("{power:.0}"))),
+        ]
+    });
+    let heads = [
+        "flight",
+        "",
+        "x, arms|",
+        "y, arms|",
+        "about z|",
+        "felt of the air|",
+        "full thrust over weight|",
+        "V|",
+        "W|",
+    ];
+    let words = "The balance in still air: where the commanded thrust acts, and what turns about the vertical, as shares of the thrust. \
+                 The last three columns are the flight's own: battery, load and air are no change of the vehicle.";
+    section(
+        "Flights",
+        &html! { (note(words)) (table("One flight a row", &heads, &rows.collect::<Vec<_>>())) },
+    )
+}
+
+fn tracks(study: &CompareStudy) -> Markup {
+    if study.tracks.is_empty() {
+        return Markup::default();
+    }
+    let rows = study.tracks.iter().map(|track| {
+        let own = if track.owner == Owner::Flight { "the flight's own" } else { "the vehicle's" };
+        let mut cells = vec![text(track.name.as_str()), text(track.unit), text(own)];
+        cells.extend(track.values.iter().map(|value| {
+            number(value.map_or_else(|| "-".to_owned(), |(value, std)| with_error(value, std)))
+        }));
+        cells
+    });
+    let mut heads = vec!["parameter".to_owned(), "unit".to_owned(), "whose".to_owned()];
+    heads.extend((0..study.flights.len()).map(|place| format!("flight {}|", place + 1)));
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    section("Parameters along the flights", &table("With standard errors", &heads, &rows.collect::<Vec<_>>()))
+}
+
+fn history(study: &CompareStudy) -> Markup {
+    if study.flights.len() < 3 {
+        return Markup::default();
+    }
+    let steps = html! {
+        @if study.history.is_empty() { (paragraph("Nothing changed along the flights that they could show.")) }
+        @for step in &study.history { @for change in &step.change.changes {
+            (paragraph(&format!("From {} on: {}.", study.flights[step.from].input.path, sentence(study, change))))
+        } }
+    };
+    section("History", &steps)
+}
+
+fn remarks(study: &CompareStudy) -> Markup {
+    html! {
+        @for remark in &study.notes {
+            @if remark.is_warning() { (warning(&remark.sentence())) } @else { (note(&remark.sentence())) }
+        }
+    }
+}
+
+fn provenance(study: &CompareStudy) -> Markup {
+    let files: Vec<_> = study.flights.iter().map(|flight| ("compared", &flight.input)).collect();
+    html::provenance(&files, &[])
+}

@@ -1,0 +1,11 @@
+//! Views of the study of `compare`: text, JSON and `report.html` with the drawing of the vehicle.
+
+mod drawing;
+mod html;
+mod json;
+mod text;
+mod words;
+
+pub use html::comparison_html;
+pub use json::ComparisonDocument;
+pub use text::comparison_text;

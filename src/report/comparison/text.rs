@@ -1,0 +1,126 @@
+//! The page of `compare` for the terminal.
+
+use super::words::{answer, name, sentence, size, spaced};
+use crate::diagnose::Owner;
+use crate::report::number::{significant, with_error};
+use crate::study::{Change, CompareStudy, Compared};
+use std::fmt::Write;
+
+/// The page for the terminal.
+#[must_use]
+pub fn comparison_text(study: &CompareStudy) -> String {
+    let mut page = format!("{}\n", answer(study));
+    if let Some(compared) = &study.compared {
+        changes(&mut page, study, compared);
+    }
+    flights(&mut page, study);
+    tracks(&mut page, study);
+    history(&mut page, study);
+    page.trim_end().to_owned()
+}
+
+fn changes(page: &mut String, study: &CompareStudy, compared: &Compared) {
+    if !compared.changes.is_empty() {
+        page.push_str(
+            "\n  changed                             before              after               difference\n",
+        );
+    }
+    for change in &compared.changes {
+        change_line(page, study, change);
+    }
+    page.push_str("\n  the smallest change that would have been named\n");
+    for least in &compared.least {
+        let _ = writeln!(page, "    {:<32}  {}", name(study, least.what), size(least));
+    }
+}
+
+fn change_line(page: &mut String, study: &CompareStudy, change: &Change) {
+    let of = |(value, std)| with_error(value, std);
+    let [before, after, by] =
+        change.moved.map_or_else(Default::default, |moved| [of(moved.before), of(moved.after), of(moved.by)]);
+    let _ = writeln!(
+        page,
+        "    {:<32}  {before:<18}  {after:<18}  {by}{}, {} standard deviations",
+        name(study, change.what),
+        spaced(change.unit),
+        significant(change.sigmas, 2)
+    );
+    let say: Vec<&str> =
+        change.carried_by.iter().map(|&flight| study.flights[flight].input.path.as_str()).collect();
+    let _ = writeln!(
+        page,
+        "      shown alone by: {}",
+        if say.is_empty() { "none".to_owned() } else { say.join(", ") }
+    );
+}
+
+fn flights(page: &mut String, study: &CompareStudy) {
+    page.push_str(
+        "\n  balance in still air, share of the thrust: where it acts along x and y (arms), torque about z; felt: the air's push over the weight\n",
+    );
+    for (place, (flight, of)) in study.flights.iter().zip(&study.balance.flights).enumerate() {
+        let part = |axis: usize| {
+            let std = study.balance.std(place, axis).hypot(of.wander[axis]);
+            with_error(of.lean[axis], std)
+        };
+        let lift = of.lift.map_or_else(|| "-".to_owned(), |(lift, _)| significant(lift, 3));
+        let volts = of.voltage_v.map_or_else(|| "-".to_owned(), |volts| format!("{volts:.1} V"));
+        let power = flight.power_w.map_or_else(|| "-".to_owned(), |power| format!("{power:.0} W"));
+        let _ = writeln!(
+            page,
+            "    {:<28} x {:<17} y {:<17} z {:<17} felt {:+.3} {:+.3}; the flight's own: full thrust over weight {lift}, {volts}, {power}",
+            flight.input.path,
+            part(0),
+            part(1),
+            part(2),
+            of.felt[0],
+            of.felt[1],
+        );
+    }
+    for flight in &study.flights {
+        if let Some(why) = flight.balance_only.as_ref().filter(|_| study.is_known) {
+            let _ = writeln!(page, "    {}: its balance alone was compared: {why}", flight.input.path);
+        }
+    }
+}
+
+fn tracks(page: &mut String, study: &CompareStudy) {
+    if study.tracks.is_empty() {
+        return;
+    }
+    page.push_str("\n  parameters along the flights, in their order\n");
+    for track in &study.tracks {
+        let values = track
+            .values
+            .iter()
+            .map(|value| value.map_or_else(|| "-".to_owned(), |(value, std)| with_error(value, std)));
+        let own = if track.owner == Owner::Flight { " (the flight's own)" } else { "" };
+        let _ = writeln!(
+            page,
+            "    {:<24} {}{}{own}",
+            track.name,
+            values.collect::<Vec<_>>().join(", "),
+            spaced(track.unit)
+        );
+    }
+}
+
+fn history(page: &mut String, study: &CompareStudy) {
+    if study.flights.len() < 3 {
+        return;
+    }
+    page.push_str("\n  along the flights\n");
+    if study.history.is_empty() {
+        page.push_str("    nothing changed that they could show\n");
+    }
+    for step in &study.history {
+        for change in &step.change.changes {
+            let _ = writeln!(
+                page,
+                "    from {} on: {}",
+                study.flights[step.from].input.path,
+                sentence(study, change)
+            );
+        }
+    }
+}

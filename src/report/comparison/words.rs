@@ -1,0 +1,124 @@
+//! A comparison in words.
+
+use crate::change::What;
+use crate::report::number::{significant, with_error};
+use crate::study::{Change, Changed, CompareStudy, Compared, LeastChange};
+
+/// The answer in a sentence or two.
+pub(super) fn answer(study: &CompareStudy) -> String {
+    match (&study.compared, &study.groups) {
+        (Some(compared), Some(groups)) => {
+            let between = format!(
+                "between {} before and {} after",
+                flights(groups.before.len()),
+                flights(groups.after.len())
+            );
+            if compared.changes.is_empty() {
+                return format!(
+                    "Nothing changed {between} that these flights could show. {}",
+                    unseen(compared)
+                );
+            }
+            let all: Vec<String> = compared.changes.iter().map(|change| sentence(study, change)).collect();
+            format!("{} ({between}).", all.join("; "))
+        }
+        _ if study.history.is_empty() => {
+            format!("Nothing changed along {} that they could show.", flights(study.flights.len()))
+        }
+        _ => {
+            let steps = study.history.iter().map(|step| {
+                let all: Vec<String> =
+                    step.change.changes.iter().map(|change| sentence(study, change)).collect();
+                format!("from {} on: {}", study.flights[step.from].input.path, all.join("; "))
+            });
+            format!(
+                "Along {} the vehicle changed {}.",
+                flights(study.flights.len()),
+                steps.collect::<Vec<_>>().join("; ")
+            )
+        }
+    }
+}
+
+fn flights(count: usize) -> String {
+    format!("{count} flight{}", if count == 1 { "" } else { "s" })
+}
+
+/// What one change is, as a clause.
+pub(super) fn sentence(study: &CompareStudy, change: &Change) -> String {
+    let moved = change.moved.map(|moved| {
+        let of = |(value, std)| with_error(value, std);
+        (of(moved.before), of(moved.after), of(moved.by))
+    });
+    let (before, after, by) = moved.unwrap_or_default();
+    let unit = spaced(change.unit);
+    let told = match change.what {
+        // what is compared errs in both
+        Changed::Rotor(_) => {
+            let whole = change.moved.map_or_else(String::new, |moved| with_error(moved.after.0, moved.by.1));
+            format!("{} gives {whole} of the thrust that it gave for the same command", name(study, change.what))
+        }
+        Changed::CentreOfMass(_) => {
+            format!("{} moved by {by}{unit} (a load or a battery that sits elsewhere does the same)", name(study, change.what))
+        }
+        Changed::Balance => {
+            "the balance of the vehicle moved as no single rotor and no centre of mass moves it: more than one thing changed".to_owned()
+        }
+        Changed::YawTorque => format!("{} went from {before} to {after}", name(study, change.what)),
+        Changed::Parameter(_) => format!("{} went from {before} to {after}{unit}", name(study, change.what)),
+    };
+    let rivals: Vec<String> = change.rivals.iter().map(|rival| rival_name(study, *rival)).collect();
+    if rivals.is_empty() {
+        told
+    } else {
+        format!("{told}, or {} did: these flights cannot tell", rivals.join(" or "))
+    }
+}
+
+/// What a change is of.
+pub(super) fn name(study: &CompareStudy, what: Changed) -> String {
+    match what {
+        Changed::Rotor(place) => format!("rotor {} ({})", place + 1, study.rotor(place)),
+        Changed::CentreOfMass(axis) => {
+            format!("the centre of mass along body {}", if axis == 0 { "x" } else { "y" })
+        }
+        Changed::YawTorque => "the torque about the vertical".to_owned(),
+        Changed::Balance => "the balance".to_owned(),
+        Changed::Parameter(place) => {
+            study.tracks.get(place).map_or_else(String::new, |track| track.name.clone())
+        }
+    }
+}
+
+pub(super) fn rival_name(study: &CompareStudy, what: What) -> String {
+    match what {
+        What::Rotor(place) => name(study, Changed::Rotor(place)),
+        What::CentreOfMass => "the centre of mass".to_owned(),
+        What::YawTorque => name(study, Changed::YawTorque),
+    }
+}
+
+/// The unit behind a number.
+pub(super) fn spaced(unit: &str) -> String {
+    if unit == "-" { String::new() } else { format!(" {unit}") }
+}
+
+/// What would have shown: the balance in a sentence.
+fn unseen(compared: &Compared) -> String {
+    let rotor = compared.balance.least.rotors.iter().copied().fold(0.0, f64::max);
+    let centre = compared.least.iter().find(|least| matches!(least.what, Changed::CentreOfMass(_)));
+    let centre = centre.map(size).unwrap_or_default();
+    format!(
+        "A rotor that gives {} % less thrust would have shown, or a centre of mass {centre} elsewhere.",
+        significant(100.0 * rotor, 2)
+    )
+}
+
+/// The size of a smallest change.
+pub(super) fn size(least: &LeastChange) -> String {
+    match least.unit {
+        "m" => format!("{} mm", significant(1000.0 * least.size, 2)),
+        "arm" => format!("{} of an arm", significant(least.size, 2)),
+        unit => format!("{}{}", significant(least.size, 2), spaced(unit)),
+    }
+}

@@ -1,0 +1,130 @@
+//! Several flights: what they have in common, what is each one's own, and which of them carry a name.
+
+use crate::diagnose::Owner;
+use crate::report::html::{Cell, note, number, section, table, text};
+use crate::report::number::with_error;
+use crate::study::{AlongFlights, ExplainStudy, Track};
+use maud::{Markup, html};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// Several flights in JSON.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct AlongValue {
+    parameters: Vec<TrackValue>,
+    /// places of the flights that each show a named effect alone
+    carried_by: BTreeMap<&'static str, Vec<usize>>,
+    /// north and west, m/s
+    winds_m_s: Vec<Option<[f64; 2]>>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct TrackValue {
+    name: String,
+    unit: &'static str,
+    owner: &'static str,
+    together: Option<EstimateValue>,
+    values: Vec<Option<EstimateValue>>,
+}
+
+#[derive(Debug, Clone, Copy, Serialize)]
+struct EstimateValue {
+    value: f64,
+    std: f64,
+}
+
+impl AlongValue {
+    pub(super) fn new(along: &AlongFlights) -> Self {
+        let estimate = |(value, std)| EstimateValue { value, std };
+        let track = |track: &Track| TrackValue {
+            name: track.name.clone(),
+            unit: track.unit,
+            owner: whose(track),
+            together: track.together().map(estimate),
+            values: (0..track.values.len()).map(|flight| track.alone(flight).map(estimate)).collect(),
+        };
+        Self {
+            parameters: along.tracks.iter().map(track).collect(),
+            carried_by: along.carried_by.iter().cloned().collect(),
+            winds_m_s: along.winds_m_s.clone(),
+        }
+    }
+}
+
+fn whose(track: &Track) -> &'static str {
+    if track.owner == Owner::Flight { "flight" } else { "vehicle" }
+}
+
+fn said(estimate: Option<(f64, f64)>) -> String {
+    estimate.map_or_else(|| "-".to_owned(), |(value, std)| with_error(value, std))
+}
+
+fn winds(along: &AlongFlights) -> Vec<String> {
+    along
+        .winds_m_s
+        .iter()
+        .map(|wind| wind.map_or_else(|| "-".to_owned(), |[north, west]| format!("{north:+.1}, {west:+.1}")))
+        .collect()
+}
+
+/// The lines for the terminal; none of one flight.
+pub(super) fn along_lines(page: &mut String, study: &ExplainStudy) {
+    let Some(along) = &study.along else { return };
+    page.push_str("\n  together, and each flight alone\n");
+    for track in &along.tracks {
+        let together = if track.owner == Owner::Flight {
+            "each flight's own".to_owned()
+        } else {
+            said(track.together())
+        };
+        let each: Vec<String> = (0..track.values.len()).map(|flight| said(track.alone(flight))).collect();
+        let _ = writeln!(page, "    {:<22} {together:<22} {}  {}", track.name, each.join(", "), track.unit);
+    }
+    if along.winds_m_s.iter().any(Option::is_some) {
+        let _ =
+            writeln!(page, "    wind to north, west (m/s), each flight's own: {}", winds(along).join("; "));
+    }
+    for (id, flights) in &along.carried_by {
+        let names: Vec<&str> =
+            flights.iter().map(|&flight| study.given.inputs[flight].path.as_str()).collect();
+        let names =
+            if names.is_empty() { "none: only all of them together".to_owned() } else { names.join(", ") };
+        let _ = writeln!(page, "    {id} is shown alone by {names}");
+    }
+}
+
+/// The section of the report; nothing of one flight.
+pub(super) fn along_section(study: &ExplainStudy) -> Markup {
+    let Some(along) = &study.along else { return Markup::default() };
+    let mut heads = vec!["parameter".to_owned(), "unit".to_owned(), "together|".to_owned()];
+    heads.extend((0..study.given.inputs.len()).map(|flight| format!("flight {}|", flight + 1)));
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let mut rows: Vec<Vec<Cell>> = along.tracks.iter().map(row).collect();
+    if along.winds_m_s.iter().any(Option::is_some) {
+        let mut wind = vec![text("wind to north, west"), text("m/s"), number("each flight's own")];
+        wind.extend(winds(along).into_iter().map(number));
+        rows.push(wind);
+    }
+    let carried = along.carried_by.iter().map(|(id, flights)| {
+        let places: Vec<String> = flights.iter().map(|flight| (flight + 1).to_string()).collect();
+        let places = if places.is_empty() { "none alone".to_owned() } else { places.join(", ") };
+        format!("{id}: shown alone by flight {places}.")
+    });
+    let carried: Vec<String> = carried.collect();
+    section(
+        "The flights together",
+        &html! {
+            (table("The vehicle's parameters by all flights and by each alone, with standard errors", &heads, &rows))
+            @for line in &carried { (note(line)) }
+        },
+    )
+}
+
+fn row(track: &Track) -> Vec<Cell> {
+    let together =
+        if track.owner == Owner::Flight { "each flight's own".to_owned() } else { said(track.together()) };
+    let mut cells = vec![text(track.name.as_str()), text(track.unit), number(together)];
+    cells.extend((0..track.values.len()).map(|flight| number(said(track.alone(flight)))));
+    cells
+}

@@ -1,0 +1,213 @@
+//! Outputs that no longer follow the mixer: they stand still while the controllers and the other motors move.
+
+use super::reported_state::ReportedState;
+use super::select::{best, is_live};
+use crate::recording::{Quantity, Recording, Stream};
+use std::fmt;
+
+/// An output that stands still for so long in the air does not follow a mixer whose other outputs move, s. Chosen: an autopilot's
+/// controllers move every motor many times a second.
+const HELD_S: f64 = 0.8;
+/// The others move by so much of their range meanwhile, at least two of them. Chosen; not measured.
+const OTHERS_MOVE: f64 = 0.02;
+/// An output within so much of its range from an end is at its bound: a saturated motor still follows its mixer. Chosen.
+const AT_BOUND: f64 = 0.03;
+/// A vehicle flies for no longer with a motor that stopped, s. Chosen; not measured.
+const DOWN_S: f64 = 10.0;
+/// Below this share of the range a motor does not turn. Chosen; not measured.
+const STOPPED: f64 = 0.02;
+/// Mean of the others, share of the range, from which on they carry the vehicle. Chosen; not measured.
+const CARRYING: f64 = 0.15;
+/// Samples of an output that must move for it to be a motor's, of ten. Chosen; not measured.
+const MOVES_OF_TEN: usize = 3;
+
+/// An output that left the mixer in the air.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct OffMixer {
+    /// from 1
+    pub output: usize,
+    /// s of the recording's clock: its first sample that stands still
+    pub left_s: f64,
+    /// what it then stands at, in the recording's unit
+    pub held: f64,
+    /// s: its first sample at which the motor is stopped
+    pub stopped_s: Option<f64>,
+}
+
+impl fmt::Display for OffMixer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { output, left_s, held, stopped_s } = self;
+        write!(f, "output {output} left the mixer at {left_s:.1} s")?;
+        match stopped_s {
+            Some(stopped_s) if stopped_s <= left_s => write!(f, " and stopped: it stands at {held:.0}"),
+            Some(stopped_s) => write!(f, ", stuck at {held:.0}, and stopped at {stopped_s:.1} s"),
+            None => write!(f, " and is stuck at {held:.0}"),
+        }?;
+        f.write_str(", while the other motors follow the controllers")
+    }
+}
+
+/// The outputs of a flight that left the mixer in the air, in the order in which they did. What they were commanded from then on is in
+/// the log: nothing hidden is between their command and the vehicle's answer.
+#[must_use]
+pub fn outputs_off_mixer(recording: &Recording) -> Vec<OffMixer> {
+    let Some((_, stream)) = best(recording, Quantity::ActuatorCommand, is_live) else { return Vec::new() };
+    let Some(range) = range_of(recording, stream) else { return Vec::new() };
+    let said = ReportedState::of(recording);
+    let motors = motors(stream, &said);
+    if motors.len() < 3 {
+        return Vec::new();
+    }
+    let outputs = Outputs { stream, range, motors: &motors, said };
+    let mut found: Vec<OffMixer> = motors.iter().filter_map(|&channel| outputs.off(channel)).collect();
+    found.sort_by(|a, b| a.left_s.total_cmp(&b.left_s));
+    // the controllers may command a motor to its lower bound for one that does not follow them
+    let first_s = found.first().map_or(0.0, |first| first.left_s);
+    let stops = |off: &OffMixer| off.held <= range.0 + STOPPED * (range.1 - range.0);
+    found.retain(|off| off.left_s <= first_s || !stops(off));
+    // without one of its motors a vehicle is soon on the ground
+    let stopped_s = found.first().and_then(|first| first.stopped_s).unwrap_or(f64::INFINITY);
+    found.retain(|off| off.left_s < stopped_s + DOWN_S);
+    // all at once is a vehicle that came to rest
+    if 2 * found.len() > motors.len() { Vec::new() } else { found }
+}
+
+/// Ends of the outputs, in the recording's unit.
+fn range_of(recording: &Recording, stream: &Stream) -> Option<(f64, f64)> {
+    let most = stream.values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max);
+    if most <= 1.05 {
+        return Some((0.0, 1.0));
+    }
+    let parameter = |name: &str| recording.parameters.get(name).copied();
+    let stack = recording.autopilot.stack();
+    let stated = stack.and_then(|stack| stack.outputs.pulses.ends_us(parameter));
+    let ends = stated.filter(|(low, high)| high > low).unwrap_or((1000.0, 2000.0));
+    (most <= 2500.0).then_some(ends)
+}
+
+/// Channels that move in the air as motors do.
+fn motors(stream: &Stream, said: &ReportedState) -> Vec<usize> {
+    let in_air: Vec<usize> = (1..stream.len()).filter(|&index| said.may_fly(stream.time_s[index])).collect();
+    let moves = |channel: &usize| {
+        let moved = |index: &&usize| stream.sample(**index)[*channel] != stream.sample(**index - 1)[*channel];
+        let count = in_air.iter().filter(moved).count();
+        in_air.len() > 20 && 10 * count >= MOVES_OF_TEN * in_air.len()
+    };
+    (0..stream.width).filter(moves).collect()
+}
+
+/// The outputs of a flight.
+struct Outputs<'a> {
+    stream: &'a Stream,
+    range: (f64, f64),
+    motors: &'a [usize],
+    said: ReportedState<'a>,
+}
+
+impl Outputs<'_> {
+    /// Share of the range.
+    fn share(&self, index: usize, channel: usize) -> f64 {
+        (self.stream.sample(index)[channel] - self.range.0) / (self.range.1 - self.range.0)
+    }
+
+    /// Mean share of the other motors.
+    fn others(&self, index: usize, channel: usize) -> f64 {
+        let others = self.motors.iter().filter(|other| **other != channel);
+        others.map(|&other| self.share(index, other)).sum::<f64>() / (self.motors.len() - 1) as f64
+    }
+
+    fn flies(&self, index: usize, channel: usize) -> bool {
+        self.said.may_fly(self.stream.time_s[index]) && self.others(index, channel) > CARRYING
+    }
+
+    /// Where a channel left the mixer.
+    fn off(&self, channel: usize) -> Option<OffMixer> {
+        let mut from = 0;
+        let mut has_flown = false;
+        while from + 1 < self.stream.len() {
+            let mut to = from + 1;
+            let value = self.stream.sample(from)[channel];
+            while to < self.stream.len() && self.stream.sample(to)[channel] == value {
+                to += 1;
+            }
+            if has_flown && self.stands_apart(from..to, channel) {
+                let stops =
+                    |index: &usize| self.share(*index, channel) <= STOPPED && self.flies(*index, channel);
+                let stopped = (from..self.stream.len()).find(stops);
+                return Some(OffMixer {
+                    output: channel + 1,
+                    left_s: self.stream.time_s[from],
+                    held: value,
+                    stopped_s: stopped.map(|index| self.stream.time_s[index]),
+                });
+            }
+            has_flown |= to - from < 4 && self.flies(from, channel) && self.share(from, channel) > CARRYING;
+            from = to;
+        }
+        None
+    }
+
+    /// Whether a channel that stands still over these samples does so alone, away from its bounds, in the air.
+    fn stands_apart(&self, samples: std::ops::Range<usize>, channel: usize) -> bool {
+        let seconds = self.stream.time_s[samples.end - 1] - self.stream.time_s[samples.start];
+        let share = self.share(samples.start, channel);
+        let is_inside = (AT_BOUND..=1.0 - AT_BOUND).contains(&share) || share <= STOPPED;
+        if seconds < HELD_S || !is_inside || !samples.clone().all(|index| self.flies(index, channel)) {
+            return false;
+        }
+        let moves = |other: &&usize| {
+            let shares = || samples.clone().map(|index| self.share(index, **other));
+            shares().fold(f64::MIN, f64::max) - shares().fold(f64::MAX, f64::min) > OTHERS_MOVE
+        };
+        self.motors.iter().filter(|other| **other != channel).filter(moves).count() >= 2
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::StreamKey;
+
+    /// Four outputs at 10 Hz that move against each other; the third does as `third` says.
+    fn flight(third: impl Fn(usize, f64) -> f64) -> Recording {
+        let mut stream = Stream { width: 4, ..Stream::default() };
+        for index in 0..300 {
+            let time_s = index as f64 * 0.1;
+            stream.time_s.push(time_s);
+            let of = |motor: f64| 1550.0 + 40.0 * (1.7 * time_s + motor).sin();
+            stream.values.extend([of(0.0), of(1.0), third(index, of(2.0)), of(3.0)]);
+        }
+        let key = StreamKey { quantity: Quantity::ActuatorCommand, source: "RCOU", instance: 0 };
+        Recording { streams: [(key, stream)].into(), ..Recording::default() }
+    }
+
+    #[test]
+    fn an_output_that_sticks_and_then_stops_is_told_with_its_times() {
+        let found = outputs_off_mixer(&flight(|index, mixed| match index {
+            0..150 => mixed,
+            150..170 => 1500.0,
+            _ => 1000.0,
+        }));
+        assert_eq!(found.len(), 1);
+        let OffMixer { output, left_s, held, stopped_s } = found[0];
+        assert_eq!((output, held), (3, 1500.0));
+        assert!((left_s - 15.0).abs() < 1e-9 && (stopped_s.unwrap() - 17.0).abs() < 1e-9);
+        assert!(
+            found[0]
+                .to_string()
+                .starts_with("output 3 left the mixer at 15.0 s, stuck at 1500, and stopped at 17.0 s")
+        );
+    }
+
+    #[test]
+    fn an_output_that_follows_or_is_saturated_has_not_left() {
+        assert!(outputs_off_mixer(&flight(|_, mixed| mixed)).is_empty());
+        // at its bound, as a motor is that has to give all it can
+        assert!(
+            outputs_off_mixer(&flight(|index, mixed| if index < 150 { mixed } else { 2000.0 })).is_empty()
+        );
+        // for half a second
+        let short = flight(|index, mixed| if (150..155).contains(&index) { 1500.0 } else { mixed });
+        assert!(outputs_off_mixer(&short).is_empty());
+    }
+}

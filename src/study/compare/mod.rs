@@ -1,0 +1,10 @@
+//! `compare`: one vehicle over its flights, and what changed of it.
+
+mod motion;
+mod request;
+mod result;
+mod run;
+
+pub use request::CompareRequest;
+pub use result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange};
+pub use run::compare;

@@ -1,0 +1,121 @@
+//! The result of comparing: every flight, what changed, and what could not have been seen.
+
+use crate::change::{BalanceChange, Groups, Moved, Step, What};
+use crate::draft::Draft;
+use crate::note::Note;
+use crate::study::{InputFile, Track};
+use crate::trim::{Balance, mean_arm_m};
+use crate::vehicle::Vehicle;
+
+/// The whole answer.
+#[derive(Debug)]
+pub struct CompareStudy {
+    /// as given or drafted
+    pub vehicle: Vehicle,
+    /// lengths and mass of it are known; otherwise results are shares
+    pub is_known: bool,
+    /// the vehicle as it was drafted, where it came from no file
+    pub drafted: Option<Draft>,
+    /// in the order in which they were given
+    pub flights: Vec<ComparedFlight>,
+    /// their balance
+    pub balance: Balance,
+    /// each parameter along the flights
+    pub tracks: Vec<Track>,
+    /// flights before and after, where two groups were given
+    pub groups: Option<Groups>,
+    /// what changed between these groups
+    pub compared: Option<Compared>,
+    /// where along all flights something changed
+    pub history: Vec<Step<Compared>>,
+    /// what the user should know
+    pub notes: Vec<Note>,
+}
+
+/// One flight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComparedFlight {
+    /// its file
+    pub input: InputFile,
+    /// electrical power in flight, W, mean; the flight's own
+    pub power_w: Option<f64>,
+    /// why its motion was not compared; `None`: it was
+    pub balance_only: Option<String>,
+}
+
+/// What was compared between two groups, and what came out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compared {
+    /// the balance
+    pub balance: BalanceChange,
+    /// the strongest first; empty: nothing that these flights could show
+    pub changes: Vec<Change>,
+    /// the smallest changes that would have been named
+    pub least: Vec<LeastChange>,
+}
+
+/// One change.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// of what
+    pub what: Changed,
+    /// before and after, in its unit; `None` where nothing known accounts for it
+    pub moved: Option<Moved>,
+    /// of [`Self::moved`]
+    pub unit: &'static str,
+    /// standard deviations
+    pub sigmas: f64,
+    /// later flights that each show it alone
+    pub carried_by: Vec<usize>,
+    /// what else it may be
+    pub rivals: Vec<What>,
+}
+
+/// What changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Changed {
+    /// a rotor's thrust for a command over that before, by its place in the vehicle's file
+    Rotor(usize),
+    /// the centre of mass along body x (0) or y (1), m, or arms where lengths are not known
+    CentreOfMass(usize),
+    /// torque about the vertical, over that of all rotors turning one way
+    YawTorque,
+    /// the balance, by nothing known alone
+    Balance,
+    /// a parameter of [`CompareStudy::tracks`]
+    Parameter(usize),
+}
+
+/// The smallest change that would have been named.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeastChange {
+    /// of what
+    pub what: Changed,
+    /// in `unit`
+    pub size: f64,
+    /// SI
+    pub unit: &'static str,
+}
+
+impl CompareStudy {
+    /// Something changed: between the groups, or along the flights where there are none.
+    #[must_use]
+    pub fn has_changed(&self) -> bool {
+        match &self.compared {
+            Some(compared) => !compared.changes.is_empty(),
+            None => !self.history.is_empty(),
+        }
+    }
+
+    /// m of an arm; `None` where lengths are not known.
+    #[must_use]
+    pub fn arm_m(&self) -> Option<f64> {
+        self.is_known.then(|| mean_arm_m(&self.vehicle))
+    }
+
+    /// Name of a rotor in the vehicle's file.
+    #[must_use]
+    pub fn rotor(&self, place: usize) -> &str {
+        self.vehicle.rotors.get(place).map_or("?", |rotor| rotor.name.as_str())
+    }
+}

@@ -1,0 +1,196 @@
+//! Opens, conditions, balances, fits and compares.
+
+use super::motion::tracks;
+use super::request::CompareRequest;
+use super::result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange};
+use crate::change::{BalanceChange, Groups, What, judge_balance, judge_parameter, steps};
+use crate::config::LoadedVehicle;
+use crate::diagnose::Owner;
+use crate::draft::Given;
+use crate::note::{About, Note};
+use crate::recording::{Quantity, Recording};
+use crate::signals::{ConditionSettings, Signals, ThrustPreference, best};
+use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins};
+use crate::study::unflown::unflown_first;
+use crate::study::vehicle_given::Known;
+use crate::study::{Progress, Stage, StudyError, Track, VehicleGiven};
+use crate::trim::{Balance, Leg, balance, legs, mean_arm_m};
+use crate::vehicle::Vehicle;
+
+/// A vehicle of which nothing is known: its mass sets a scale that no result shows.
+const UNKNOWN: Given = Given { mass_kg: 1.0, size_m: None, frame: None };
+/// What is said then.
+const SHARES: &str = "neither mass nor lengths were given: thrusts are compared as shares, lengths in arms";
+
+/// Says what changed of a vehicle between flights, and where along a row of them.
+///
+/// # Errors
+/// [`StudyError`] where a file or a setting cannot be used, or a flight shows no balance.
+pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<CompareStudy, StudyError> {
+    request.check()?;
+    let given = request.vehicle.clone().unwrap_or(VehicleGiven::Weighed(UNKNOWN));
+    let known = given.of_file()?;
+    progress.stage(Stage::Reading);
+    let paths: Vec<_> = request.before.iter().chain(&request.after).cloned().collect();
+    let before = load_all(&request.before, &request.read, &EXPLAINED)?;
+    let after = load_all(&request.after, &request.read, &EXPLAINED)?;
+    let or_unflown = |error| unflown_first(error, &paths, &request.read);
+    let known = given.of_flights(known, &before).map_err(or_unflown)?;
+    let mut notes = known.notes();
+    if request.vehicle.is_none() {
+        notes = vec![Note::remark(About::Vehicle, SHARES)];
+    }
+    let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft } = known;
+    refuse_twins(before.iter().chain(&after))?;
+    progress.stage(Stage::Conditioning);
+    let settings = ConditionSettings {
+        transient_s: Some(request.transient_s),
+        thrust: ThrustPreference::Commands,
+        ..ConditionSettings::default()
+    };
+    let mut flights = prepare(before, (&vehicle, &origin), &settings).map_err(or_unflown)?;
+    let first = flights.signals.len();
+    let later = prepare(after, (&vehicle, &origin), &settings).map_err(or_unflown)?;
+    flights.recordings.extend(later.recordings);
+    flights.inputs.extend(later.inputs);
+    flights.signals.extend(later.signals);
+    let of_data = flights.each().flat_map(|(input, signals)| {
+        let doubts = signals.quality.notes.iter().filter(|note| note.is_warning());
+        doubts.map(|doubt| Note::warning(About::File(input.path.clone()), doubt.text.as_str()))
+    });
+    notes.extend(of_data);
+    let balance = balance(&legs_of(&flights, &vehicle)?);
+    progress.stage(Stage::Explaining);
+    let (tracks, reasons) = if request.balance_only || request.vehicle.is_none() {
+        (Vec::new(), vec![Some("not asked for".to_owned()); flights.signals.len()])
+    } else {
+        tracks(&flights.signals, &vehicle)
+    };
+    let task =
+        Task { vehicle: &vehicle, balance: &balance, tracks: &tracks, is_known: request.vehicle.is_some() };
+    let count = flights.signals.len();
+    let groups = (first < count).then(|| Groups::split(count, first));
+    let compared = groups.as_ref().map(|groups| task.compared(groups));
+    let history = steps(count, &|groups: &Groups| {
+        let compared = task.compared(groups);
+        let strongest = compared.changes.iter().map(|change| change.sigmas).fold(0.0, f64::max);
+        (strongest > 0.0).then_some((strongest, compared))
+    });
+    let compared_flights = flights.inputs.iter().zip(&flights.recordings).zip(&flights.signals).zip(reasons);
+    let compared_flights = compared_flights.map(|(((input, recording), signals), balance_only)| {
+        ComparedFlight { input: input.clone(), power_w: power_w(recording, signals), balance_only }
+    });
+    Ok(CompareStudy {
+        flights: compared_flights.collect(),
+        is_known: request.vehicle.is_some(),
+        drafted: draft.filter(|_| request.vehicle.is_some()),
+        vehicle,
+        balance,
+        tracks,
+        groups,
+        compared,
+        history,
+        notes,
+    })
+}
+
+fn legs_of(flights: &Prepared, vehicle: &Vehicle) -> Result<Vec<Vec<Leg>>, StudyError> {
+    let one = |(input, signals): (&crate::study::InputFile, &Signals)| {
+        legs(signals, vehicle)
+            .map_err(|why| StudyError::File { file: input.path.clone(), why: why.to_string() })
+    };
+    flights.each().map(one).collect()
+}
+
+/// What all comparisons have in common.
+struct Task<'a> {
+    vehicle: &'a Vehicle,
+    balance: &'a Balance,
+    tracks: &'a [Track],
+    is_known: bool,
+}
+
+impl Task<'_> {
+    fn compared(&self, groups: &Groups) -> Compared {
+        let balance = judge_balance(self.balance, groups, self.vehicle);
+        let mut changes = self.of_balance(&balance);
+        let mut least = self.least_of_balance(&balance);
+        for (place, track) in
+            self.tracks.iter().enumerate().filter(|(_, track)| track.owner == Owner::Vehicle)
+        {
+            let Some(judged) = judge_parameter(&track.values, groups, &track.spread) else { continue };
+            let (what, unit) = (Changed::Parameter(place), track.unit);
+            least.push(LeastChange { what, size: judged.least, unit });
+            if judged.changed {
+                changes.push(Change {
+                    what,
+                    moved: Some(judged.moved),
+                    unit,
+                    sigmas: judged.moved.sigmas().abs(),
+                    carried_by: judged.carried_by,
+                    rivals: Vec::new(),
+                });
+            }
+        }
+        changes.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
+        Compared { balance, changes, least }
+    }
+
+    /// Length of an arm and its unit: one arm where lengths are not known.
+    fn arm(&self) -> (f64, &'static str) {
+        if self.is_known { (mean_arm_m(self.vehicle), "m") } else { (1.0, "arm") }
+    }
+
+    fn of_balance(&self, balance: &BalanceChange) -> Vec<Change> {
+        let Some(found) = &balance.found else { return Vec::new() };
+        let (arm, length) = self.arm();
+        let change = |what, moved, unit, sigmas| Change {
+            what,
+            moved,
+            unit,
+            sigmas,
+            carried_by: found.carried_by.clone(),
+            rivals: found.rivals.clone(),
+        };
+        let sigmas = found.strength.sqrt();
+        match found.what {
+            Some(What::Rotor(rotor)) => vec![change(Changed::Rotor(rotor), found.factor, "-", sigmas)],
+            Some(What::CentreOfMass) => [0, 1]
+                .map(|axis: usize| {
+                    let moved = balance.moved[axis].times(arm);
+                    change(Changed::CentreOfMass(axis), Some(moved), length, moved.sigmas().abs())
+                })
+                .to_vec(),
+            Some(What::YawTorque) => vec![change(Changed::YawTorque, Some(balance.moved[2]), "-", sigmas)],
+            None => vec![change(Changed::Balance, None, "-", sigmas)],
+        }
+    }
+
+    fn least_of_balance(&self, balance: &BalanceChange) -> Vec<LeastChange> {
+        let (arm, length) = self.arm();
+        let of_rotor = |(rotor, size): (usize, &f64)| LeastChange {
+            what: Changed::Rotor(rotor),
+            size: *size,
+            unit: "-",
+        };
+        let centre =
+            LeastChange { what: Changed::CentreOfMass(0), size: balance.least.centre * arm, unit: length };
+        balance.least.rotors.iter().enumerate().map(of_rotor).chain([centre]).collect()
+    }
+}
+
+/// Mean electrical power in the air, W.
+fn power_w(recording: &Recording, signals: &Signals) -> Option<f64> {
+    let (_, voltage) = best(recording, Quantity::BatteryVoltage, |stream| stream.width == 1)?;
+    let (_, current) = best(recording, Quantity::BatteryCurrent, |stream| stream.width == 1)?;
+    let flies = |at: &f64| signals.quality.airborne_s.iter().any(|(from, to)| (from..=to).contains(&at));
+    let mean = |stream: &crate::recording::Stream| {
+        let inside: Vec<f64> = (0..stream.len())
+            .filter(|index| flies(&stream.time_s[*index]))
+            .map(|index| stream.sample(index)[0])
+            .filter(|value| value.is_finite())
+            .collect();
+        (!inside.is_empty()).then(|| inside.iter().sum::<f64>() / inside.len() as f64)
+    };
+    Some(mean(voltage)? * mean(current)?).filter(|power| *power > 0.0)
+}

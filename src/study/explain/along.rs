@@ -1,0 +1,42 @@
+//! Several flights: what they have in common, what is each one's own, and which flights carry a name.
+
+use super::along_flights::AlongFlights;
+use super::result::ExplainStudy;
+use crate::diagnose::{ExplainSettings, each_with_model_of_all, own_wind, seen_with_air};
+use crate::signals::Signals;
+use crate::study::Track;
+use crate::study::flights::Prepared;
+use crate::vehicle::Vehicle;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+/// Each flight as seen with its own wind, and these winds.
+pub(super) fn with_own_winds(flights: &mut Prepared, vehicle: &Vehicle) -> Vec<Option<[f64; 2]>> {
+    let settings = ExplainSettings::default();
+    let found: Vec<Option<Vector3<f64>>> =
+        flights.signals.par_iter().map(|signals| own_wind(signals, vehicle, &settings)).collect();
+    for (signals, wind) in flights.signals.iter_mut().zip(&found) {
+        if let Some(wind) = wind {
+            *signals = seen_with_air(signals, wind);
+        }
+    }
+    flights.drift = found.iter().map(Option::is_some).collect();
+    found.into_iter().map(|wind| wind.map(|wind| [wind.x, wind.y])).collect()
+}
+
+impl ExplainStudy {
+    /// Fits each flight alone to the model of all.
+    pub(super) fn tell_along(&mut self, flights: &[Signals], winds_m_s: Vec<Option<[f64; 2]>>) {
+        let (vehicle, settings) = (&self.given.vehicle, &self.given.settings);
+        let each = each_with_model_of_all(flights, &self.explanation, vehicle, settings);
+        let tracks = Track::all(each.into_iter().enumerate().collect(), flights.len());
+        let of = |id: &'static str| {
+            let shows = |flight: &usize| {
+                tracks.iter().any(|track| track.effect == Some(id) && track.is_shown_by(*flight))
+            };
+            (id, (0..flights.len()).filter(shows).collect())
+        };
+        let carried_by = self.explanation.named.iter().map(|named| of(named.id)).collect();
+        self.along = Some(AlongFlights { tracks, winds_m_s, carried_by });
+    }
+}

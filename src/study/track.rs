@@ -1,0 +1,91 @@
+//! A parameter along the flights of a vehicle.
+
+use crate::change::{Spread, together};
+use crate::diagnose::{FlightParameter, Owner};
+
+/// A flight carries a name from so many standard errors on.
+const CARRIES: f64 = 3.0;
+
+/// Standard deviation of a moment of inertia between flights of one vehicle beside its error, share: the phase at which a log samples
+/// its commands moves it. Measured on two autopilots in simulation: -12 to 2 % (ArduPilot), 0 to 3 % (PX4).
+const INERTIA: Spread = Spread { relative: 0.05, absolute: 0.0 };
+/// The same of an effect: laws are never quite those of the air, and flights differ in speed. Chosen; not measured.
+const EFFECT: Spread = Spread { relative: 0.12, absolute: 0.0 };
+/// Load and battery are the flight's own.
+const OWN: Spread = Spread { relative: 0.0, absolute: 0.0 };
+
+/// A parameter along the flights.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Track {
+    /// `mass`, `ixx` ... or `effect.parameter`
+    pub name: String,
+    /// SI
+    pub unit: &'static str,
+    /// the flight's own parameters are told and never a change
+    pub owner: Owner,
+    /// effect of which it is; `None`: of the rigid body
+    pub effect: Option<&'static str>,
+    /// value at which the effect is none
+    pub nothing: f64,
+    /// value and standard error of each flight; `None` where it does not determine it
+    pub values: Vec<Option<(f64, f64)>>,
+    /// part of each flight's error that goes the same way in every flight of the vehicle
+    pub common_std: Vec<f64>,
+    /// how it differs between flights of one vehicle beside its error
+    pub spread: Spread,
+}
+
+impl Track {
+    fn new(parameter: &FlightParameter, flights: usize) -> Self {
+        let spread = match (parameter.owner, parameter.effect) {
+            (Owner::Flight, _) => OWN,
+            (Owner::Vehicle, None) => INERTIA,
+            (Owner::Vehicle, Some(_)) => EFFECT,
+        };
+        Self {
+            name: parameter.name.clone(),
+            unit: parameter.unit,
+            owner: parameter.owner,
+            effect: parameter.effect,
+            nothing: parameter.nothing,
+            values: vec![None; flights],
+            common_std: vec![0.0; flights],
+            spread,
+        }
+    }
+
+    /// The flights' parameters by their names; `each` has those of one flight each, by its place.
+    pub(super) fn all(each: Vec<(usize, Vec<FlightParameter>)>, flights: usize) -> Vec<Self> {
+        let mut tracks: Vec<Self> = Vec::new();
+        for (place, parameters) in each {
+            for parameter in parameters {
+                let known = tracks.iter().position(|track| track.name == parameter.name);
+                let at = known.unwrap_or_else(|| {
+                    tracks.push(Self::new(&parameter, flights));
+                    tracks.len() - 1
+                });
+                tracks[at].values[place] = Some(parameter.estimate);
+                tracks[at].common_std[place] = parameter.common_std;
+            }
+        }
+        tracks
+    }
+
+    /// The value that all flights have in common, with its standard error; `None` where no flight has one.
+    #[must_use]
+    pub fn together(&self) -> Option<(f64, f64)> {
+        together(&self.values, &self.common_std)
+    }
+
+    /// The value of one flight alone, with its standard error.
+    #[must_use]
+    pub fn alone(&self, flight: usize) -> Option<(f64, f64)> {
+        self.values.get(flight).copied().flatten()
+    }
+
+    /// Whether a flight alone shows that the effect is there.
+    #[must_use]
+    pub fn is_shown_by(&self, flight: usize) -> bool {
+        self.alone(flight).is_some_and(|(value, std)| (value - self.nothing).abs() > CARRIES * std)
+    }
+}

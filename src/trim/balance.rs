@@ -1,0 +1,232 @@
+//! The balance of each flight in still air, estimated over all flights at once.
+//!
+//! `lean = b + (h + e) felt + j turning + d rate`: `b` and `e` are a flight's own, the air's lever `h`, the inertia `j` and the damping `d`
+//! the vehicle's. The
+//! air pushes at another height than the rotors do, so a vehicle that stands in the wind leans its thrust by as much as a rotor that
+//! is a tenth weak; what it feels of the air tells that apart.
+
+use super::legs::{AXES, Leg};
+use nalgebra::{DMatrix, DVector};
+
+/// Share of the scatter of legs that goes from flight to flight as well: wind that turns, a battery that sits elsewhere. Chosen; three
+/// flights of one vehicle outdoors scatter by 0.3 to 0.6 of it, simulated flights by 0.1 to 0.4.
+pub const WANDER: f64 = 0.6;
+/// Standard deviation of the air's lever from flight to flight, arms. Chosen; 15 flights of one vehicle outdoors show 0.2.
+pub const AIR_LEVER_SPREAD: f64 = 0.2;
+/// Standard deviation of the air's lever of a vehicle, arms, about zero. Chosen; not measured.
+const AIR_LEVER: f64 = 1.5;
+/// Least scatter of a leg, shares: what a log's commands resolve. Chosen; not measured.
+const LEAST_SCATTER: f64 = 3e-4;
+/// Residual beyond which a leg counts less, in standard deviations (Huber).
+const OUTLYING: f64 = 2.0;
+/// Most correlation of a leg with the next that is believed.
+const MOST_CORRELATED: f64 = 0.8;
+/// Passes in which scatter and weights settle.
+const PASSES: usize = 6;
+
+/// The balance of several flights.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Balance {
+    /// one a flight
+    pub flights: Vec<FlightBalance>,
+    /// covariance of the flights' values, flight by flight, of each component; without [`FlightBalance::wander`]
+    pub covariance: [DMatrix<f64>; AXES],
+    /// arms, with standard error: height of the air's force above the rotors' plane, along body x and y
+    pub air_lever: [(f64, f64); 2],
+}
+
+/// The balance of one flight in still air.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlightBalance {
+    /// as [`Leg::lean`]
+    pub lean: [f64; AXES],
+    /// standard deviation by which it wanders from flight to flight beside its error, of each component
+    pub wander: [f64; AXES],
+    /// scatter of a leg, of each component
+    pub scatter: [f64; AXES],
+    /// legs that it rests on
+    pub legs: usize,
+    /// mean of [`Leg::felt`]
+    pub felt: [f64; 2],
+    /// mean share of each rotor in the commanded thrust
+    pub shares: Vec<f64>,
+    /// specific thrust over g that full commands would give, with the standard error of its mean
+    pub lift: Option<(f64, f64)>,
+    /// V, mean
+    pub voltage_v: Option<f64>,
+}
+
+impl Balance {
+    /// Standard error of a component of a flight, without what wanders.
+    #[must_use]
+    pub fn std(&self, flight: usize, axis: usize) -> f64 {
+        self.covariance[axis][(flight, flight)].max(0.0).sqrt()
+    }
+
+    /// Covariance of the flights' components with what wanders from flight to flight, `scale` times as much of it.
+    #[must_use]
+    pub fn covariance_of(&self, axis: usize, scale: f64) -> DMatrix<f64> {
+        let mut out = self.covariance[axis].clone();
+        for (place, flight) in self.flights.iter().enumerate() {
+            out[(place, place)] += (scale * flight.wander[axis]).powi(2);
+        }
+        out
+    }
+}
+
+/// The balance of flights, each given by its legs; there is at least one of each.
+#[must_use]
+pub fn balance(flights: &[Vec<Leg>]) -> Balance {
+    let fits: [Fit; AXES] = std::array::from_fn(|axis| Fit::of(flights, axis));
+    let each = flights.iter().enumerate().map(|(place, legs)| {
+        let mean = |of: &dyn Fn(&Leg) -> f64| legs.iter().map(of).sum::<f64>() / legs.len() as f64;
+        let rotors = legs.first().map_or(0, |leg| leg.shares.len());
+        FlightBalance {
+            lean: std::array::from_fn(|axis| fits[axis].own[place]),
+            wander: std::array::from_fn(|axis| WANDER * fits[axis].scatter[place]),
+            scatter: std::array::from_fn(|axis| fits[axis].scatter[place]),
+            legs: legs.len(),
+            felt: [0, 1].map(|axis| mean(&|leg| leg.felt[axis])),
+            shares: (0..rotors).map(|rotor| mean(&|leg| leg.shares[rotor])).collect(),
+            lift: mean_of(legs.iter().map(|leg| leg.lift)),
+            voltage_v: mean_of(legs.iter().map(|leg| leg.voltage_v)).map(|(mean, _)| mean),
+        }
+    });
+    Balance {
+        flights: each.collect(),
+        air_lever: [0, 1].map(|axis: usize| fits[axis].lever),
+        covariance: fits.map(|fit| fit.covariance),
+    }
+}
+
+/// Mean and standard error, where every leg has a value.
+fn mean_of(values: impl Iterator<Item = Option<f64>>) -> Option<(f64, f64)> {
+    let values: Vec<f64> = values.collect::<Option<_>>()?;
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    Some((mean, (square / count).sqrt()))
+}
+
+/// The fit of one component.
+struct Fit {
+    /// of each flight
+    own: Vec<f64>,
+    covariance: DMatrix<f64>,
+    /// of a leg of each flight
+    scatter: Vec<f64>,
+    lever: (f64, f64),
+}
+
+/// A leg as an equation.
+struct Equation {
+    flight: usize,
+    /// of the air, none about the vertical
+    felt: f64,
+    turning: f64,
+    rate: f64,
+    lean: f64,
+}
+
+impl Fit {
+    fn of(flights: &[Vec<Leg>], axis: usize) -> Self {
+        let count = flights.len();
+        let mut rows = Vec::new();
+        for (flight, legs) in flights.iter().enumerate() {
+            rows.extend(legs.iter().map(|leg| Equation {
+                flight,
+                felt: leg.felt.get(axis).copied().unwrap_or(0.0),
+                turning: leg.turning[axis],
+                rate: leg.rate[axis],
+                lean: leg.lean[axis],
+            }));
+        }
+        let mut scatter = vec![0.01; count];
+        let mut inflation = vec![1.0; count];
+        let mut huber = vec![1.0; rows.len()];
+        let (mut solution, mut inverse) = solved(&rows, count, (&scatter, &inflation, &huber));
+        for _ in 0..PASSES {
+            let left: Vec<f64> = rows.iter().map(|row| row.lean - row.predicted(&solution)).collect();
+            for flight in 0..count {
+                let own: Vec<f64> = rows
+                    .iter()
+                    .zip(&left)
+                    .filter(|(row, _)| row.flight == flight)
+                    .map(|(_, left)| *left)
+                    .collect();
+                (scatter[flight], inflation[flight]) = scatter_of(&own);
+            }
+            for ((weight, row), left) in huber.iter_mut().zip(&rows).zip(&left) {
+                *weight = (OUTLYING * scatter[row.flight] / left.abs().max(1e-12)).min(1.0);
+            }
+            (solution, inverse) = solved(&rows, count, (&scatter, &inflation, &huber));
+        }
+        let place = |flight: usize| OWN + 2 * flight;
+        Self {
+            own: (0..count).map(|flight| solution[place(flight)]).collect(),
+            covariance: DMatrix::from_fn(count, count, |i, j| inverse[(place(i), place(j))]),
+            scatter,
+            lever: (solution[0], inverse[(0, 0)].max(0.0).sqrt()),
+        }
+    }
+}
+
+/// Places: lever, inertia, damping, then of each flight its balance and its lever beside the vehicle's.
+const OWN: usize = 3;
+
+impl Equation {
+    fn coefficients(&self) -> [(usize, f64); 5] {
+        let own = OWN + 2 * self.flight;
+        [(0, self.felt), (1, self.turning), (2, self.rate), (own, 1.0), (own + 1, self.felt)]
+    }
+
+    fn predicted(&self, solution: &DVector<f64>) -> f64 {
+        self.coefficients().iter().map(|(place, factor)| factor * solution[*place]).sum()
+    }
+}
+
+/// Solution and its covariance, given the scatter of each flight's legs, how much its mean is less certain than of independent legs, and
+/// the weight of each leg.
+fn solved(
+    rows: &[Equation],
+    count: usize,
+    (scatter, inflation, huber): (&[f64], &[f64], &[f64]),
+) -> (DVector<f64>, DMatrix<f64>) {
+    let size = OWN + 2 * count;
+    let (mut normal, mut right) = (DMatrix::<f64>::zeros(size, size), DVector::<f64>::zeros(size));
+    normal[(0, 0)] = AIR_LEVER.powi(-2);
+    // nothing is known beforehand
+    normal[(1, 1)] = 1e-6;
+    normal[(2, 2)] = 1e-6;
+    for flight in 0..count {
+        normal[(OWN + 2 * flight, OWN + 2 * flight)] = 1e-6;
+        normal[(OWN + 2 * flight + 1, OWN + 2 * flight + 1)] = AIR_LEVER_SPREAD.powi(-2);
+    }
+    for (row, huber) in rows.iter().zip(huber) {
+        let weight = huber / (scatter[row.flight].powi(2) * inflation[row.flight]);
+        let coefficients = row.coefficients();
+        for (i, by) in coefficients {
+            right[i] += weight * by * row.lean;
+            for (j, with) in coefficients {
+                normal[(i, j)] += weight * by * with;
+            }
+        }
+    }
+    let inverse =
+        normal.cholesky().map_or_else(|| DMatrix::identity(size, size), |decomposed| decomposed.inverse());
+    (&inverse * right, inverse)
+}
+
+/// Scatter of what is left of legs in order, and how much less certain their mean is than of independent ones.
+fn scatter_of(left: &[f64]) -> (f64, f64) {
+    let count = left.len() as f64;
+    let mut sizes: Vec<f64> = left.iter().map(|value| value.abs()).collect();
+    let robust = 1.4826 * crate::stats::median(&mut sizes);
+    let rms = (left.iter().map(|value| value * value).sum::<f64>() / (count - 1.5).max(1.0)).sqrt();
+    // a leg or two of a gust are no scatter
+    let scatter = rms.min(2.0 * robust.max(LEAST_SCATTER)).max(LEAST_SCATTER);
+    let products: f64 = left.windows(2).map(|pair| pair[0] * pair[1]).sum();
+    let squares: f64 = left.iter().map(|value| value * value).sum::<f64>().max(f64::MIN_POSITIVE);
+    let correlated = (products / squares).clamp(0.0, MOST_CORRELATED);
+    (scatter, (1.0 + correlated) / (1.0 - correlated))
+}
