@@ -13,6 +13,8 @@ mod error;
 mod flights;
 mod foreign;
 mod format;
+#[cfg(test)]
+mod heights_tests;
 mod input;
 mod leap;
 mod lookahead;

@@ -78,7 +78,11 @@ proptest! {
             let image = of(&mirrored, &swapped, *effect, &seen);
             let difference = (image.force_n - mirror(real.force_n)).norm()
                 + (image.torque_nm - mirror_turn(real.torque_nm)).norm();
-            prop_assert!(difference < 1e-9 * (1.0 + size(&real)), "{}", effect.id());
+            prop_assert!(
+                difference < 1e-9 * (1.0 + size(&real)),
+                "{}: its mirror image is another force: if a parameter has a side, change its sign in `match` above",
+                effect.id()
+            );
         }
     }
 
