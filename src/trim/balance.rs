@@ -265,12 +265,9 @@ mod tests {
         let own = [[0.01, -0.02, 0.03], [0.04, -0.05, -0.01]];
         let found = balance(&[flight(own[0], 0.0), flight(own[1], 0.06)]);
         for (flight, own) in own.iter().enumerate() {
-            for axis in 0..AXES {
+            for (axis, own) in own.iter().enumerate() {
                 let (value, std) = (found.flights[flight].lean[axis], found.std(flight, axis));
-                assert!(
-                    (value - own[axis]).abs() < 3.0 * std && std < 0.006,
-                    "{flight} {axis}: {value} +- {std}"
-                );
+                assert!((value - own).abs() < 3.0 * std && std < 0.006, "{flight} {axis}: {value} +- {std}");
             }
         }
         assert!(found.air_lever.iter().all(|(lever, std)| (lever - 0.9).abs() < 3.0 * std));
