@@ -92,6 +92,15 @@ fn a_rotor_that_became_weak_is_found_and_an_unchanged_vehicle_is_not_called_chan
 }
 
 #[test]
+fn logs_of_different_autopilots_are_not_of_one_vehicle() {
+    let refused =
+        mavid(&["compare", "fixtures/px4_flight.ulg", "--with", "fixtures/ap_baseline_70_79s.tlog"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let why = String::from_utf8_lossy(&refused.stderr);
+    assert!(why.contains("ap_baseline_70_79s.tlog: expected flights of one vehicle, got a log of"), "{why}");
+}
+
+#[test]
 fn one_flight_is_nothing_to_compare() {
     let refused = mavid(&["compare", "alone.bin"]);
     assert_eq!(refused.status.code(), Some(2));

@@ -232,8 +232,7 @@ fn is_same(a: PwmRange, b: PwmRange) -> bool {
 pub fn holds_fractions(recording: &Recording) -> bool {
     moving_commands(recording).any(|stream| {
         let zeros = |channel: usize| (0..stream.len()).filter(|i| stream.sample(*i)[channel] == 0.0).count();
-        let used: Vec<usize> =
-            (0..stream.width).filter(|channel| 2 * zeros(*channel) < stream.len()).collect();
+        let used = (0..stream.width).filter(|channel| 2 * zeros(*channel) < stream.len()).collect::<Vec<_>>();
         in_unit(stream, &used, Actuator::Speed)
     })
 }
