@@ -6,9 +6,9 @@ use super::place::{Place, STEP_S, cell_of};
 use crate::recording::Stream;
 use crate::signals::Grid;
 
-/// Latenesses of a receiver that are tried, s: from the first to the last by the step.
+/// Latenesses of a receiver that are tried, s: from the first to the last by the step. Chosen; not measured.
 const TRIED_S: (f64, f64, f64) = (-0.1, 0.4, 0.01);
-/// Fewer samples than this teach no lateness.
+/// Fewer samples than this teach no lateness. Chosen; not measured.
 const LEAST_SAMPLES: usize = 20;
 
 /// One sample.
