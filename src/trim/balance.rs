@@ -1,9 +1,8 @@
 //! The balance of each flight in still air, estimated over all flights at once.
 //!
 //! `lean = b + (h + e) felt + j turning + d rate`: `b` and `e` are a flight's own, the air's lever `h`, the inertia `j` and the damping `d`
-//! the vehicle's. The
-//! air pushes at another height than the rotors do, so a vehicle that stands in the wind leans its thrust by as much as a rotor that
-//! is a tenth weak; what it feels of the air tells that apart.
+//! the vehicle's. The air pushes at another height than the rotors do. So a vehicle that stands in the wind leans its thrust by as much
+//! as a rotor that is a tenth weak does. The force of the air that it feels tells these apart.
 
 use super::legs::{AXES, Leg};
 use nalgebra::{DMatrix, DVector};
@@ -241,7 +240,8 @@ mod tests {
             let time_s = 2.0 * f64::from(place);
             let push = felt + 0.02 * (1.3 * time_s).sin();
             let (turning, rate) = (0.3 * (0.7 * time_s).sin(), 0.2 * (0.4 * time_s).cos());
-            let noise = 0.002 * (17.0 * time_s).sin();
+            // at the legs' 2 s no other term goes like it
+            let noise = 0.002 * (5.3 * time_s).sin();
             let of = |axis: usize| {
                 let air = if axis < 2 { 0.9 * push } else { 0.0 };
                 own[axis] + air + 0.1 * turning + 0.05 * rate + noise
