@@ -38,7 +38,7 @@ pub use plausible::{Contradiction, contradictions, contradicts_file, flights_apa
 pub use problem::{Channel, Problem, Solution};
 pub use recommend::Recommendation;
 pub use recursive::{GradientStep, History, PAPER_SIGMA, PaperEstimate, gradient_descent, least_squares};
-pub use result::{Estimated, Finding, MethodResult, POOR, Parameter, finding, size_of};
+pub use result::{Estimated, Finding, MethodResult, POOR, Parameter, RIGID_BODY_ALONE, finding, size_of};
 pub use theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, inertia_of, scale_of, theta_of};
 pub use thrust_scale::ThrustScale;
 pub use weak::{Latency, LatencyKind, WeakEstimate, expected_covariance, latency, solve_weak};

@@ -45,6 +45,9 @@ pub enum Finding {
 /// In a reason.
 pub(super) const CURVE_IS_A_GUESS: &str = "the shape of the thrust curve is a guess";
 
+/// Before what a flight is good for, where it is too short for a search: what else acts is then part of mass and inertia.
+pub const RIGID_BODY_ALONE: &str = "too short to search for effects; for a rigid body alone ";
+
 /// Standard error, as a share of the parameter's size, from which it is poor. Chosen; not measured.
 pub const POOR: f64 = 0.1;
 

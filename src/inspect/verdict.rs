@@ -6,7 +6,7 @@ use super::missing_streams::{SOUND_COPY, lack};
 use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION};
 use crate::autopilot::VehicleKind;
 use crate::diagnose::LEAST_FLIGHT_S;
-use crate::estimate::{POOR, contradicts_file, rescaled, rests_on_guessed_curve};
+use crate::estimate::{POOR, RIGID_BODY_ALONE, contradicts_file, rescaled, rests_on_guessed_curve};
 use crate::note::About;
 use crate::recording::Quantity;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
@@ -155,10 +155,11 @@ fn with_vehicle(evidence: &Evidence<'_>, good: &[&Outlook], bad: &[&str], time: 
             doubts.join("; ")
         );
     }
-    // what else acts is then part of mass and inertia
     let alone = evidence.assessment.flight.usable_s < LEAST_FLIGHT_S;
-    let alone = if alone { "too short for a search of effects, and of a rigid body alone " } else { "" };
-    format!("This log is {alone}{parts}{not}: {time}. Next: `mavid identify`.")
+    if alone {
+        return format!("This log is {RIGID_BODY_ALONE}it is {parts}{not}: {time}. Next: `mavid identify`.");
+    }
+    format!("This log is {parts}{not}: {time}. Next: `mavid identify`.")
 }
 
 /// What speaks against the vehicle file, clause by clause.

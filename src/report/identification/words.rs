@@ -2,7 +2,7 @@
 
 use crate::diagnose::LEAST_FLIGHT_S;
 use crate::diagnose::joint::{ParameterFound, Physical};
-use crate::estimate::{Finding, MethodResult, Nominal, POOR, size_of};
+use crate::estimate::{Finding, MethodResult, Nominal, POOR, RIGID_BODY_ALONE, size_of};
 use crate::report::thrust_source::thrust_name;
 use crate::signals::Quality;
 use crate::study::IdentifyStudy;
@@ -39,8 +39,7 @@ pub(super) fn verdict(study: &IdentifyStudy, result: &MethodResult) -> String {
         }
     }
     let usable_s: f64 = study.flights.iter().map(|flight| flight.quality.usable.usable_s).sum();
-    // what else acts is then part of mass and inertia
-    let alone = if usable_s < LEAST_FLIGHT_S { ALONE } else { "" };
+    let alone = if usable_s < LEAST_FLIGHT_S { RIGID_BODY_ALONE } else { "" };
     if poor.is_empty() && no.is_empty() {
         let all = if scale.is_some() { "thrust and all of the inertia" } else { "all of mass and inertia" };
         return format!("{alone}good for {all}");
@@ -54,9 +53,6 @@ pub(super) fn verdict(study: &IdentifyStudy, result: &MethodResult) -> String {
         None => format!("{alone}{}", parts.join("; ")),
     }
 }
-
-/// Before the verdict on a flight in which no effects can be searched for.
-const ALONE: &str = "too short for a search of effects, and of a rigid body alone ";
 
 /// Five digits after the point if they show the value, otherwise a power of ten.
 pub(super) fn number(value: f64) -> String {
