@@ -18,10 +18,10 @@ const APART: f64 = 6.0;
 /// Standard deviation of the centre of mass from flight to flight by where battery and load sit, arms, a direction: the flight's own.
 /// Chosen; not measured.
 const LOADED: f64 = 0.01;
-/// Flights that the stated scatter counts as.
+/// Flights that the stated scatter counts as. Chosen; not measured.
 const PRIOR: f64 = 6.0;
-/// Share of a flight's own error that says the same.
-const SAYS: f64 = 2.0;
+/// Standard errors from which on a flight shows a change alone. Chosen; not measured.
+const SHOWN_ALONE: f64 = 2.0;
 
 /// What the balance says of a change.
 #[derive(Debug, Clone, PartialEq)]
@@ -174,7 +174,7 @@ fn carriers(pair: &Pair, found: &BalanceFound, known: &[Explanation]) -> Vec<usi
             Some(factor) => (factor.by.0 < 0.0) == (account.amounts[0].0 > 0.0),
             None => true,
         };
-        is_same_way && account.amounts.iter().any(|(amount, std)| amount.abs() > SAYS * std)
+        is_same_way && account.amounts.iter().any(|(amount, std)| amount.abs() > SHOWN_ALONE * std)
     };
     pair.groups.after.iter().filter(alone).copied().collect()
 }

@@ -1,6 +1,6 @@
 //! One value of a parameter that several flights have in common.
 
-/// Flights that the stated errors count as where their scatter is learned.
+/// Flights that the stated errors count as where their scatter is learned. Chosen; not measured.
 const PRIOR: f64 = 4.0;
 
 /// Mean of the flights' values by their information, with its standard error: larger where they scatter by more than their errors. Of

@@ -16,9 +16,9 @@ pub const AIR_LEVER_SPREAD: f64 = 0.2;
 const AIR_LEVER: f64 = 1.5;
 /// Least scatter of a leg, shares: what a log's commands resolve. Chosen; not measured.
 const LEAST_SCATTER: f64 = 3e-4;
-/// Residual beyond which a leg counts less, in standard deviations (Huber).
+/// Residual beyond which a leg counts less, in standard deviations (Huber). Chosen; not measured.
 const OUTLYING: f64 = 2.0;
-/// Most correlation of a leg with the next that is believed.
+/// Most correlation of a leg with the next that is believed. Chosen; not measured.
 const MOST_CORRELATED: f64 = 0.8;
 /// Passes in which scatter and weights settle.
 const PASSES: usize = 6;
