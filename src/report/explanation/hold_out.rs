@@ -35,7 +35,7 @@ pub(super) fn hold_out(study: &ExplainStudy) -> Markup {
             @for said in &shown.notes { (note(said)) }
         }
     };
-    section("Fit before and after", &content)
+    section("How much better", &content)
 }
 
 fn compared_row(name: &str, unit: &str, of: &Compared) -> Vec<Cell> {
