@@ -25,7 +25,8 @@ fn holds(log: &[u8], needle: &[u8]) -> bool {
 /// A frame of MAVLink 2 behind its stamp.
 fn frame(at_us: u64, id: u32, seed: u8, payload: &[u8], is_signed: bool) -> Vec<u8> {
     let [a, b, c, _] = id.to_le_bytes();
-    let mut bytes = vec![MARKER_V2, u8::try_from(payload.len()).unwrap(), u8::from(is_signed), 0, 7, 1, 1, a, b, c];
+    let mut bytes =
+        vec![MARKER_V2, u8::try_from(payload.len()).unwrap(), u8::from(is_signed), 0, 7, 1, 1, a, b, c];
     bytes.extend_from_slice(payload);
     let sum = checksum(&bytes[1..], seed);
     bytes.extend_from_slice(&sum.to_le_bytes());
@@ -78,10 +79,19 @@ fn places_serial_numbers_and_keys_are_out_of_a_telemetry_log() {
     let redacted = redact(&log).unwrap();
     let tally = redacted.tally;
     assert_eq!((tally.kept, tally.moved, tally.emptied, tally.left_out), (6, 4, 3, 2), "{tally:?}");
-    for told in [&b"SERIAL"[..], b"SECRET", b"SIGNATURE", b"3433510A", &LATITUDE.to_le_bytes(), &LONGITUDE.to_le_bytes()] {
+    for told in [
+        &b"SERIAL"[..],
+        b"SECRET",
+        b"SIGNATURE",
+        b"3433510A",
+        &LATITUDE.to_le_bytes(),
+        &LONGITUDE.to_le_bytes(),
+    ] {
         assert!(holds(&log, told) && !holds(&redacted.bytes, told), "{told:?}");
     }
-    assert!(holds(&redacted.bytes, b"MPC_THR_HOVER") && holds(&redacted.bytes, &1_234_567.0_f32.to_le_bytes()));
+    assert!(
+        holds(&redacted.bytes, b"MPC_THR_HOVER") && holds(&redacted.bytes, &1_234_567.0_f32.to_le_bytes())
+    );
     // in metres the flight is the same: 1e-7 degrees are 11.1 mm
     let places: Vec<(i32, i32)> = redacted
         .bytes
@@ -89,7 +99,9 @@ fn places_serial_numbers_and_keys_are_out_of_a_telemetry_log() {
         .filter(|window| window[0] == MARKER_V2 && window[7] == 33)
         .map(|window| window.as_ptr() as usize - redacted.bytes.as_ptr() as usize)
         .map(|at| {
-            let value = |from: usize| i32::from_le_bytes(redacted.bytes[at + from..at + from + 4].try_into().unwrap());
+            let value = |from: usize| {
+                i32::from_le_bytes(redacted.bytes[at + from..at + from + 4].try_into().unwrap())
+            };
             (value(14), value(18))
         })
         .collect();
@@ -107,7 +119,11 @@ fn the_flight_stays_as_it_was() {
         let redacted = redact(&log).unwrap();
         let (before, after) = (read(&log), read(&redacted.bytes));
         assert!(before.streams.len() > 5, "{name}");
-        assert_eq!(before.streams.keys().collect::<Vec<_>>(), after.streams.keys().collect::<Vec<_>>(), "{name}");
+        assert_eq!(
+            before.streams.keys().collect::<Vec<_>>(),
+            after.streams.keys().collect::<Vec<_>>(),
+            "{name}"
+        );
         for (key, stream) in &before.streams {
             let other = &after.streams[key];
             assert_eq!(stream.time_s, other.time_s, "{name}: {key:?}");
@@ -137,7 +153,13 @@ fn the_command_writes_the_log_and_says_what_it_did() {
     let (log, out): (PathBuf, PathBuf) = (folder.path().join("a.tlog"), folder.path().join("b.tlog"));
     std::fs::write(&log, telltale()).unwrap();
     let run = |out: &Path| {
-        Command::new(env!("CARGO_BIN_EXE_mavid")).arg("redact").arg(&log).arg("--out").arg(out).output().unwrap()
+        Command::new(env!("CARGO_BIN_EXE_mavid"))
+            .arg("redact")
+            .arg(&log)
+            .arg("--out")
+            .arg(out)
+            .output()
+            .unwrap()
     };
     let done = run(&out);
     let said = String::from_utf8(done.stdout).unwrap();

@@ -106,6 +106,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         "study",
         &[
             "note",
+            "stats",
             "inspect",
             "autopilot",
             "units",

@@ -51,7 +51,7 @@
       all.push(one);
     });
     of.bands.forEach(function () {
-      [0, 1].forEach(function () { all.push({ label: '', width: 0, points: { show: false }, spanGaps: true, cls: 'hidden' }); });
+      [0, 1].forEach(function () { all.push({ label: '', width: 0, points: { show: false }, spanGaps: true, class: 'hidden' }); });
     });
     return all;
   }
@@ -190,17 +190,22 @@
     var low = [0, 1, 2].map(function (k) { return Math.min.apply(null, of.position_m.map(function (at) { return at[k]; })); });
     var high = [0, 1, 2].map(function (k) { return Math.max.apply(null, of.position_m.map(function (at) { return at[k]; })); });
     var middle = [0, 1, 2].map(function (k) { return (low[k] + high[k]) / 2; });
-    var reach = Math.max(0.1, Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / 2);
 
     function draw() {
       var wide = Math.max(100, place.clientWidth), tall = Math.min(380, Math.max(240, wide * 0.6)), dots = window.devicePixelRatio || 1;
       canvas.width = wide * dots;
       canvas.height = tall * dots;
       canvas.style.height = tall + 'px';
-      var pen = canvas.getContext('2d'), scale = zoom * Math.min(wide, tall) * 0.46 / reach;
+      var pen = canvas.getContext('2d'), most = [0.05, 0.05];
+      function about(at) { return seen([at[0] - middle[0], at[1] - middle[1], at[2] - middle[2]]); }
+      of.position_m.concat([low, [high[0], low[1], low[2]], [low[0], high[1], low[2]]]).forEach(function (at) {
+        var xy = about(at);
+        most = [Math.max(most[0], Math.abs(xy[0])), Math.max(most[1], Math.abs(xy[1]))];
+      });
+      var scale = zoom * Math.min((wide / 2 - 30) / most[0], (tall / 2 - 20) / most[1]);
       pen.scale(dots, dots);
       function put(at) {
-        var xy = seen([at[0] - middle[0], at[1] - middle[1], at[2] - middle[2]]);
+        var xy = about(at);
         return [wide / 2 + scale * xy[0], tall / 2 + scale * xy[1]];
       }
       pen.font = '12px system-ui, sans-serif';
@@ -214,7 +219,8 @@
         pen.moveTo(a[0], a[1]);
         pen.lineTo(b[0], b[1]);
         pen.stroke();
-        pen.fillText(of.axes[k] + ' ' + rough(high[k] - low[k]) + ' m', Math.min(Math.max(b[0], 4), wide - 80), Math.min(Math.max(b[1], 12), tall - 4));
+        var words = of.axes[k] + ' ' + (+(high[k] - low[k]).toPrecision(2)) + ' m', room = wide - pen.measureText(words).width - 4;
+        pen.fillText(words, Math.min(Math.max(b[0] + 4, 4), room), Math.min(Math.max(b[1] + (k === 2 ? -4 : 14), 12), tall - 4));
       });
       pen.globalAlpha = 1;
       pen.lineWidth = 2.4;

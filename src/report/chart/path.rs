@@ -14,7 +14,7 @@ const TILTED: f64 = 0.5;
 /// Segments with a colour of their own at most.
 const SEGMENTS: usize = 400;
 /// From little to much: of one hue's lightness alone, so that all people tell them apart, on light and dark.
-pub(super) const RAMP: [&str; 5] = ["#3b6fb6", "#6f9bc4", "#b3ad85", "#e0a030", "#d55e00"];
+const RAMP: [&str; 5] = ["#3b6fb6", "#6f9bc4", "#b3ad85", "#e0a030", "#d55e00"];
 
 /// A path coloured by a value.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]

@@ -69,7 +69,7 @@ pub(super) fn portrait(of: &Portrait, vehicle: &Vehicle) -> Panel {
         y_label: unit(of.channel),
         lines: vec![
             Line {
-                label: "the model's".into(),
+                label: "this effect in the model".into(),
                 x: model_x,
                 y: model_y,
                 colour: Some(AFTER),
@@ -117,7 +117,7 @@ pub(super) fn path(of: &FlownPath, after: &str) -> Path3 {
         axes: ["north", "west", "up"].map(str::to_owned),
         values: vec![(ALONE.to_owned(), of.before.clone()), (after.to_owned(), of.after.clone())],
         unit: "times the residual after".to_owned(),
-        full: DARK,
+        full: of.full,
         ..Path3::default()
     }
 }

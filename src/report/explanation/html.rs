@@ -2,7 +2,7 @@
 
 use super::along::along_section;
 use super::answer::answer;
-use super::hold_out::hold_out;
+use super::hold_out::{hold_out, hold_out_details};
 use super::pictures;
 use super::text::{after, scale, unseen};
 use crate::diagnose::holdout::RateLaw;
@@ -23,6 +23,7 @@ pub fn explanation_html(study: &ExplainStudy) -> String {
     let numbers = study.figures();
     let method = html! {
         (pictures::details(study, &numbers))
+        (hold_out_details(study))
         (evidence(study))
         (data_quality(study.given.inputs.iter().map(|input| input.path.as_str()).zip(&study.given.quality)))
         (provenance(study))

@@ -2,6 +2,10 @@
 
 use super::result::ExplainStudy;
 use crate::diagnose::AXES;
+use crate::stats::quantile;
+
+/// Least residual with the last colour: what is left after is one. Chosen; not measured.
+const LEAST_FULL: f64 = 2.0;
 
 /// Where the first flight was, and how much the models miss there.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +19,8 @@ pub struct FlownPath {
     pub before: Vec<f64>,
     /// the same by the model found
     pub after: Vec<f64>,
+    /// nine tenths of `before` are below this
+    pub full: f64,
 }
 
 impl ExplainStudy {
@@ -35,10 +41,14 @@ impl ExplainStudy {
             }
             sum.into_iter().map(|sum| (sum / axes.len().max(1) as f64).sqrt()).collect()
         };
+        let before = missed(&|axis| self.left_before(axis));
+        let mut ranked = before.clone();
+        ranked.sort_by(f64::total_cmp);
         Some(FlownPath {
+            full: quantile(&ranked, (9, 10)).unwrap_or(0.0).max(LEAST_FULL),
             time_s: search.before.rows.time_s.get(..rows)?.to_vec(),
             position_m: trace.centers.iter().map(|&center| trace.states[center].position_m.into()).collect(),
-            before: missed(&|axis| self.left_before(axis)),
+            before,
             after: missed(&|axis| self.left_after(axis)),
         })
     }
