@@ -153,6 +153,7 @@ pub mod physics;
 pub mod plan;
 pub mod reconstruction;
 pub mod recording;
+pub mod redact;
 pub mod regression;
 pub mod replay;
 pub mod report;

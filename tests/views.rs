@@ -55,16 +55,23 @@ fn shortened(value: Value) -> Value {
     }
 }
 
-/// A page with the title of each chart in its place, without its style and the program's version.
+/// A page with the title of each chart in its place, without its style and script and the program's version.
 fn outline(page: &str) -> String {
     let mut out = String::new();
     let mut rest = page;
-    while let Some(at) = rest.find("<svg").into_iter().chain(rest.find("<style>")).min() {
-        let end = if rest[at..].starts_with("<svg") { "</svg>" } else { "</style>" };
+    while let Some((at, kind)) = ["svg", "style", "script"]
+        .into_iter()
+        .filter_map(|kind| Some((rest.find(&format!("<{kind}"))?, kind)))
+        .min()
+    {
+        let end = &format!("</{kind}>");
         let (element, after) = rest[at..].split_at(rest[at..].find(end).unwrap() + end.len());
-        let title = element.split_once("<title>").and_then(|(_, rest)| rest.split_once("</title>"));
+        let title = element
+            .split_once("<title>")
+            .filter(|_| kind == "svg")
+            .and_then(|(_, rest)| rest.split_once("</title>"));
         out.push_str(&rest[..at]);
-        out.push_str(&title.map_or_else(|| "[style]".to_owned(), |(title, _)| format!("[chart: {title}]")));
+        out.push_str(&title.map_or_else(|| format!("[{kind}]"), |(title, _)| format!("[chart: {title}]")));
         rest = after;
     }
     (out + rest).replace(concat!("mavid ", env!("CARGO_PKG_VERSION")), "mavid [version]")

@@ -19,6 +19,8 @@ pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 pub use model::{ExportArgs, ExportFormat, InitArgs, SimulateArgs, VehicleArgs, VehicleVerb};
 pub use onboard::{LogArgs, LogFetchArgs, LogListArgs, LogPrepareArgs, LogVerb, VehicleLinkArgs};
 pub use plan::{CriterionName, PlanArgs};
-pub use recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ValidateArgs};
+pub use recording::{
+    ExplainArgs, IdentifyArgs, InspectArgs, PageFormat, ProveArgs, RedactArgs, ValidateArgs,
+};
 pub use verb::{Cli, Verb};
 pub use verbosity::Verbosity;

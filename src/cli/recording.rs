@@ -66,12 +66,34 @@ pub struct ExplainArgs {
     /// write report.html, model.toml and explanation.json into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// what is printed: text for a terminal, or md, a summary in Markdown to paste into a forum or an issue
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = PageFormat::Text, conflicts_with = "json")]
+    pub format: PageFormat,
     /// how the recordings are read
     #[command(flatten)]
     pub read: ReadArgs,
     /// time left out at the beginning of the flight, s
     #[arg(long, value_name = "S", default_value_t = mavid::study::ExplainRequest::TRANSIENT_S, allow_negative_numbers = true)]
     pub transient: f64,
+}
+
+/// Arguments of `mavid redact`.
+#[derive(Debug, Args)]
+pub struct RedactArgs {
+    /// recording: .tlog, .ulg or .bin
+    pub log: PathBuf,
+    /// write the redacted log here
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// How an answer is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum PageFormat {
+    /// for a terminal
+    Text,
+    /// Markdown
+    Md,
 }
 
 /// Arguments of `mavid validate`.

@@ -8,7 +8,7 @@ use super::live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 use super::model::{ExportArgs, SimulateArgs, VehicleArgs};
 use super::onboard::LogArgs;
 use super::plan::PlanArgs;
-use super::recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ValidateArgs};
+use super::recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, RedactArgs, ValidateArgs};
 use super::verbosity::Verbosity;
 
 /// Identifies a multirotor's parameters from a flight and names the physical effects that the model lacks
@@ -63,6 +63,8 @@ pub enum Verb {
     Export(ExportArgs),
     /// Explain a folder of cases and score the sealed verdicts against their answers
     Prove(ProveArgs),
+    /// Write a log to share: without positions on the Earth, serial numbers and keys
+    Redact(RedactArgs),
 }
 
 impl Verb {

@@ -3,7 +3,7 @@
 use super::standard_error::StandardError;
 use super::{
     CommandError, Outcome, compare, demo, explain, export, fly, identify, inspect, log, plan, prove, record,
-    replay, simulate, sitl, validate, vehicle,
+    redact, replay, simulate, sitl, validate, vehicle,
 };
 use crate::cli::{Cli, Verb};
 
@@ -26,5 +26,6 @@ pub fn run(cli: &Cli, stderr: &StandardError) -> Result<Outcome, CommandError> {
         Verb::Compare(args) => compare::run(cli.json, stderr, args),
         Verb::Export(args) => export::run(cli.json, args),
         Verb::Prove(args) => prove::run(cli.json, args),
+        Verb::Redact(args) => redact::run(cli.json, args),
     }
 }

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use mavid::config::trajectory_to_toml;
-use mavid::report::{ExplanationDocument, explained_model, explanation_html, explanation_text};
+use mavid::report::{
+    ExplanationDocument, explained_model, explanation_html, explanation_markdown, explanation_text,
+};
 use mavid::study::{ExplainRequest, ExplainStudy, InputFile, draft_text, explain, stored_trajectory};
 use mavid::text;
 
@@ -11,7 +13,7 @@ use super::progress::Spinner;
 use super::standard_error::StandardError;
 use super::words::Word;
 use super::{CommandError, Outcome, output};
-use crate::cli::ExplainArgs;
+use crate::cli::{ExplainArgs, PageFormat};
 
 /// Names of what [`write`] writes.
 const MODEL: &str = "model.toml";
@@ -43,6 +45,8 @@ pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Out
     }
     if json {
         output::json(&ExplanationDocument::new(&study))?;
+    } else if args.format == PageFormat::Md {
+        output::text(&explanation_markdown(&study))?;
     } else {
         output::text(&explanation_text(&study))?;
     }

@@ -24,6 +24,7 @@ mod plan;
 mod progress;
 mod prove;
 mod record;
+mod redact;
 mod replay;
 mod simulate;
 mod sitl;

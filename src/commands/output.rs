@@ -95,7 +95,12 @@ pub fn signing_warnings(signing: Option<&Signing>) {
 
 /// A file of the user's choice; where it cannot be written whole, what was there before stays.
 pub fn file(path: &Path, text: &str) -> Result<(), CommandError> {
-    write_whole(path, text.as_bytes())
+    bytes(path, text.as_bytes())
+}
+
+/// The same of bytes.
+pub fn bytes(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
+    write_whole(path, bytes)
         .map_err(|error| CommandError::Input(format!("cannot write {}: {error}", text::path(&path))))
 }
 

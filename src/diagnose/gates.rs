@@ -53,8 +53,42 @@ impl Default for Gates {
 /// bench --bench explain`, seed 1201), where an equal share for 58 candidates missed two flights of 12.
 const UBIQUITOUS_SHARE: f64 = 0.05;
 
-/// Whether a candidate is significant, distributed over the flight, physically possible, and large enough to matter.
-pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates: f64) -> bool {
+/// A condition that a candidate does not satisfy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Gate {
+    /// the normal deviate is too small
+    Deviate,
+    /// not distributed over the flight
+    Blocks,
+    /// too small a share of the residual energy
+    Gain,
+    /// force and torque too small to matter
+    Matters,
+    /// no larger than on ordinary vehicles
+    Ordinary,
+    /// sign or size not physically possible
+    Possible,
+}
+
+impl Gate {
+    /// Words for reports.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Deviate => "z too small",
+            Self::Blocks => "not spread over the flight",
+            Self::Gain => "explains too little",
+            Self::Matters => "too small to matter",
+            Self::Ordinary => "ordinary size",
+            Self::Possible => "size not possible",
+        }
+    }
+}
+
+/// The first condition that a candidate does not satisfy: whether it is significant, distributed over the flight, physically
+/// possible, and large enough to matter.
+#[must_use]
+pub fn refused_by(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates: f64) -> Option<Gate> {
     let evidence = &tested.evidence;
     let weight_n = fitted.weight_n();
     let force = |channel: usize| evidence.rms[channel] > gates.matters.0 * weight_n;
@@ -63,13 +97,22 @@ pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates
             || force(SECOND + axis)
             || evidence.rms[3 + axis] > gates.matters.1 * fitted.rows.torque_rms[axis]
     });
-    let Some(signature) = tested.candidate.signature() else { return false };
-    evidence.z.abs() > gates.deviate(signature)
-        && evidence.p_cluster < gates.share(signature, candidates)
-        && evidence.gain >= gates.gain
-        && matters
-        && signature.naming.ordinary.is_none_or(|ordinary| evidence.size() > ordinary)
-        && possible(tested, &fitted.base.size)
+    let Some(signature) = tested.candidate.signature() else { return Some(Gate::Possible) };
+    let ordinary = signature.naming.ordinary;
+    let conditions = [
+        (Gate::Deviate, evidence.z.abs() > gates.deviate(signature)),
+        (Gate::Blocks, evidence.p_cluster < gates.share(signature, candidates)),
+        (Gate::Gain, evidence.gain >= gates.gain),
+        (Gate::Matters, matters),
+        (Gate::Ordinary, ordinary.is_none_or(|ordinary| evidence.size() > ordinary)),
+        (Gate::Possible, possible(tested, &fitted.base.size)),
+    ];
+    conditions.into_iter().find(|(_, holds)| !holds).map(|(gate, _)| gate)
+}
+
+/// Whether a candidate satisfies all conditions.
+pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates: f64) -> bool {
+    refused_by(tested, fitted, gates, candidates).is_none()
 }
 
 /// Greatest wind that a fit may contain, m/s: multirotors do not fly in more. Chosen; not measured.

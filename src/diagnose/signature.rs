@@ -1,6 +1,7 @@
 //! Knowledge of the diagnosis about an effect, in addition to its equation: one [`Signature`] an effect.
 
 use super::channels::Nuisance;
+use super::picture::Picture;
 use super::recorded::{Need, Recorded};
 use super::wording::Words;
 use crate::physics::Effect;
@@ -30,6 +31,8 @@ pub struct Signature {
     pub role: Role,
     /// how it is fitted by `--with`
     pub joint: Joint,
+    /// the picture that shows it
+    pub picture: Picture,
     /// its words in reports
     pub words: Words,
 }
@@ -49,6 +52,7 @@ impl Signature {
             naming: Naming::PLAIN,
             role: Role::NONE,
             joint: Joint::PLAIN,
+            picture: Picture::TIME,
             words,
         }
     }

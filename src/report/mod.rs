@@ -10,6 +10,7 @@ mod identification;
 mod inspection;
 mod model_parts;
 mod number;
+mod page;
 mod plan;
 mod proof;
 mod quality;
@@ -17,11 +18,13 @@ mod thrust_source;
 mod validation;
 mod value;
 mod vehicle;
+mod vehicle_drawing;
 
 pub use chart::{Band, Bars, Line, Panel, Strip, Stroke, svg};
 pub use comparison::{ComparisonDocument, comparison_html, comparison_text};
 pub use explanation::{
-    ExplanationDocument, explained_model, explanation_answer, explanation_html, explanation_text,
+    ExplanationDocument, explained_model, explanation_answer, explanation_html, explanation_markdown,
+    explanation_text,
 };
 pub use identification::{
     IdentificationDocument, history_charts, identification_html, identification_text, identified_model,

@@ -34,8 +34,9 @@ pub use effects::{effects_file, effects_of, effects_text, with_further, with_sta
 pub use error::StudyError;
 pub use explain::{
     AlongFlights, AxisFit, AxisResidual, AxisShare, BodyParameter, Estimate, ExplainRequest, ExplainStudy,
-    Field, Figures, Followed, Given, Harmonics, Heat, LeftAlongTime, Located, Predicted, QUANTITIES,
-    RecordedAndSimulated, ShownOn, StateShare, Tried, TriedAs, explain, for_readers, stored_trajectory,
+    Field, Figures, FlownPath, Followed, Given, Harmonics, Heat, LeftAlongTime, Located, Predicted,
+    QUANTITIES, RecordedAndSimulated, ShownOn, StateShare, Tried, TriedAs, explain, for_readers,
+    stored_trajectory,
 };
 pub use flights::{ReadSettings, unread};
 pub use identify::{

@@ -33,6 +33,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("wire", &["units", "text", "autopilot", "frames", "recording"]),
     // files
     ("log", &["units", "text", "autopilot", "frames", "recording", "wire"]),
+    // a log to share, byte for byte but for what tells where and of whom
+    ("redact", &["text", "wire"]),
     // frames over sockets and serial ports, and their recording: live links need no files
     ("link", &["text", "wire"]),
     // logs of a vehicle, over MAVLink: dialogues without I/O, and the file that they fill
@@ -104,6 +106,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         "study",
         &[
             "note",
+            "stats",
             "inspect",
             "autopilot",
             "units",

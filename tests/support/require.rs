@@ -18,10 +18,13 @@ pub enum Needed {
     Shared,
     /// a loopback address of IPv6
     Ipv6,
+    /// headless Chromium of `tests/browser/setup.sh`
+    Browser,
 }
 
 impl Needed {
-    pub const ALL: [Self; 5] = [Self::Peers, Self::Mavsdk, Self::Mujoco, Self::Shared, Self::Ipv6];
+    pub const ALL: [Self; 6] =
+        [Self::Peers, Self::Mavsdk, Self::Mujoco, Self::Shared, Self::Ipv6, Self::Browser];
 
     /// As `MAVID_REQUIRE` names it.
     pub fn word(self) -> &'static str {
@@ -31,6 +34,7 @@ impl Needed {
             Self::Mujoco => "mujoco",
             Self::Shared => "shared",
             Self::Ipv6 => "ipv6",
+            Self::Browser => "browser",
         }
     }
 }

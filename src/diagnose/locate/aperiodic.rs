@@ -3,6 +3,7 @@
 
 use super::super::channels::{AXES, Channels, SECOND};
 use super::super::fit::Fitted;
+use super::super::followed::Followed;
 use super::super::measured_force::may_feel;
 use super::super::signature::EffectTerm;
 use super::super::trace::Trace;
@@ -11,7 +12,7 @@ use super::localisation::Localisation;
 use super::redness::{
     Quantity, Redness, beside_harmonics, least_unnamed, red_fit, red_quantities, redness, scale,
 };
-use super::view::{Followed, View};
+use super::view::View;
 use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_SIDEWAYS, UNNAMED_TORQUE};
 use nalgebra::Vector3;
 

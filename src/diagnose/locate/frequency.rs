@@ -1,9 +1,10 @@
 //! The residual over frequency: the band in which it exceeds noise, and its coherence with states.
 
 use super::super::channels::AXES;
+use super::super::followed::Followed;
 use super::super::trace::Trace;
 use super::spectrum::{Ordinate, noise_shapes};
-use super::view::{Followed, View};
+use super::view::View;
 use crate::stats::{coherence, coherence_of_noise, hann_windowed, transform};
 use rayon::prelude::*;
 

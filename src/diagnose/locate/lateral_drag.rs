@@ -1,7 +1,8 @@
 //! Drag of a fit, through which wind acts.
 
 use super::super::fit::Fitted;
-use super::view::{Followed, View};
+use super::super::followed::Followed;
+use super::view::View;
 use crate::diagnose::signature::EffectTerm;
 
 /// Lateral drag of the accepted effects with its standard error, N/(m/s) at the speeds flown.

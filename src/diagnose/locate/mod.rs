@@ -7,21 +7,23 @@ mod frequency;
 mod gust;
 mod lateral_drag;
 mod localisation;
+mod portrait;
 mod redness;
 mod spectrum;
 mod states;
 mod time;
 mod view;
 
+pub use super::followed::Followed;
 pub use aperiodic::{Aperiodic, StateLack, Trend, aperiodic, mass_step_std_kg};
 pub use field::{FieldTest, Uneven, field_test};
 pub use frequency::{Band, Coherence};
 pub use gust::GustFound;
 pub use localisation::{AxisShare, Localisation, localise};
+pub use portrait::{Portrait, portrait};
 pub use redness::{Quantity, Redness};
 pub use states::{Bin, Follow};
 pub use time::{Change, ChangeKind, Drift, Span};
-pub use view::Followed;
 
 #[cfg(test)]
 mod tests;

@@ -112,9 +112,9 @@ pub(super) fn noise_shapes(view: &View, ordinates: &[Ordinate]) -> [Vec<f64>; 2]
 
 #[cfg(test)]
 mod tests {
-    use super::super::view::Followed;
     use super::super::view::tests::{synthetic, white};
     use super::*;
+    use crate::diagnose::followed::Followed;
 
     #[test]
     fn the_noise_is_told_from_what_is_slow() {

@@ -1,7 +1,8 @@
 //! Dependence of the residual on states: binned means with bands, ranked by analysis of variance. An additive model
 //! removes marginal confounding.
 
-use super::view::{Followed, View};
+use super::super::followed::Followed;
+use super::view::View;
 use crate::stats::{f_tail, median, quantile, resamples};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -264,6 +265,12 @@ fn hats(cut: &Cut) -> Vec<(usize, f64)> {
             (above - 1, ((value - low) / (high - low)).clamp(0.0, 1.0))
         })
         .collect()
+}
+
+/// The mean of a channel in bins of a state that varies, with bands; `None` for a state that is not in the view.
+pub(super) fn binned(view: &View, state: Followed, of_channel: &[f64], channel: usize) -> Option<Vec<Bin>> {
+    let (_, values) = view.states.iter().find(|(of, _)| *of == state)?;
+    Some(bins(&cut(view, state, values), of_channel, channel))
 }
 
 /// Mean residual of each bin with its band.

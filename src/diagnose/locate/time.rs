@@ -266,9 +266,9 @@ fn slope(means: &[Mean], long_run: f64) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::view::Followed;
     use super::super::view::tests::{synthetic, white};
     use super::*;
+    use crate::diagnose::followed::Followed;
 
     #[test]
     fn a_step_is_found_beside_what_repeats() {

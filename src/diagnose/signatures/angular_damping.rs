@@ -1,5 +1,6 @@
 //! Signature: damping of the rotation.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Form, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
@@ -13,6 +14,7 @@ pub static SIGNATURE: Signature = Signature {
     forms: |_| forms(),
     naming: Naming { usual, ..Naming::PLAIN },
     role: Role { like_latency: Some(|| SIGNATURE.whole()), ..Role::NONE },
+    picture: Picture::of(&[3, 4, 5], Over::Rate),
     ..Signature::of(
         &AngularDamping,
         &[0, 1, 2],

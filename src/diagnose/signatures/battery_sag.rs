@@ -1,5 +1,6 @@
 //! Signature: the battery's sag.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, Form, Joint, Role, Signature, Whence};
 use crate::diagnose::wording::{Clause, Size, Words};
@@ -22,6 +23,7 @@ pub static SIGNATURE: Signature = Signature {
         },
         ..Joint::PLAIN
     },
+    picture: Picture::of(&[2], Over::Voltage),
     ..Signature::of(
         &BatterySag,
         &[0, 1],

@@ -1,5 +1,6 @@
 //! Signature: the rotors' hub moment.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{EffectTerm, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Words};
@@ -18,6 +19,7 @@ pub static SIGNATURE: Signature = Signature {
     forms: |_| vec![SIGNATURE.form(&[0.0], &[0])],
     naming: Naming { is_ordinary, ..Naming::PLAIN },
     role: Role { of_air: true, ..Role::NONE },
+    picture: Picture::of(&[3, 4], Over::AirspeedAcross),
     ..Signature::of(
         &BladeFlapping,
         &[0],

@@ -1,5 +1,6 @@
 //! Signature: a ceiling.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{
     EffectTerm, GridScale, Growth, Joint, Naming, Refinement, Signature, Whence,
@@ -56,6 +57,7 @@ pub static SIGNATURE: Signature = Signature {
         },
         ..Joint::PLAIN
     },
+    picture: Picture::of(&[2], Over::Altitude),
     ..Signature::of(&CeilingEffect, &[0], Words::of("ceiling effect"))
 };
 

@@ -1,6 +1,7 @@
 //! Signature: an offset of the centre of mass.
 
 use crate::diagnose::named::Named;
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::signature::{Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ComOffset;
@@ -14,6 +15,7 @@ pub static SIGNATURE: Signature = Signature {
     forms: |_| vec![SIGNATURE.form(&[0.0; 3], &[0, 1])],
     naming: Naming { least: NUISANCE_M, ..Naming::PLAIN },
     role: Role { of_the_loading: true, ..Role::NONE },
+    picture: Picture::of(&[3, 4], Over::Thrust),
     ..Signature::of(
         &ComOffset,
         &[0, 1, 2],

@@ -1,6 +1,7 @@
 //! Signature: a misaligned position reference.
 
 use crate::diagnose::channels::Nuisance;
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, Refinement, Role, Signature, Whence};
 use crate::diagnose::wording::{Size, Words};
@@ -49,6 +50,7 @@ pub static SIGNATURE: Signature = Signature {
         },
         ..Joint::PLAIN
     },
+    picture: Picture::of(&[0, 1, 2], Over::Thrust),
     ..Signature::of(
         &FrameMisalignment,
         &[0, 1, 2],

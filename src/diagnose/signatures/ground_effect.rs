@@ -1,6 +1,7 @@
 //! Signature: the ground effect.
 
 use crate::diagnose::named::Named;
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{EffectTerm, Joint, Naming, Refinement, Signature, Whence, first_finer};
 use crate::diagnose::wording::{Clause, Size, Words};
@@ -65,6 +66,7 @@ pub static SIGNATURE: Signature = Signature {
         },
         ..Joint::PLAIN
     },
+    picture: Picture::of(&[2], Over::Altitude),
     ..Signature::of(
         &GroundEffect,
         &[RHO, CA],

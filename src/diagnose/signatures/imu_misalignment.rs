@@ -1,5 +1,6 @@
 //! Signature: a misaligned inertial unit.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Role, Signature};
 use crate::diagnose::wording::{Size, Words};
@@ -14,6 +15,7 @@ pub static SIGNATURE: Signature = Signature {
     forms: |_| vec![SIGNATURE.form(&[0.0; 3], &[0, 1, 2])],
     naming: Naming { ordinary: Some(ORDINARY_RAD), ..Naming::PLAIN },
     role: Role { turns_inertial_unit: true, ..Role::NONE },
+    picture: Picture::of(&[0, 1, 2], Over::Thrust),
     ..Signature::of(
         &ImuMisalignment,
         &[0, 1, 2],

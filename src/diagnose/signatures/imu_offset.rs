@@ -1,5 +1,6 @@
 //! Signature: an accelerometer away from the centre of mass.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Signature};
 use crate::diagnose::trace::Trace;
@@ -19,6 +20,7 @@ pub static SIGNATURE: Signature = Signature {
         twice.then(|| SIGNATURE.form(&[0.0; 3], &[0, 1, 2])).into_iter().collect()
     },
     naming: Naming { ordinary: Some(ORDINARY_M), ..Naming::PLAIN },
+    picture: Picture::of(&[0, 1], Over::YawRate),
     ..Signature::of(
         &ImuOffset,
         &[0, 1, 2],

@@ -1,5 +1,6 @@
 //! Signature: thrust that falls with climb.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Joint, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Words};
@@ -35,6 +36,7 @@ pub static SIGNATURE: Signature = Signature {
         }),
         ..Joint::PLAIN
     },
+    picture: Picture::of(&[2], Over::AirspeedUp),
     ..Signature::of(
         &Inflow,
         &[0],

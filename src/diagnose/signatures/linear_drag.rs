@@ -1,6 +1,7 @@
 //! Signature: drag in proportion to the airspeed.
 
 use crate::diagnose::named::Named;
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Joint, Naming, Role, Signature, Whence};
 use crate::diagnose::wording::{Clause, Size, Words};
@@ -56,6 +57,7 @@ pub static SIGNATURE: Signature = Signature {
         },
         ..Joint::PLAIN
     },
+    picture: Picture::of(&[0, 1, 2], Over::Airspeed),
     ..Signature::of(
         &LinearDrag,
         &[0, 1, 2],

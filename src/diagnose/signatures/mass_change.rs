@@ -1,5 +1,6 @@
 //! Signature: a change of mass in flight.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, Form, GridScale, Joint, Naming, Refinement, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
@@ -28,6 +29,7 @@ pub static SIGNATURE: Signature = Signature {
     naming: Naming { extra_z: 1.0, least_of_mass: LEAST_OF_MASS, ..Naming::PLAIN },
     role: Role { moment: Some(0), by_motion: false, ..Role::NONE },
     joint: Joint { forms: Some(|recorded, _| terms(recorded)), ..Joint::PLAIN },
+    picture: Picture::of(&[2], Over::Time),
     ..Signature::of(
         &MassChange,
         &[1],

@@ -1,5 +1,6 @@
 //! Signature: drag with the square of the airspeed.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Joint, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
@@ -33,6 +34,7 @@ pub static SIGNATURE: Signature = Signature {
         }),
         ..Joint::PLAIN
     },
+    picture: Picture::of(&[0, 1, 2], Over::Airspeed),
     ..Signature::of(
         &QuadraticDrag,
         &[0, 1, 2],

@@ -1,5 +1,6 @@
 //! Signature: the rotors' own inertia.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Words};
@@ -12,6 +13,7 @@ pub static SIGNATURE: Signature = Signature {
     // and no force of the room, which position and velocity tell of, looks like it
     naming: Naming { ubiquitous: true, ..Naming::PLAIN },
     role: Role { shortens_latency: true, ..Role::NONE },
+    picture: Picture::of(&[5], Over::Time),
     ..Signature::of(
         &RotorInertia,
         &[0],

@@ -1,5 +1,6 @@
 //! Signature: a load that swings below.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{
     EffectTerm, GridScale, Joint, Naming, Refinement, Role, Signature, first_finer,
@@ -56,6 +57,7 @@ pub static SIGNATURE: Signature = Signature {
         }),
         ..Joint::PLAIN
     },
+    picture: Picture::of(&[0, 1], Over::Time),
     ..Signature::of(
         &SlungLoad,
         &[0],

@@ -1,6 +1,7 @@
 //! Signature: a steady wind.
 
 use crate::diagnose::named::{Named, NamedParameter};
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Carried, Joint, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
@@ -28,6 +29,7 @@ pub static SIGNATURE: Signature = Signature {
         forms: Some(|_, _| vec![SIGNATURE.term(&[0.0; 3], &[0, 1])]),
         ..Joint::PLAIN
     },
+    picture: Picture::of(&[0, 1], Over::Heading),
     ..Signature::of(
         &SteadyWind,
         &[0, 1, 2],

@@ -1,5 +1,6 @@
 //! Signature: a tether.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, Joint, Naming, Signature, Whence};
 use crate::diagnose::wording::{Clause, Words};
@@ -31,6 +32,7 @@ pub static SIGNATURE: Signature = Signature {
         },
         ..Joint::PLAIN
     },
+    picture: Picture::of(&[2], Over::Altitude),
     ..Signature::of(
         &Tether,
         &[0, 1],

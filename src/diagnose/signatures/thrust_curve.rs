@@ -1,5 +1,6 @@
 //! Signature: a bent thrust curve.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::signature::{Joint, Naming, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ThrustCurve;
@@ -21,6 +22,7 @@ pub static SIGNATURE: Signature = Signature {
         forms: Some(|_, _| vec![SIGNATURE.term(&[0.0], &[0]), SIGNATURE.term(&[0.0; 2], &[0, 1])]),
         ..Joint::PLAIN
     },
+    picture: Picture::of(&[2], Over::Thrust),
     ..Signature::of(
         &ThrustCurve,
         &[0],

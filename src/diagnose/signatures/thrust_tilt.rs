@@ -1,6 +1,7 @@
 //! Signature: a tilted thrust axis.
 
 use crate::diagnose::channels::Nuisance;
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::signature::{Form, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ThrustTilt;
@@ -14,6 +15,7 @@ pub static SIGNATURE: Signature = Signature {
     forms: |_| vec![Form { instead_of_nuisance: true, ..SIGNATURE.form(&[0.0; 2], &[0, 1]) }],
     naming: Naming { ordinary: Some(ORDINARY_RAD), ..Naming::PLAIN },
     role: Role { stands_for: |_, nuisance| matches!(nuisance, Nuisance::Tilt(_)), ..Role::NONE },
+    picture: Picture::of(&[0, 1], Over::Thrust),
     ..Signature::of(
         &ThrustTilt,
         &[0, 1],

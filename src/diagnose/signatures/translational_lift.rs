@@ -1,5 +1,6 @@
 //! Signature: translational lift.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Words};
@@ -12,6 +13,7 @@ pub static SIGNATURE: Signature = Signature {
     role: Role { of_air: true, ..Role::NONE },
     // 1/m: forces scale with the mass
     naming: Naming { usual: |_, vehicle| Some(0.12 * vehicle.body.mass_kg), ..Naming::PLAIN },
+    picture: Picture::of(&[2], Over::Speed),
     ..Signature::of(
         &TranslationalLift,
         &[0],

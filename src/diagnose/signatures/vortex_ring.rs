@@ -1,5 +1,6 @@
 //! Signature: the vortex ring state.
 
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Role, Signature};
 use crate::diagnose::wording::{Clause, Words};
@@ -10,6 +11,7 @@ pub static SIGNATURE: Signature = Signature {
     needs: &[Need::Velocity],
     forms: |_| vec![SIGNATURE.form(&[0.0], &[0])],
     role: Role { of_air: true, ..Role::NONE },
+    picture: Picture::of(&[2], Over::AirspeedUp),
     ..Signature::of(
         &VortexRing,
         &[0],

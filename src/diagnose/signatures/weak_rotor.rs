@@ -1,6 +1,7 @@
 //! Signature: a rotor that is weaker than the others.
 
 use crate::diagnose::named::Named;
+use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Recorded;
 use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, Role, Signature, Whence};
 use crate::diagnose::wording::{Clause, Size, Words};
@@ -44,6 +45,7 @@ pub static SIGNATURE: Signature = Signature {
         },
         ..Joint::PLAIN
     },
+    picture: Picture::of(&[3, 4], Over::OneRotor),
     ..Signature::of(
         &WeakRotor,
         &[FACTOR],

@@ -19,8 +19,11 @@ pub struct Bars {
 }
 
 const LEFT: f64 = 130.0;
-const RIGHT: f64 = 130.0;
-const TOP: f64 = 26.0;
+const RIGHT: f64 = 70.0;
+const TOP: f64 = 42.0;
+/// Dots of a letter of the legend, and of its mark with the space around it.
+const LETTER: f64 = 6.2;
+const MARK: f64 = 38.0;
 const BAR: f64 = 11.0;
 const SPACE: f64 = 8.0;
 
@@ -34,15 +37,20 @@ impl Bars {
     }
 
     fn drawing(&self, group: f64) -> Markup {
+        // one beside the other, above the bars
+        let places = self.series.iter().scan(LEFT, |at, (label, ..)| {
+            let from = *at;
+            *at += MARK + LETTER * label.chars().count() as f64;
+            Some(from)
+        });
         html! {
             text x="8" y="16" font-weight="bold" { (self.title) }
             @for (place, name) in self.names.iter().enumerate() {
                 (self.group(place, name, TOP + group * place as f64, group))
             }
-            @for (index, (label, hue, _)) in self.series.iter().enumerate() {
-                @let y = TOP + 4.0 + 16.0 * index as f64;
-                rect x=(WIDTH - RIGHT + 44.0) y=(y - 7.0) width="16" height="8" fill=(colour(*hue)) {}
-                text x=(WIDTH - RIGHT + 64.0) y=(y) { (label) }
+            @for (x, (label, hue, _)) in places.zip(&self.series) {
+                rect x=(tenths(x)) y=(TOP - 19.0) width="16" height="8" fill=(colour(*hue)) {}
+                text x=(tenths(x + 20.0)) y=(TOP - 11.0) { (label) }
             }
         }
     }

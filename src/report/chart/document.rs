@@ -1,5 +1,6 @@
 //! A chart as an SVG document, or as an element of a page.
 
+use super::data::{numbers, table};
 use super::draw::{HEIGHT, drawing};
 use super::frame::{WIDTH, framed};
 use super::panel::Panel;
@@ -24,10 +25,13 @@ pub fn svg(panels: &[Panel]) -> String {
     clean_lines(&document.into_string()).into_owned()
 }
 
-/// One panel for a page: no background, the page's colour.
+/// One panel for a page: no background, the page's colour. It brings its numbers, for the page's script and as a table.
 #[must_use]
 pub fn inline(panel: &Panel) -> Markup {
-    framed(HEIGHT, &panel.title, &drawing(panel))
+    html! {
+        div.plot { (framed(HEIGHT, &panel.title, &drawing(panel))) (numbers(panel)) }
+        (table(panel))
+    }
 }
 
 #[cfg(test)]

@@ -8,13 +8,14 @@ use maud::{Markup, html};
 use std::fmt::Write;
 
 /// Dots.
-pub(super) const HEIGHT: f64 = 230.0;
+pub(super) const HEIGHT: f64 = 244.0;
 const LEFT: f64 = 74.0;
-const RIGHT: f64 = 130.0;
-const TOP: f64 = 26.0;
+const RIGHT: f64 = 12.0;
+const TOP: f64 = 42.0;
 const BOTTOM: f64 = 40.0;
-/// Letters of a legend's line.
-const LEGEND_LETTERS: usize = 17;
+/// Dots of a letter of the legend, and of its mark with the space around it.
+const LETTER: f64 = 6.2;
+const MARK: f64 = 38.0;
 
 /// Positions on the sheet.
 struct Sheet {
@@ -118,6 +119,7 @@ fn line_path(sheet: &Sheet, line: &Line, colour: &str) -> Markup {
         };
         let _ = match line.stroke {
             Stroke::Stems => write!(path, "M{x:.1} {:.1}V{y:.1}", TOP + Sheet::HIGH),
+            Stroke::Dots => write!(path, "M{:.1} {y:.1}a3 3 0 1 0 6 0a3 3 0 1 0 -6 0", x - 3.0),
             Stroke::Solid | Stroke::Dashed => {
                 write!(path, "{}{x:.1} {y:.1}", if broken { 'M' } else { 'L' })
             }
@@ -150,12 +152,17 @@ fn legend(panel: &Panel) -> Markup {
         let mark = html! { rect y="-5" width="16" height="10" fill="#e69f00" fill-opacity="0.3" {} };
         entries.push((mark, &panel.spans_label));
     }
-    let x = LEFT + Sheet::WIDE + 8.0;
+    // one beside the other, above the axes
+    let places = entries.iter().scan(LEFT, |at, (_, label)| {
+        let from = *at;
+        *at += MARK + LETTER * label.chars().count() as f64;
+        Some(from)
+    });
     html! {
-        @for (index, (mark, label)) in entries.iter().enumerate() {
-            g transform={ "translate(" (x) " " (TOP + 10.0 + 16.0 * index as f64) ")" } {
+        @for (x, (mark, label)) in places.zip(&entries) {
+            g transform={ "translate(" (tenths(x)) " " (TOP - 12.0) ")" } {
                 (mark)
-                text x="20" y="4" { (label.chars().take(LEGEND_LETTERS).collect::<String>()) }
+                text x="20" y="4" { (label) }
             }
         }
     }

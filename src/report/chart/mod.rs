@@ -3,13 +3,16 @@
 mod axis;
 mod bars;
 mod colour;
+mod data;
 mod document;
 mod draw;
 mod frame;
 mod panel;
+mod path;
 mod strip;
 
 pub use bars::Bars;
 pub use document::{inline, svg};
 pub use panel::{Band, Line, Panel, Stroke};
+pub use path::Path3;
 pub use strip::Strip;

@@ -17,6 +17,8 @@ pub struct Panel {
     pub spans: Vec<[f64; 2]>,
     /// words for the shading, for the legend
     pub spans_label: String,
+    /// panels with the same number have the same time as their abscissa: they share a cursor
+    pub cursor: Option<usize>,
     /// logarithmic abscissa, ordinate
     pub log: (bool, bool),
 }
@@ -46,6 +48,8 @@ pub enum Stroke {
     Dashed,
     /// from the axis up to each point
     Stems,
+    /// the points alone
+    Dots,
 }
 
 /// An interval at each abscissa.

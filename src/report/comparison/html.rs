@@ -5,6 +5,7 @@ use super::words::{answer, name, sentence, size, spaced};
 use crate::diagnose::Owner;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::{significant, with_error};
+use crate::report::page::page;
 use crate::study::{Change, CompareStudy};
 use maud::{Markup, html};
 
@@ -30,7 +31,7 @@ pub fn comparison_html(study: &CompareStudy) -> String {
         (remarks(study))
         (provenance(study))
     };
-    html::page("mavid compare", &answer(study), &tags, &sections)
+    page("mavid compare", &answer(study), &tags, &sections)
 }
 
 fn vehicle(study: &CompareStudy) -> Markup {

@@ -1,17 +1,21 @@
 //! The charts of the report.
 
-use crate::diagnose::locate::Bin;
-use crate::diagnose::{CHANNEL_NAMES, Line as HarmonicLine};
-use crate::report::chart::{Band, Bars, Line, Panel, Strip, Stroke};
+use crate::diagnose::locate::{Bin, Followed as State, Portrait};
+use crate::diagnose::{CHANNEL_NAMES, Line as HarmonicLine, called};
+use crate::report::chart::{Band, Bars, Line, Panel, Path3, Strip, Stroke};
+use crate::report::vehicle_drawing::motor_words;
 use crate::study::{
-    AxisResidual, ExplainStudy, Followed, Harmonics, Heat, LeftAlongTime, RecordedAndSimulated,
+    AxisResidual, ExplainStudy, FlownPath, Followed, Harmonics, Heat, LeftAlongTime, RecordedAndSimulated,
 };
+use crate::vehicle::Vehicle;
 
 /// Largest number of points of a line: a chart is about 440 dots wide.
 const POINTS: usize = 900;
 /// Colours of the model before and after.
 const BEFORE: usize = 1;
 const AFTER: usize = 2;
+/// The colour of the page's words, on light and dark.
+const RECORDED: usize = 6;
 const ALONE: &str = "rigid body";
 const FOUND: &str = "model found";
 /// Residual with the darkest colour, beyond and relative to the residual after.
@@ -44,11 +48,77 @@ pub(super) fn recorded_and_simulated(of: &RecordedAndSimulated, after: &str) -> 
         lines: vec![
             line(ALONE, &of.time_s, &of.before, BEFORE),
             line(after, &of.time_s, &of.after, AFTER),
-            line("recorded", &of.time_s, &of.recorded, 0),
+            Line { stroke: Stroke::Dashed, ..line("recorded", &of.time_s, &of.recorded, RECORDED) },
         ],
+        cursor: Some(of.flight),
         spans: of.spans_s.clone(),
         spans_label: "mismatch".to_owned(),
         ..Panel::default()
+    }
+}
+
+/// What one effect does over the state on which it depends: recorded, and by the model found.
+pub(super) fn portrait(of: &Portrait, vehicle: &Vehicle) -> Panel {
+    let (axis, state) = (in_words(CHANNEL_NAMES[of.channel]), state_in_words(of.state, vehicle));
+    let xy = |bins: &[Bin]| bins.iter().map(|bin| (bin.center, bin.mean)).unzip();
+    let (x, y): (Vec<f64>, Vec<f64>) = xy(&of.recorded);
+    let (model_x, model_y): (Vec<f64>, Vec<f64>) = xy(&of.model);
+    Panel {
+        title: format!("{}: {axis} over {state}", called(of.id)),
+        x_label: format!("{state} ({})", of.state.unit()),
+        y_label: unit(of.channel),
+        lines: vec![
+            Line {
+                label: "this effect in the model".into(),
+                x: model_x,
+                y: model_y,
+                colour: Some(AFTER),
+                ..Line::default()
+            },
+            Line { label: "recorded".into(), x, y, stroke: Stroke::Dots, colour: Some(RECORDED) },
+        ],
+        bands: vec![Band {
+            x: of.recorded.iter().map(|bin| bin.center).collect(),
+            low: of.recorded.iter().map(|bin| bin.low).collect(),
+            high: of.recorded.iter().map(|bin| bin.high).collect(),
+            colour: RECORDED,
+        }],
+        ..Panel::default()
+    }
+}
+
+/// `force_x` as `force along body x`.
+fn in_words(axis: &str) -> String {
+    axis.replace("force_", "force along body ").replace("torque_", "torque about body ")
+}
+
+fn state_in_words(state: State, vehicle: &Vehicle) -> String {
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    match state {
+        State::Altitude => "height".to_owned(),
+        State::Airspeed(axis) => format!("airspeed along body {}", AXES[axis.min(2)]),
+        State::Rate(axis) => format!("rate about body {}", AXES[axis.min(2)]),
+        State::Rotor(place) => {
+            let motor = vehicle.rotors.get(place).map(|rotor| motor_words(rotor, place));
+            format!("thrust of {}", motor.unwrap_or_default())
+        }
+        State::YawCos => "cosine of the heading".to_owned(),
+        State::YawSin => "sine of the heading".to_owned(),
+        other => other.name().replace('_', " "),
+    }
+}
+
+/// The flown path, coloured by the residual of all axes.
+pub(super) fn path(of: &FlownPath, after: &str) -> Path3 {
+    Path3 {
+        title: "flown path, coloured by the residual of all axes".to_owned(),
+        time_s: of.time_s.clone(),
+        position_m: of.position_m.clone(),
+        axes: ["north", "west", "up"].map(str::to_owned),
+        values: vec![(ALONE.to_owned(), of.before.clone()), (after.to_owned(), of.after.clone())],
+        unit: "times the residual after".to_owned(),
+        full: of.full,
+        ..Path3::default()
     }
 }
 
@@ -59,6 +129,7 @@ pub(super) fn left_along_time(of: &LeftAlongTime, after: &str) -> Panel {
         x_label: "time (s)".to_owned(),
         y_label: unit(of.axis),
         lines: vec![line(ALONE, &of.time_s, &of.before, BEFORE), line(after, &of.time_s, &of.after, AFTER)],
+        cursor: Some(0),
         ..Panel::default()
     }
 }

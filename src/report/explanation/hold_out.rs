@@ -12,19 +12,39 @@ const COMPARED: [&str; 6] = ["", "before|", "after|", "noise alone|", "better by
 const PREDICTED: [&str; 7] = ["", "unchanged|", "before|", "after|", "noise alone|", "better by|", "unit"];
 const AT_END: [&str; 5] = ["", "unchanged|", "before|", "after|", "unit"];
 
-/// Errors before and after, on the explained flights and on the hold-out flights.
+/// The horizon that the answer speaks of, s.
+const HORIZON_S: f64 = 0.5;
+
+/// Errors of a prediction over half a second, before and after, on the flights that were not used if there are such.
 pub(super) fn hold_out(study: &ExplainStudy) -> Markup {
     let content = html! {
-        (note("Open-loop prediction from the measured state with the recorded actuators. Before: the rigid body \
-               identified on the same flights. Unchanged: a state that does not change. Better by: than the better one of \
-               these two. Intervals: 95 % of a bootstrap over blocks of the flight. Noise alone: the error that white \
-               noise of the sensors would cause with the right model. At the horizon: the mean size of the error at \
-               the end of the window, one window each 0.17 s."))
-        @if let Some(predicted) = &study.identify { (prediction("flights explained", predicted)) }
-        @if let Some(predicted) = &study.holdout { (prediction(&study.shown_on.heading(), predicted)) }
+        @if let Some(predicted) = &study.holdout {
+            (at_horizon(&study.shown_on.heading(), predicted))
+        } @else if let Some(predicted) = &study.identify {
+            (at_horizon("flights explained", predicted))
+        }
         @if let ShownOn::Nothing { reason } = &study.shown_on {
             (warning(&format!("Not shown on unused data: {reason}.")))
         }
+        (note("Open-loop prediction from the measured state with the recorded actuators. Before: the rigid body identified on \
+               the same flights. Unchanged: a state that does not change. Better by: than the better one of these two, with 95 % \
+               intervals of a bootstrap over blocks of the flight. Noise alone: what white noise of the sensors would cause \
+               with the right model."))
+    };
+    section("How much better", &content)
+}
+
+fn at_horizon(on: &str, predicted: &Predicted) -> Markup {
+    let (rows, _) = rows(predicted, |window_s| (window_s - HORIZON_S).abs() < 1e-9);
+    table(&format!("Prediction error, rms, {on}{}", mean(predicted)), &PREDICTED, &rows)
+}
+
+/// All errors before and after, on the explained flights and on the hold-out flights.
+pub(super) fn hold_out_details(study: &ExplainStudy) -> Markup {
+    let content = html! {
+        (note("At the horizon: the mean size of the error at the end of the window, one window each 0.17 s."))
+        @if let Some(predicted) = &study.identify { (prediction("flights explained", predicted)) }
+        @if let Some(predicted) = &study.holdout { (prediction(&study.shown_on.heading(), predicted)) }
         @if let Some(shown) = &study.shown {
             @if let Some(why) = &shown.no_open_loop {
                 (note(&format!("Nothing could be predicted in open loop: {why}.")))
@@ -49,9 +69,10 @@ fn compared_row(name: &str, unit: &str, of: &Compared) -> Vec<Cell> {
     ]
 }
 
-fn prediction(on: &str, predicted: &Predicted) -> Markup {
+/// Rows of the errors over windows, and of those at their ends.
+fn rows(predicted: &Predicted, is_meant: impl Fn(f64) -> bool) -> (Vec<Vec<Cell>>, Vec<Vec<Cell>>) {
     let (mut rows, mut at_end) = (Vec::new(), Vec::new());
-    for of in &predicted.open_loop {
+    for of in predicted.open_loop.iter().filter(|of| is_meant(of.window_s)) {
         for (compared, (name, unit)) in of.quantities().iter().zip(QUANTITIES) {
             let Some(compared) = compared else { continue };
             let mut row = compared_row(&format!("{name}, {} s", of.window_s), unit, compared);
@@ -68,11 +89,19 @@ fn prediction(on: &str, predicted: &Predicted) -> Markup {
             }
         }
     }
-    let mean = predicted
+    (rows, at_end)
+}
+
+fn mean(predicted: &Predicted) -> String {
+    predicted
         .improvement_percent
-        .map_or_else(String::new, |mean| format!("; mean at 0.5 s better by {}", percent(&mean)));
+        .map_or_else(String::new, |mean| format!("; mean at 0.5 s better by {}", percent(&mean)))
+}
+
+fn prediction(on: &str, predicted: &Predicted) -> Markup {
+    let (rows, at_end) = rows(predicted, |_| true);
     html! {
-        (table(&format!("Prediction error, rms, {on}{mean}"), &PREDICTED, &rows))
+        (table(&format!("Prediction error, rms, {on}{}", mean(predicted)), &PREDICTED, &rows))
         (table(&format!("Error at the horizon, mean, {on}"), &AT_END, &at_end))
     }
 }

@@ -2,44 +2,45 @@
 
 use super::along::along_section;
 use super::answer::answer;
-use super::figures;
-use super::hold_out::hold_out;
+use super::hold_out::{hold_out, hold_out_details};
+use super::pictures;
 use super::text::{after, scale, unseen};
 use crate::diagnose::holdout::RateLaw;
 use crate::diagnose::{Empirical, NO_LATENCY, Named, Slight, Verdict, called, clause};
-use crate::report::chart::inline;
-use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
+use crate::report::html::{self, Cell, folded, note, number, paragraph, section, table, text, warning};
 use crate::report::number::{chance, significant, spoken, with_error};
+use crate::report::page::page;
 use crate::report::quality::data_quality;
+use crate::report::vehicle_drawing::motor_words;
 use crate::study::{ExplainStudy, TriedAs};
 use maud::{Markup, html};
 
-/// Number of flights whose recorded and simulated motion is drawn.
-const DRAWN: usize = 3;
-
-/// The report: one file, nothing loaded from anywhere.
+/// The report: one file, nothing loaded from anywhere. The answer, what shows it, where, how much, how much better, what else
+/// would have been seen; the method is folded.
 #[must_use]
 pub fn explanation_html(study: &ExplainStudy) -> String {
     let _stage = tracing::info_span!("report").entered();
-    let sections = html! {
-        @for said in &study.notes { (warning(&said.sentence())) }
-        (charts(study))
-        (found(study))
-        (hold_out(study))
-        (rigid_body(study))
-        (along_section(study))
+    let numbers = study.figures();
+    let method = html! {
+        (pictures::details(study, &numbers))
+        (hold_out_details(study))
         (evidence(study))
-        (next_flight(study))
-        (limits(study))
         (data_quality(study.given.inputs.iter().map(|input| input.path.as_str()).zip(&study.given.quality)))
         (provenance(study))
     };
-    html::page(
-        &format!("mavid explain: {}", study.given.vehicle.name),
-        &answer(study),
-        &tags(study),
-        &sections,
-    )
+    let sections = html! {
+        @for said in &study.notes { (warning(&said.sentence())) }
+        (pictures::proof(study, &numbers))
+        (pictures::places(study, &numbers))
+        (found(study))
+        (rigid_body(study))
+        (along_section(study))
+        (hold_out(study))
+        (limits(study))
+        (next_flight(study))
+        (folded("Method and data", &method))
+    };
+    page(&format!("mavid explain: {}", study.given.vehicle.name), &answer(study), &tags(study), &sections)
 }
 
 fn tags(study: &ExplainStudy) -> Vec<String> {
@@ -56,47 +57,11 @@ fn tags(study: &ExplainStudy) -> Vec<String> {
     tags
 }
 
-fn charts(study: &ExplainStudy) -> Markup {
-    let (numbers, after) = (study.figures(), figures::model_after(study));
-    let against = html! {
-        @for of in numbers.recorded.iter().take(DRAWN) {
-            (figure(
-                &inline(&figures::recorded_and_simulated(of, after)),
-                "Weighted with the weak form's kernel of 0.4 s. Shaded: the error of the rigid body alone is larger \
-                 than noise.",
-            ))
-        }
-        @if let Some(of) = &numbers.left {
-            (figure(&inline(&figures::left_along_time(of, after)), "The difference of the two."))
-        }
-    };
-    let differ = html! {
-        @if let Some(of) = &numbers.followed {
-            (figure(
-                &inline(&figures::followed(of)),
-                "Mean residual in bins of the state, with 95 % bands of a bootstrap over the flight's periods.",
-            ))
-        }
-        (figure(&figures::axes(&numbers.axes, after).inline(), "Root mean square of each axis."))
-        @if let Some(of) = &numbers.heat {
-            (figure(&figures::heat(of).inline(), "Dark: at least five times the residual after."))
-        }
-        @if let Some(of) = &numbers.harmonics {
-            (figure(
-                &inline(&figures::harmonics(of)),
-                "With a periodic trajectory, everything that the model lacks is at the harmonics; noise is also \
-                 between them. A ratio of about 1 is noise.",
-            ))
-        }
-    };
-    html! { (section("Simulation against recording", &against)) (section("Where they differ", &differ)) }
-}
-
 fn found(study: &ExplainStudy) -> Markup {
     let heading = match study.verdict() {
         Verdict::Unexplained => "What comes closest but does not explain it",
         Verdict::NothingMissing => "What was left out: nothing that this flight could show",
-        Verdict::Explained | Verdict::PartlyExplained => "What was left out",
+        Verdict::Explained | Verdict::PartlyExplained => "How much: what was left out",
     };
     let content = html! {
         @for named in study.effects.iter().chain(&study.closest) { (effect(study, named)) }
@@ -111,7 +76,10 @@ fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
     let rows: Vec<Vec<Cell>> = effect
         .parameters
         .iter()
-        .map(|p| vec![text(p.name), number(with_error(p.value, p.std)), text(spoken(p.unit))])
+        .map(|p| match motor(study, effect, p.name) {
+            Some(motor) => vec![text(p.name), number(motor), text("")],
+            None => vec![text(p.name), number(with_error(p.value, p.std)), text(spoken(p.unit))],
+        })
         .collect();
     let strength = &effect.strength;
     let caption = format!(
@@ -138,6 +106,12 @@ fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
             )))
         }
     }
+}
+
+/// The words for a motor, where a parameter says which.
+fn motor(study: &ExplainStudy, effect: &Named, parameter: &str) -> Option<String> {
+    let place = study.motor_of(effect).filter(|_| study.motor_parameter(effect) == Some(parameter))?;
+    Some(motor_words(&study.vehicle().rotors[place], place))
 }
 
 fn traces(study: &ExplainStudy) -> Markup {
@@ -254,6 +228,7 @@ fn evidence(study: &ExplainStudy) -> Markup {
                 number(format!("{:.1}", tried.z)),
                 number(significant(100.0 * tried.gain, 2)),
                 number(chance(tried.p_cluster)),
+                text(tried.refused.unwrap_or("")),
             ]
         })
         .collect();
@@ -265,7 +240,7 @@ fn evidence(study: &ExplainStudy) -> Markup {
         100.0 * gates.gain
     );
     let content = html! {
-        (table(&caption, &["", "effect", "z|", "gain %|", "chance over blocks|"], &rows))
+        (table(&caption, &["", "effect", "z|", "gain %|", "chance over blocks|", "refused by"], &rows))
         @if let Some(lack) = &study.explanation.lack_of_fit {
             (note(&format!(
                 "Lack of fit at the harmonics after all names: chance {} over {} periods of {:.1} s.",
@@ -312,7 +287,7 @@ fn limits(study: &ExplainStudy) -> Markup {
         (content)
         @if let Some(unseen) = unseen(study) { (note(&unseen)) }
     };
-    section("What would have been named", &content)
+    section("What else would have been seen", &content)
 }
 
 fn provenance(study: &ExplainStudy) -> Markup {

@@ -7,11 +7,14 @@ mod fit_json;
 mod hold_out;
 mod html;
 mod json;
+mod markdown;
 mod model;
+mod pictures;
 mod text;
 
 pub use answer::answer as explanation_answer;
 pub use html::explanation_html;
 pub use json::ExplanationDocument;
+pub use markdown::explanation_markdown;
 pub use model::explained_model;
 pub use text::explanation_text;

@@ -8,6 +8,7 @@ use crate::estimate::{Finding, NAMES, theta_of};
 use crate::report::chart::{Line, Panel, inline};
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::{significant, spoken, with_error};
+use crate::report::page::page;
 use crate::report::quality::data_quality;
 use crate::signals::FilterPair;
 use crate::study::{COMPONENTS, Correlation, IdentifyStudy, RotorsAndMotion};
@@ -70,7 +71,7 @@ pub fn identification_html(study: &IdentifyStudy) -> String {
         (data_quality(flights.map(|(input, flight)| (input.path.as_str(), &flight.quality))))
         (provenance(study))
     };
-    html::page(&format!("mavid identify: {}", study.vehicle.name), &answer(study), &tags(study), &sections)
+    page(&format!("mavid identify: {}", study.vehicle.name), &answer(study), &tags(study), &sections)
 }
 
 fn tags(study: &IdentifyStudy) -> Vec<String> {

@@ -4,6 +4,7 @@ use super::charts::closed_loop_charts;
 use crate::report::chart::{Bars, inline};
 use crate::report::html::{self, Cell, figure, note, number, section, table, text};
 use crate::report::number::significant;
+use crate::report::page::page;
 use crate::report::quality::data_quality;
 use crate::study::{ErrorTable, Prediction, ValidateStudy, ValidatedFlight};
 use maud::{Markup, html};
@@ -24,7 +25,7 @@ pub fn validation_html(study: &ValidateStudy) -> String {
         (data_quality(study.flights.iter().map(|of| (of.input.path.as_str(), &of.quality))))
         (provenance(study))
     };
-    html::page(&format!("mavid validate: {}", names.join(", ")), &answer(study), &tags, &sections)
+    page(&format!("mavid validate: {}", names.join(", ")), &answer(study), &tags, &sections)
 }
 
 fn prediction(study: &ValidateStudy) -> Markup {

@@ -1,6 +1,6 @@
 //! What was tried, in the order in which it is told.
 
-use crate::diagnose::Tested;
+use crate::diagnose::{Tested, refused_by};
 
 use super::ExplainStudy;
 
@@ -8,6 +8,11 @@ use super::ExplainStudy;
 const RIVALS: usize = 4;
 /// Candidates about the final model that are told, the strongest first.
 const LAST: usize = 12;
+
+/// Why a rival was not taken.
+const EXPLAINS_LESS: &str = "explains less than the one taken";
+/// Why an effect that passes by itself is not in the model.
+const NOT_TOGETHER: &str = "does not hold in a fit together with the others";
 
 /// When an effect was tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,12 +38,14 @@ pub struct Tried {
     pub gain: f64,
     /// chance over blocks of the flight
     pub p_cluster: f64,
+    /// why it is not in the model; `None`: it is
+    pub refused: Option<&'static str>,
 }
 
 impl Tried {
-    fn new(tried_as: TriedAs, tested: &Tested) -> Self {
+    fn new(tried_as: TriedAs, tested: &Tested, refused: Option<&'static str>) -> Self {
         let of = &tested.evidence;
-        Self { tried_as, id: tested.candidate.id, z: of.z, gain: of.gain, p_cluster: of.p_cluster }
+        Self { tried_as, id: tested.candidate.id, z: of.z, gain: of.gain, p_cluster: of.p_cluster, refused }
     }
 }
 
@@ -49,12 +56,18 @@ impl ExplainStudy {
         let search = &self.explanation.search;
         let mut all = Vec::new();
         for (index, step) in search.steps.iter().enumerate() {
-            all.push(Tried::new(TriedAs::Taken(index + 1), &step.taken));
-            all.extend(step.rivals.iter().take(RIVALS).map(|rival| Tried::new(TriedAs::Rival, rival)));
+            all.push(Tried::new(TriedAs::Taken(index + 1), &step.taken, None));
+            let rivals = step.rivals.iter().take(RIVALS);
+            all.extend(rivals.map(|rival| Tried::new(TriedAs::Rival, rival, Some(EXPLAINS_LESS))));
         }
         let mut last: Vec<&Tested> = search.last.iter().collect();
         last.sort_by(|a, b| b.evidence.z.abs().total_cmp(&a.evidence.z.abs()));
-        all.extend(last.into_iter().take(LAST).map(|tested| Tried::new(TriedAs::Left, tested)));
+        let (gates, count) = (&self.given.settings.gates, search.last.len() as f64);
+        let refused = |tested: &Tested| {
+            refused_by(tested, &search.after, gates, count).map_or(NOT_TOGETHER, |gate| gate.words())
+        };
+        let left = last.into_iter().take(LAST);
+        all.extend(left.map(|tested| Tried::new(TriedAs::Left, tested, Some(refused(tested)))));
         all
     }
 }

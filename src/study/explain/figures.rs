@@ -1,7 +1,7 @@
 //! What the report draws, as numbers: recorded and simulated, what is left of it, and where.
 
 use super::result::ExplainStudy;
-use crate::diagnose::locate::{Bin, Follow};
+use crate::diagnose::locate::{Bin, Follow, Portrait, portrait};
 use crate::diagnose::{CHANNEL_NAMES, Fitted, Line, Trace, Verdict, lack_of_fit};
 use std::ops::Range;
 
@@ -13,6 +13,8 @@ const CELLS: u32 = 600;
 /// All figures of an explanation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figures {
+    /// what shows the first name that a picture over a state shows
+    pub portrait: Option<Portrait>,
     /// one a flight, of the axis that misfits most
     pub recorded: Vec<RecordedAndSimulated>,
     /// of the first flight, the same axis
@@ -127,6 +129,7 @@ impl ExplainStudy {
         let rows = ranges(&self.traces);
         let first = rows.first();
         Figures {
+            portrait: self.portrait(),
             recorded: self.recorded_and_simulated(&rows),
             left: first.map(|rows| self.left_along_time(rows)),
             followed: self.followed(),
@@ -143,7 +146,7 @@ impl ExplainStudy {
 
     /// What is left of an axis over all flights, before; an empirical force is fitted to what the sensors' own part is out
     /// of.
-    fn left_before(&self, axis: usize) -> Vec<f64> {
+    pub(super) fn left_before(&self, axis: usize) -> Vec<f64> {
         let before = &self.explanation.search.before;
         if self.empirical.is_some() {
             before.weighted.left_of(axis)
@@ -153,7 +156,7 @@ impl ExplainStudy {
     }
 
     /// The same after: of the model found, less the empirical force where there is one.
-    fn left_after(&self, axis: usize) -> Vec<f64> {
+    pub(super) fn left_after(&self, axis: usize) -> Vec<f64> {
         let search = &self.explanation.search;
         match &self.empirical {
             None => search.after.rows.residual[axis].clone(),
@@ -163,6 +166,11 @@ impl ExplainStudy {
             }
             Some(term) => term.left_of(&search.after, &self.traces, axis),
         }
+    }
+
+    fn portrait(&self) -> Option<Portrait> {
+        let after = &self.explanation.search.after;
+        self.effects.iter().find_map(|effect| portrait(&self.traces, after, effect.id))
     }
 
     fn recorded_and_simulated(&self, rows: &[Range<usize>]) -> Vec<RecordedAndSimulated> {

@@ -1,0 +1,84 @@
+//! What one effect of a model does, over the state on which it depends: recorded and by the model.
+
+use super::super::channels::AXES;
+use super::super::fit::Fitted;
+use super::super::followed::Followed;
+use super::super::signature::{EffectTerm, Growth};
+use super::super::trace::Trace;
+use super::states::{Bin, binned};
+use super::view::View;
+
+/// A picture of one effect: what the rest of the model leaves of one channel, over a state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Portrait {
+    /// identifier of the effect
+    pub id: &'static str,
+    /// index in [`super::super::CHANNEL_NAMES`]
+    pub channel: usize,
+    /// the abscissa
+    pub state: Followed,
+    /// N or N m: recorded less the model without this effect, in bins of the state
+    pub recorded: Vec<Bin>,
+    /// N or N m: what the effect itself does, in the same bins
+    pub model: Vec<Bin>,
+}
+
+/// The picture of an effect of a fitted model; `None` where the model does not hold it, or where it acts through the latency.
+#[must_use]
+pub fn portrait(traces: &[Trace], fitted: &Fitted, id: &str) -> Option<Portrait> {
+    let mut column = 0;
+    for term in &fitted.base.present {
+        if term.id() == id {
+            return of_term(traces, fitted, (term, column));
+        }
+        column += term.free.len();
+    }
+    None
+}
+
+fn of_term(traces: &[Trace], fitted: &Fitted, (term, column): (&EffectTerm, usize)) -> Option<Portrait> {
+    let view = View::new(traces, fitted)?;
+    let picture = term.signature.picture;
+    let parts = picture.of.iter().map(|&channel| (channel, contribution(fitted, (term, column), channel)));
+    let size = |(channel, part): &(usize, Vec<f64>)| {
+        let energy: f64 = part.iter().map(|value| value * value).sum();
+        energy / fitted.weighted.sigma[*channel].powi(2).max(f64::MIN_POSITIVE)
+    };
+    let (channel, part) = parts
+        .filter(|(channel, part)| *channel < AXES && part.len() == view.len())
+        .max_by(|a, b| size(a).total_cmp(&size(b)))?;
+    if part.iter().all(|value| *value == 0.0) {
+        return None;
+    }
+    let rotor = term.signature.role.which.and_then(|slot| {
+        (0..fitted.base.vehicle.rotors.len()).find(|&rotor| (rotor as f64 - term.values[slot]).abs() < 0.5)
+    });
+    let wanted = picture.over.state(channel, rotor);
+    let varies = view.states.iter().any(|(state, _)| *state == wanted);
+    let state = if varies { wanted } else { Followed::Time };
+    let recorded: Vec<f64> = view.residual[channel].iter().zip(&part).map(|(left, of)| left + of).collect();
+    Some(Portrait {
+        id: term.id(),
+        channel,
+        state,
+        recorded: binned(&view, state, &recorded, channel)?,
+        model: binned(&view, state, &part, channel)?,
+    })
+}
+
+/// What an effect does to a channel, row by row: the columns of its amounts times their distance from nothing.
+fn contribution(fitted: &Fitted, (term, first): (&EffectTerm, usize), channel: usize) -> Vec<f64> {
+    let signature = term.signature;
+    let mut sum = vec![0.0; fitted.rows.len()];
+    for (place, &slot) in term.free.iter().enumerate() {
+        let Some(column) = fitted.rows.effects.get(first + place) else { continue };
+        let amount = match signature.growth {
+            _ if !signature.amounts.contains(&slot) => continue,
+            Growth::Proportional => term.values[slot] - signature.nothing,
+            // the slope of `k / v` times `-v` is `k / v`
+            Growth::Inverse { .. } => -term.values[slot],
+        };
+        sum.iter_mut().zip(&column[channel]).for_each(|(sum, value)| *sum += amount * value);
+    }
+    sum
+}

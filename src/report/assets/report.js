@@ -1,0 +1,312 @@
+// Makes the drawings of the page into plots to zoom and to read values from. Without it, and on paper, the drawings stay.
+(function () {
+  'use strict';
+  var HUES = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9'];
+  var DARK = ['#56b4e9', '#ff8a3d', '#2fc99b', '#e5a3c6', '#f0bd3c', '#8fd0f5'];
+  var SPAN = 'rgba(230,159,0,0.22)';
+  var night = window.matchMedia('(prefers-color-scheme: dark)');
+  var groups = {};
+  var seconds = {};
+
+  function ink() { return getComputedStyle(document.body).color; }
+  function hue(index) { return index >= HUES.length ? ink() : (night.matches ? DARK : HUES)[index]; }
+  function faint(colour) { return colour + '33'; }
+  function rough(value) { return value == null ? '–' : String(+value.toPrecision(4)); }
+  function read(box) { return JSON.parse(box.querySelector('script').textContent); }
+
+  // the tables of a panel's lines and bands on one abscissa
+  function joined(of) {
+    var tables = [], last = null;
+    of.lines.forEach(function (line) {
+      last = line.x || last;
+      tables.push([last, line.y]);
+    });
+    of.bands.forEach(function (band) { tables.push([band.x, band.low, band.high]); });
+    return uPlot.join(tables);
+  }
+
+  function shading(of) {
+    return function (u) {
+      u.ctx.save();
+      u.ctx.fillStyle = SPAN;
+      of.spans.forEach(function (span) {
+        var from = Math.max(u.valToPos(span[0], 'x', true), u.bbox.left);
+        var to = Math.min(u.valToPos(span[1], 'x', true), u.bbox.left + u.bbox.width);
+        if (to > from) u.ctx.fillRect(from, u.bbox.top, to - from, u.bbox.height);
+      });
+      u.ctx.restore();
+    };
+  }
+
+  function series(of) {
+    var all = [{ label: of.x_label, value: function (u, v) { return rough(v); } }];
+    of.lines.forEach(function (line) {
+      var one = {
+        label: line.label || of.y_label, stroke: hue(line.colour), width: 1.6, spanGaps: true,
+        value: function (u, v) { return rough(v); }, points: { show: false }
+      };
+      if (line.stroke === 'dashed') one.dash = [6, 4];
+      if (line.stroke === 'dots') { one.paths = function () { return null; }; one.points = { show: true, size: 7, fill: one.stroke }; }
+      if (line.stroke === 'stems') one.paths = uPlot.paths.bars({ size: [0.4, 3] });
+      all.push(one);
+    });
+    of.bands.forEach(function () {
+      [0, 1].forEach(function () { all.push({ label: '', width: 0, points: { show: false }, spanGaps: true, class: 'hidden' }); });
+    });
+    return all;
+  }
+
+  function options(of, box) {
+    var first = 1 + of.lines.length;
+    var axis = { stroke: ink, grid: { stroke: 'rgba(128,128,128,0.2)', width: 1 }, ticks: { stroke: 'rgba(128,128,128,0.4)', width: 1 }, font: '12px system-ui, sans-serif', labelFont: '12px system-ui, sans-serif' };
+    var narrow = box.clientWidth < 500;
+    var key = of.cursor == null ? null : 'time' + of.cursor;
+    return {
+      title: '', width: box.clientWidth, height: narrow ? 220 : 250,
+      scales: { x: { time: false, distr: of.log[0] ? 3 : 1 }, y: { distr: of.log[1] ? 3 : 1 } },
+      axes: [
+        Object.assign({ label: of.x_label, labelSize: 18, size: 34 }, axis),
+        Object.assign({ label: of.y_label, labelSize: 18, size: narrow ? 46 : 56 }, axis)
+      ],
+      series: series(of),
+      bands: of.bands.map(function (band, place) {
+        return { series: [first + 2 * place + 1, first + 2 * place], fill: faint(hue(band.colour)), dir: -1 };
+      }),
+      cursor: Object.assign({ drag: { x: true, y: false } }, key ? { sync: { key: key } } : {}),
+      hooks: {
+        drawClear: [shading(of)],
+        setCursor: key ? [function (u) { moved(of.cursor, u); }] : []
+      }
+    };
+  }
+
+  // the other pictures of the same flight follow a plot's cursor
+  function moved(group, u) {
+    if (u.cursor.left == null || u.cursor.left < 0) return;
+    var time = u.posToVal(u.cursor.left, 'x');
+    (seconds[group] || []).forEach(function (hear) { hear(time); });
+  }
+
+  function show(group, time) {
+    (groups[group] || []).forEach(function (u) {
+      u.setCursor({ left: u.valToPos(time, 'x'), top: u.over.clientHeight / 2 }, false);
+    });
+    (seconds[group] || []).forEach(function (hear) { hear(time); });
+  }
+
+  function keys(u) {
+    u.root.tabIndex = 0;
+    u.root.setAttribute('role', 'group');
+    u.root.addEventListener('keydown', function (event) {
+      var step = { ArrowLeft: -1, ArrowRight: 1 }[event.key], zoom = { '+': 0.5, '-': 2 }[event.key];
+      if (event.key === 'Escape' || event.key === '0') u.setScale('x', { min: u.data[0][0], max: u.data[0][u.data[0].length - 1] });
+      else if (step) u.setCursor({ left: Math.min(Math.max((u.cursor.left || 0) + 8 * step, 0), u.over.clientWidth), top: 10 });
+      else if (zoom) {
+        var middle = u.posToVal(Math.max(u.cursor.left, 0) || u.over.clientWidth / 2, 'x');
+        u.setScale('x', { min: middle - (middle - u.scales.x.min) * zoom, max: middle + (u.scales.x.max - middle) * zoom });
+      } else return;
+      event.preventDefault();
+    });
+  }
+
+  function plot(box) {
+    var of = read(box), place = document.createElement('div'), u = null;
+    place.className = 'live';
+    box.insertBefore(place, box.firstChild);
+    box.classList.add('has-live');
+    var heading = document.createElement('p');
+    heading.className = 'plot-title';
+    heading.textContent = of.title;
+    function make() {
+      if (u) {
+        u.destroy();
+        groups[of.cursor] = (groups[of.cursor] || []).filter(function (other) { return other !== u; });
+      }
+      place.textContent = '';
+      place.appendChild(heading);
+      u = new uPlot(options(of, box), joined(of), place);
+      u.root.setAttribute('aria-label', of.title + '. Arrow keys move the cursor, plus and minus zoom, Escape shows all.');
+      keys(u);
+      if (of.cursor != null) (groups[of.cursor] = groups[of.cursor] || []).push(u);
+    }
+    make();
+    night.addEventListener('change', make);
+    return function () { if (box.clientWidth && Math.abs(box.clientWidth - u.width) > 1) make(); };
+  }
+
+  function colourOf(of, value) {
+    var last = of.ramp.length - 1;
+    return of.ramp[Math.min(last, Math.max(0, Math.floor(of.ramp.length * value / of.full)))];
+  }
+
+  function path(box) {
+    var of = read(box), canvas = document.createElement('canvas'), place = document.createElement('div');
+    var said = document.createElement('p'), turned = 0.7, tilted = 0.5, marked = null, chosen = 0, zoom = 1, held = null, flat = [];
+    place.className = 'live';
+    said.className = 'note';
+    said.setAttribute('aria-live', 'polite');
+    box.insertBefore(place, box.firstChild);
+    box.classList.add('has-live');
+    var heading = document.createElement('p');
+    heading.className = 'plot-title';
+    heading.textContent = of.title;
+    place.appendChild(heading);
+    var choice = document.createElement('p');
+    of.values.forEach(function (value, index) {
+      var button = document.createElement('button');
+      button.type = 'button';
+      button.textContent = value[0];
+      button.setAttribute('aria-pressed', String(index === 0));
+      button.addEventListener('click', function () {
+        chosen = index;
+        Array.prototype.forEach.call(choice.children, function (other, at) { other.setAttribute('aria-pressed', String(at === index)); });
+        draw();
+      });
+      choice.appendChild(button);
+    });
+    place.appendChild(choice);
+    canvas.tabIndex = 0;
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', of.title + '. Arrow keys turn it, plus and minus zoom; click on a place to see the time.');
+    place.appendChild(canvas);
+    var legend = document.createElement('p');
+    legend.className = 'note legend3';
+    of.ramp.forEach(function (colour, index) {
+      var part = document.createElement('span'), mark = document.createElement('i');
+      mark.style.background = colour;
+      part.appendChild(mark);
+      part.appendChild(document.createTextNode('from ' + rough(of.full * index / of.ramp.length)));
+      legend.appendChild(part);
+    });
+    legend.appendChild(document.createTextNode(of.unit));
+    place.appendChild(legend);
+    place.appendChild(said);
+
+    function seen(at) {
+      var right = -at[1] * Math.cos(turned) + at[0] * Math.sin(turned);
+      var depth = at[0] * Math.cos(turned) + at[1] * Math.sin(turned);
+      return [right, -at[2] * Math.cos(tilted) - depth * Math.sin(tilted)];
+    }
+    var low = [0, 1, 2].map(function (k) { return Math.min.apply(null, of.position_m.map(function (at) { return at[k]; })); });
+    var high = [0, 1, 2].map(function (k) { return Math.max.apply(null, of.position_m.map(function (at) { return at[k]; })); });
+    var middle = [0, 1, 2].map(function (k) { return (low[k] + high[k]) / 2; });
+
+    function draw() {
+      var wide = Math.max(100, place.clientWidth), tall = Math.min(380, Math.max(240, wide * 0.6)), dots = window.devicePixelRatio || 1;
+      canvas.width = wide * dots;
+      canvas.height = tall * dots;
+      canvas.style.height = tall + 'px';
+      var pen = canvas.getContext('2d'), most = [0.05, 0.05];
+      function about(at) { return seen([at[0] - middle[0], at[1] - middle[1], at[2] - middle[2]]); }
+      of.position_m.concat([low, [high[0], low[1], low[2]], [low[0], high[1], low[2]]]).forEach(function (at) {
+        var xy = about(at);
+        most = [Math.max(most[0], Math.abs(xy[0])), Math.max(most[1], Math.abs(xy[1]))];
+      });
+      var scale = zoom * Math.min((wide / 2 - 30) / most[0], (tall / 2 - 20) / most[1]);
+      pen.scale(dots, dots);
+      function put(at) {
+        var xy = about(at);
+        return [wide / 2 + scale * xy[0], tall / 2 + scale * xy[1]];
+      }
+      pen.font = '12px system-ui, sans-serif';
+      pen.fillStyle = pen.strokeStyle = ink();
+      pen.globalAlpha = 0.5;
+      [0, 1, 2].forEach(function (k) {
+        var end = low.slice();
+        end[k] = high[k];
+        var a = put(low), b = put(end);
+        pen.beginPath();
+        pen.moveTo(a[0], a[1]);
+        pen.lineTo(b[0], b[1]);
+        pen.stroke();
+        var words = of.axes[k] + ' ' + (+(high[k] - low[k]).toPrecision(2)) + ' m', room = wide - pen.measureText(words).width - 4;
+        pen.fillText(words, Math.min(Math.max(b[0] + 4, 4), room), Math.min(Math.max(b[1] + (k === 2 ? -4 : 14), 12), tall - 4));
+      });
+      pen.globalAlpha = 1;
+      pen.lineWidth = 2.4;
+      pen.lineCap = 'round';
+      flat = of.position_m.map(put);
+      for (var i = 0; i + 1 < flat.length; i++) {
+        pen.strokeStyle = colourOf(of, of.values[chosen][1][i]);
+        pen.beginPath();
+        pen.moveTo(flat[i][0], flat[i][1]);
+        pen.lineTo(flat[i + 1][0], flat[i + 1][1]);
+        pen.stroke();
+      }
+      if (marked != null) {
+        pen.strokeStyle = ink();
+        pen.beginPath();
+        pen.arc(flat[marked][0], flat[marked][1], 7, 0, 2 * Math.PI);
+        pen.stroke();
+      }
+    }
+    function tell() {
+      said.textContent = marked == null ? 'Drag to turn, click on a place to see its time in all plots.' :
+        'At ' + rough(of.time_s[marked]) + ' s: ' + of.axes.map(function (name, k) { return name + ' ' + rough(of.position_m[marked][k]) + ' m'; }).join(', ') +
+        '; ' + of.values.map(function (value) { return value[0] + ' ' + rough(value[1][marked]); }).join(', ') + ' ' + of.unit + '.';
+    }
+    function nearest(wanted, distance) {
+      var best = null, least = Infinity;
+      wanted.forEach(function (one, index) {
+        var far = distance(one);
+        if (far < least) { least = far; best = index; }
+      });
+      return best;
+    }
+    (seconds[of.cursor] = seconds[of.cursor] || []).push(function (time) {
+      marked = nearest(of.time_s, function (at) { return Math.abs(at - time); });
+      draw();
+      tell();
+    });
+    canvas.addEventListener('pointerdown', function (event) {
+      held = { x: event.clientX, y: event.clientY, far: 0 };
+      canvas.setPointerCapture(event.pointerId);
+    });
+    canvas.addEventListener('pointermove', function (event) {
+      if (!held) return;
+      turned += (event.clientX - held.x) * 0.01;
+      tilted = Math.min(1.57, Math.max(0, tilted + (event.clientY - held.y) * 0.01));
+      held = { x: event.clientX, y: event.clientY, far: held.far + Math.abs(event.clientX - held.x) + Math.abs(event.clientY - held.y) };
+      draw();
+    });
+    canvas.addEventListener('pointerup', function (event) {
+      var was = held, edge = canvas.getBoundingClientRect();
+      held = null;
+      if (!was || was.far > 4) return;
+      var x = event.clientX - edge.left, y = event.clientY - edge.top;
+      var index = nearest(flat, function (at) { return Math.hypot(at[0] - x, at[1] - y); });
+      if (index != null) show(of.cursor, of.time_s[index]);
+    });
+    canvas.addEventListener('keydown', function (event) {
+      if (event.key === 'ArrowLeft') turned -= 0.1;
+      else if (event.key === 'ArrowRight') turned += 0.1;
+      else if (event.key === 'ArrowUp') tilted = Math.min(1.57, tilted + 0.1);
+      else if (event.key === 'ArrowDown') tilted = Math.max(0, tilted - 0.1);
+      else if (event.key === '+') zoom *= 1.25;
+      else if (event.key === '-') zoom /= 1.25;
+      else return;
+      event.preventDefault();
+      draw();
+    });
+    tell();
+    draw();
+    night.addEventListener('change', draw);
+    return draw;
+  }
+
+  function live(box, make) {
+    var again = make(box);
+    if (window.ResizeObserver) new ResizeObserver(function () { window.requestAnimationFrame(again); }).observe(box);
+  }
+  // what is folded has no width yet
+  function start(root) {
+    root.querySelectorAll('.plot:not(.has-live), .path3:not(.has-live)').forEach(function (box) {
+      if (box.clientWidth > 0) live(box, box.classList.contains('plot') ? plot : path);
+    });
+  }
+  document.body.classList.add('live-page');
+  start(document);
+  document.querySelectorAll('details').forEach(function (fold) {
+    fold.addEventListener('toggle', function () { if (fold.open) start(fold); });
+  });
+})();

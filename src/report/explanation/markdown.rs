@@ -1,0 +1,141 @@
+//! A summary in Markdown, to paste into a forum or an issue: no paths, no positions.
+
+use super::answer::answer;
+use super::text::after;
+use crate::diagnose::called;
+use crate::report::number::{percent, significant, spoken, with_error};
+use crate::report::vehicle_drawing::motor_words;
+use crate::study::{ExplainStudy, Predicted, QUANTITIES};
+use std::fmt::Write;
+
+/// The horizon that the answer speaks of, s.
+const HORIZON_S: f64 = 0.5;
+
+/// The summary.
+#[must_use]
+pub fn explanation_markdown(study: &ExplainStudy) -> String {
+    let mut page = format!("**{}**\n", escaped(&answer(study)));
+    named(&mut page, study);
+    better(&mut page, study);
+    body(&mut page, study);
+    for said in &study.notes {
+        let _ = write!(page, "\n> {}\n", escaped(&said.sentence()));
+    }
+    let flights: Vec<String> = study
+        .given
+        .inputs
+        .iter()
+        .map(|input| {
+            let name = input.path.rsplit(['/', '\\']).next().unwrap_or_default();
+            let hash: String = input.sha256.chars().take(12).collect();
+            format!("`{}` (SHA-256 {hash}...)", name.replace('`', "'"))
+        })
+        .collect();
+    let _ = write!(
+        page,
+        "\nVehicle: {}. Flights: {}. Program: mavid {}, `mavid explain --format md`.\n",
+        escaped(&study.given.vehicle.name),
+        flights.join(", "),
+        env!("CARGO_PKG_VERSION")
+    );
+    page
+}
+
+/// Text that Markdown takes as text, on one line.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '<' => out.push_str("&lt;"),
+            '&' => out.push_str("&amp;"),
+            '\\' | '`' | '*' | '_' | '[' | ']' | '|' | '~' | '#' => out.extend(['\\', letter]),
+            _ if letter.is_control() => out.push(' '),
+            _ => out.push(letter),
+        }
+    }
+    out
+}
+
+fn table(page: &mut String, heads: &[&str], rows: &[Vec<String>]) {
+    if rows.is_empty() {
+        return;
+    }
+    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    let heads: Vec<String> = heads.iter().map(|head| (*head).to_owned()).collect();
+    let rules: Vec<String> = heads.iter().map(|_| "---".to_owned()).collect();
+    page.push('\n');
+    page.push_str(&line(&heads));
+    page.push_str(&line(&rules));
+    for row in rows {
+        page.push_str(&line(&row.iter().map(|cell| escaped(cell)).collect::<Vec<_>>()));
+    }
+}
+
+fn named(page: &mut String, study: &ExplainStudy) {
+    let mut rows = Vec::new();
+    for effect in &study.effects {
+        for p in &effect.parameters {
+            let which = study.motor_of(effect).filter(|_| study.motor_parameter(effect) == Some(p.name));
+            let value = which.map_or_else(
+                || with_error(p.value, p.std),
+                |place| motor_words(&study.vehicle().rotors[place], place),
+            );
+            let unit = if which.is_some() { String::new() } else { spoken(p.unit).to_string() };
+            rows.push(vec![called(effect.id).to_owned(), p.name.to_owned(), value, unit]);
+        }
+    }
+    table(page, &["effect", "parameter", "value", "unit"], &rows);
+}
+
+fn better(page: &mut String, study: &ExplainStudy) {
+    let (predicted, on) = match &study.holdout {
+        Some(of) => (Some(of), study.shown_on.heading()),
+        None => (study.identify.as_ref(), "flights explained".to_owned()),
+    };
+    let rows = predicted.map_or_else(Vec::new, rows_of);
+    if !rows.is_empty() {
+        let _ = write!(page, "\nError of a prediction over {HORIZON_S} s ({}):\n", escaped(&on));
+    }
+    table(page, &["", "rigid body", "model found", "better by", "unit"], &rows);
+}
+
+fn rows_of(predicted: &Predicted) -> Vec<Vec<String>> {
+    let mut rows = Vec::new();
+    for of in predicted.open_loop.iter().filter(|of| (of.window_s - HORIZON_S).abs() < 1e-9) {
+        for (compared, (name, unit)) in of.quantities().iter().zip(QUANTITIES) {
+            let Some(compared) = compared else { continue };
+            rows.push(vec![
+                name.to_owned(),
+                significant(compared.before.value, 3),
+                significant(compared.after.value, 3),
+                percent(&compared.improvement_percent),
+                unit.to_owned(),
+            ]);
+        }
+    }
+    rows
+}
+
+fn body(page: &mut String, study: &ExplainStudy) {
+    let rows: Vec<Vec<String>> = study
+        .body()
+        .iter()
+        .map(|of| vec![of.name.to_owned(), significant(of.nominal, 4), after(of), of.unit.to_owned()])
+        .collect();
+    table(page, &["parameter", "vehicle file", "identified", "unit"], &rows);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_of_others_stay_words() {
+        assert_eq!(escaped("a|b `c` <i>\n[x](y) _z_"), "a\\|b \\`c\\` &lt;i> \\[x\\](y) \\_z\\_");
+        let mut page = String::new();
+        table(&mut page, &["h", "i"], &[vec!["1|2".to_owned(), "x".to_owned()]]);
+        assert_eq!(page, "\n| h | i |\n| --- | --- |\n| 1\\|2 | x |\n");
+        table(&mut page, &["h"], &[]);
+        assert_eq!(page.lines().count(), 4);
+    }
+}

@@ -1,0 +1,98 @@
+//! The sections of the report that hold pictures: what shows the name, and where the models miss.
+
+use super::figures;
+use crate::report::chart::inline;
+use crate::report::html::{figure, note, section};
+use crate::report::vehicle_drawing::{MEANT, Mark, motor_words, vehicle_drawing};
+use crate::study::{ExplainStudy, Figures};
+use maud::{Markup, html};
+
+/// Number of flights whose recorded and simulated motion is drawn.
+const DRAWN: usize = 3;
+const RECORDED: &str = "Weighted with the weak form's kernel of 0.4 s. Shaded: the error of the rigid body alone is larger than \
+                        noise.";
+const PORTRAIT: &str = "Dots: recorded, less everything else of the model, mean in bins with 95 % bands of a bootstrap over the \
+                        flight's periods. Line: what this effect does in the model found. Without the effect the dots would lie \
+                        at zero.";
+
+/// The picture that shows the answer, with the vehicle beside it.
+pub(super) fn proof(study: &ExplainStudy, numbers: &Figures) -> Markup {
+    let picture = if let Some(of) = &numbers.portrait {
+        figure(&inline(&figures::portrait(of, study.vehicle())), PORTRAIT)
+    } else if let Some(of) = numbers.followed.as_ref().filter(|_| study.effects.is_empty()) {
+        figure(
+            &inline(&figures::followed(of)),
+            "Mean residual in bins of the state, with 95 % bands of a bootstrap over the flight's periods.",
+        )
+    } else if let Some(of) = numbers.recorded.first() {
+        figure(&inline(&figures::recorded_and_simulated(of, figures::model_after(study))), RECORDED)
+    } else {
+        Markup::default()
+    };
+    let content = html! {
+        div.sides { div.more { (picture) } @if let Some(drawn) = vehicle(study) { div.less { (drawn) } } }
+        p.note.live-only { "Drag over a plot to zoom in, double-click to see all. The cursor shows the values." }
+    };
+    section("What shows it", &content)
+}
+
+/// The vehicle with the motor that a name is about; `None` where there is no such name.
+fn vehicle(study: &ExplainStudy) -> Option<Markup> {
+    let rotors = &study.vehicle().rotors;
+    let meant: Vec<usize> = study.effects.iter().filter_map(|named| study.motor_of(named)).collect();
+    let words: Vec<String> = meant.iter().map(|&place| motor_words(&rotors[place], place)).collect();
+    let label = format!("the vehicle from above: {} is meant", words.join("; "));
+    let mark = |place: usize| {
+        meant.contains(&place).then(|| Mark {
+            colour: MEANT,
+            is_filled: true,
+            words: Some("this one".to_owned()),
+        })
+    };
+    let caption = format!("From above, forward upwards. Filled: {}.", words.join("; "));
+    (!meant.is_empty()).then(|| figure(&vehicle_drawing(rotors, &label, mark, false), &caption))
+}
+
+/// Where and when the models miss.
+pub(super) fn places(study: &ExplainStudy, numbers: &Figures) -> Markup {
+    let after = figures::model_after(study);
+    let shown_above = numbers.portrait.is_none() && (numbers.followed.is_none() || !study.effects.is_empty());
+    let content = html! {
+        @for of in numbers.recorded.iter().take(DRAWN).skip(usize::from(shown_above)) {
+            (figure(&inline(&figures::recorded_and_simulated(of, after)), RECORDED))
+        }
+        @if let Some(of) = &study.path() {
+            (figure(&figures::path(of, after).inline(), ""))
+        }
+        @if let Some(of) = &numbers.heat {
+            (figure(&figures::heat(of).inline(), "Dark: at least five times the residual after."))
+        }
+    };
+    section("Where", &content)
+}
+
+/// The pictures of the method.
+pub(super) fn details(study: &ExplainStudy, numbers: &Figures) -> Markup {
+    let after = figures::model_after(study);
+    let content = html! {
+        @if let Some(of) = &numbers.left {
+            (figure(&inline(&figures::left_along_time(of, after)), "Recorded less simulated."))
+        }
+        @if let Some(of) = numbers.followed.as_ref().filter(|_| !study.effects.is_empty()) {
+            (figure(
+                &inline(&figures::followed(of)),
+                "Mean residual in bins of the state, with 95 % bands of a bootstrap over the flight's periods.",
+            ))
+        }
+        (figure(&figures::axes(&numbers.axes, after).inline(), "Root mean square of each axis."))
+        @if let Some(of) = &numbers.harmonics {
+            (figure(
+                &inline(&figures::harmonics(of)),
+                "With a periodic trajectory, everything that the model lacks is at the harmonics; noise is also \
+                 between them. A ratio of about 1 is noise.",
+            ))
+        }
+        (note("The kernel of the weak form averages over 0.4 s: each point holds a fifth of a second before and after it."))
+    };
+    section("More pictures", &content)
+}

@@ -1,0 +1,95 @@
+//! The vehicle from above, forward upwards, with marks on its motors.
+
+use crate::vehicle::{Rotor, Spin};
+use maud::{Markup, html};
+
+/// Side of the drawing, and half the span of the rotors in it, units of its box.
+const SIDE: f64 = 320.0;
+const SPAN: f64 = 100.0;
+/// Radius of a rotor, of its box.
+const ROTOR: f64 = 34.0;
+/// Colours that hold in light and dark: of what is meant, and of what it may be instead.
+pub(super) const MEANT: &str = "#d55e00";
+pub(super) const RIVAL: &str = "#e69f00";
+
+/// A mark on a motor.
+pub(super) struct Mark {
+    /// of its ring
+    pub(super) colour: &'static str,
+    /// whether its area has the colour, too
+    pub(super) is_filled: bool,
+    /// words below it
+    pub(super) words: Option<String>,
+}
+
+/// The autopilot's number of a motor and its place: `rear left, motor 2`. `place` counts from 0.
+pub(super) fn motor_words(rotor: &Rotor, place: usize) -> String {
+    let (number, name) = (place + 1, rotor.name.replace('_', " "));
+    let says_where = !name.is_empty() && !name.contains(|letter: char| letter.is_ascii_digit());
+    if says_where { format!("{name}, motor {number}") } else { format!("motor {number}") }
+}
+
+/// The drawing; `label` says in words what it shows.
+pub(super) fn vehicle_drawing(
+    rotors: &[Rotor],
+    label: &str,
+    mark: impl Fn(usize) -> Option<Mark>,
+    centre_is_meant: bool,
+) -> Markup {
+    let reach = rotors.iter().map(|rotor| rotor.position_m.xy().norm()).fold(f64::MIN_POSITIVE, f64::max);
+    let middle = SIDE / 2.0;
+    let at = |x: f64, y: f64| (middle - SPAN * y / reach, middle - SPAN * x / reach);
+    html! {
+        svg.vehicle viewBox=(format!("0 0 {SIDE} {SIDE}")) role="img" aria-label=(label) fill="currentColor" {
+            @for (place, rotor) in rotors.iter().enumerate() {
+                @let (x, y) = at(rotor.position_m.x, rotor.position_m.y);
+                @let mark = mark(place);
+                @let colour = mark.as_ref().map_or("currentColor", |mark| mark.colour);
+                @let is_filled = mark.as_ref().is_some_and(|mark| mark.is_filled);
+                line x1=(middle) y1=(middle) x2=(round(x)) y2=(round(y)) stroke="currentColor" stroke-width="5" stroke-opacity="0.35" {}
+                circle cx=(round(x)) cy=(round(y)) r=(ROTOR) fill=(if is_filled { colour } else { "none" })
+                    fill-opacity="0.35" stroke=(colour) stroke-width=(if mark.is_some() { "4" } else { "2" }) {}
+                text x=(round(x)) y=(round(y - 2.0)) text-anchor="middle" font-weight="bold" { (place + 1) " " (sense(rotor.spin)) }
+                text x=(round(x)) y=(round(y + 12.0)) text-anchor="middle" { (rotor.name.replace('_', " ")) }
+                @if let Some(words) = mark.and_then(|mark| mark.words) {
+                    text x=(round(x)) y=(round(y + ROTOR + 14.0)) text-anchor="middle" font-weight="bold" { (words) }
+                }
+            }
+            circle cx=(middle) cy=(middle) r="6" fill=(if centre_is_meant { MEANT } else { "currentColor" }) {}
+            path d=(format!("M{middle} {} l-7 14 h14 z", middle - 62.0)) fill="currentColor" fill-opacity="0.6" {}
+            text x=(middle) y=(middle - 68.0) text-anchor="middle" { "forward" }
+        }
+    }
+}
+
+fn sense(spin: Spin) -> &'static str {
+    if spin == Spin::Cw { "cw" } else { "ccw" }
+}
+
+/// A coordinate without digits that nobody sees.
+fn round(value: f64) -> f64 {
+    (10.0 * value).round() / 10.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn a_motor_is_told_by_the_number_of_the_autopilot_and_its_place() {
+        let rotor = |name: &str| Rotor { name: name.to_owned(), position_m: Vector3::x(), spin: Spin::Cw };
+        assert_eq!(motor_words(&rotor("rear_left"), 1), "rear left, motor 2");
+        assert_eq!(motor_words(&rotor("rotor_2"), 1), "motor 2");
+        let mark = |place| {
+            (place == 0).then_some(Mark { colour: MEANT, is_filled: true, words: Some("80 %".into()) })
+        };
+        let drawn = vehicle_drawing(&[rotor("a"), rotor("b")], "all", mark, false).into_string();
+        assert!(
+            drawn.contains("80 %")
+                && drawn.contains("1 cw")
+                && drawn.contains("2 cw")
+                && !drawn.contains("0 cw")
+        );
+    }
+}
