@@ -9,6 +9,7 @@ mod model;
 mod onboard;
 mod plan;
 mod recording;
+mod run;
 mod verb;
 mod verbosity;
 
@@ -20,5 +21,6 @@ pub use model::{ExportArgs, ExportFormat, InitArgs, SimulateArgs, VehicleArgs, V
 pub use onboard::{LogArgs, LogFetchArgs, LogListArgs, LogPrepareArgs, LogVerb, VehicleLinkArgs};
 pub use plan::{CriterionName, PlanArgs};
 pub use recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, ValidateArgs};
+pub use run::RunArgs;
 pub use verb::{Cli, Verb};
 pub use verbosity::Verbosity;

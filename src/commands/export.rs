@@ -18,6 +18,18 @@ struct Document {
 
 /// Runs the verb.
 pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
+    let Exported { text, left_out } = make(args)?;
+    if json {
+        let file = args.out.as_ref().map(|path| text::path(&path));
+        output::json(&Document { schema: 1, file, text, left_out })?;
+    } else if args.out.is_none() {
+        output::text(text.trim_end())?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// Exports, and writes the file that is asked for.
+pub fn make(args: &ExportArgs) -> Result<Exported, CommandError> {
     let (loaded, origin) = args.draft.given(args.model.as_ref()).alone()?;
     let refuse =
         |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&origin)));
@@ -30,17 +42,10 @@ pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
         ExportFormat::Mjcf => Format::Mjcf,
         ExportFormat::Rotorpy => Format::Rotorpy,
     };
-    let Exported { text, left_out } =
-        export(&loaded.vehicle, &active, format).map_err(|error| refuse(&error))?;
-    left_out.iter().for_each(|note| output::message(&format!("note: {note}")));
+    let exported = export(&loaded.vehicle, &active, format).map_err(|error| refuse(&error))?;
+    exported.left_out.iter().for_each(|note| output::message(&format!("note: {note}")));
     if let Some(path) = &args.out {
-        output::file(path, &text)?;
+        output::file(path, &exported.text)?;
     }
-    if json {
-        let file = args.out.as_ref().map(|path| text::path(&path));
-        output::json(&Document { schema: 1, file, text, left_out })?;
-    } else if args.out.is_none() {
-        output::text(text.trim_end())?;
-    }
-    Ok(Outcome::Done)
+    Ok(exported)
 }

@@ -25,6 +25,7 @@ mod progress;
 mod prove;
 mod record;
 mod replay;
+mod run;
 mod simulate;
 mod sitl;
 mod standard_error;

@@ -8,10 +8,12 @@ mod hold_out;
 mod html;
 mod json;
 mod model;
+mod prospect;
 mod text;
 
 pub use answer::answer as explanation_answer;
 pub use html::explanation_html;
 pub use json::ExplanationDocument;
 pub use model::explained_model;
+pub use prospect::next_flight_words;
 pub use text::explanation_text;

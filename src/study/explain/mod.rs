@@ -10,6 +10,7 @@ mod left_out;
 mod located;
 mod next_flight;
 mod predicted;
+mod prospect;
 mod readers;
 mod request;
 mod result;

@@ -1,0 +1,64 @@
+//! How far a flight is, as one bar.
+
+use std::sync::mpsc::Receiver;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use mavid::fly::view::ViewModel;
+
+use crate::commands::standard_error::StandardError;
+
+/// Hundredths of the whole at which the stages end.
+const READY: u64 = 20;
+const FLOWN: u64 = 85;
+const LANDED: u64 = 99;
+/// Of the bar's own picture.
+const TICK: Duration = Duration::from_millis(100);
+
+/// The display.
+#[derive(Debug, Clone)]
+pub struct Progress(ProgressBar);
+
+impl Progress {
+    /// An empty bar.
+    pub fn new(stderr: &StandardError) -> Self {
+        let bar = stderr.bar(ProgressBar::new(100));
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {bar:30} {elapsed:>4} {msg}") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(TICK);
+        Self(bar)
+    }
+
+    /// Follows a flight until it is over.
+    pub fn follow(&self, pictures: &Receiver<ViewModel>) {
+        for model in pictures {
+            self.0.set_position(hundredths(&model).max(self.0.position()));
+            self.0.set_message(words(&model));
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn end(&self) {
+        self.0.finish_and_clear();
+    }
+}
+
+fn words(model: &ViewModel) -> String {
+    let along = model.progress_s.map(|(done_s, all_s)| format!(", {done_s:.0} of {all_s:.0} s"));
+    let mode = if model.mode.is_empty() { String::new() } else { format!(", {}", model.mode) };
+    format!("{}{mode}{}", model.state, along.unwrap_or_default())
+}
+
+fn hundredths(model: &ViewModel) -> u64 {
+    let seconds = Duration::try_from_secs_f64(model.elapsed_s).map_or(0, |elapsed| elapsed.as_secs());
+    match model.progress_s {
+        Some((done_s, all_s)) if all_s > 0.0 => {
+            let share = (done_s / all_s).clamp(0.0, 1.0);
+            let steps = u64::try_from(mavid::units::whole(share * 1000.0)).unwrap_or(0);
+            READY + (FLOWN - READY) * steps / 1000
+        }
+        _ if model.state == "land" => LANDED.min(FLOWN + seconds % (LANDED - FLOWN)),
+        _ => READY.min(seconds),
+    }
+}
