@@ -15,7 +15,7 @@ mod verbosity;
 
 pub use compare::CompareArgs;
 pub use flight::{CheckName, FlyArgs, OriginName};
-pub use given::{DraftArgs, ShapeArgs};
+pub use given::ShapeArgs;
 pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 pub use model::{ExportArgs, ExportFormat, InitArgs, SimulateArgs, VehicleArgs, VehicleVerb};
 pub use onboard::{LogArgs, LogFetchArgs, LogListArgs, LogPrepareArgs, LogVerb, VehicleLinkArgs};

@@ -73,12 +73,7 @@ impl Verb {
     pub fn is_live(&self) -> bool {
         matches!(
             self,
-            Self::Run(_)
-                | Self::Demo(_)
-                | Self::Fly(_)
-                | Self::Sitl(_)
-                | Self::Record(_)
-                | Self::Replay(_)
+            Self::Run(_) | Self::Demo(_) | Self::Fly(_) | Self::Sitl(_) | Self::Record(_) | Self::Replay(_)
         )
     }
 }

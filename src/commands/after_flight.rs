@@ -47,7 +47,8 @@ impl Analysis {
         system: Option<SystemId>,
         tell: &mut impl FnMut(Word),
     ) -> Result<Option<Self>, CommandError> {
-        let parameters = [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(|name| folder.join(RIGID_BODY).join(name));
+        let parameters =
+            [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(|name| folder.join(RIGID_BODY).join(name));
         let explanation = explain::WRITTEN.map(|name| folder.join(name));
         // a model that was flown by is what this flight's own are compared with
         for path in parameters.iter().chain(&explanation).filter(|path| !output::is_same(path, vehicle)) {

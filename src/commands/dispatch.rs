@@ -3,14 +3,14 @@
 use super::standard_error::StandardError;
 use super::{
     CommandError, Outcome, compare, demo, explain, export, fly, identify, inspect, log, plan, prove, record,
-    replay, run, simulate, sitl, validate, vehicle,
+    replay, simulate, sitl, validate, vehicle,
 };
 use crate::cli::{Cli, Verb};
 
 /// Runs the verb.
 pub fn run(cli: &Cli, stderr: &StandardError) -> Result<Outcome, CommandError> {
     match &cli.verb {
-        Verb::Run(args) => run::run(cli.json, stderr, args),
+        Verb::Run(args) => super::run::run(cli.json, stderr, args),
         Verb::Demo(args) => demo::run(cli.json, stderr, args),
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
         Verb::Plan(args) => plan::run(cli.json, stderr, args),

@@ -10,7 +10,6 @@ mod verb;
 mod watch;
 mod words;
 
-pub use document::Document;
 pub use flown::{Flown, Manner, flown};
 pub use ride::is_attended;
 pub use verb::{outcome, run};

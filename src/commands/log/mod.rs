@@ -14,4 +14,4 @@ pub use before::{before_flight, link_of, put_back};
 pub use flown::{Fetching, after_flight};
 pub use link::{Answered, parameters_of_vehicle};
 pub use verb::run;
-pub use wanted::{Wanted, wanted};
+pub use wanted::wanted;

@@ -58,10 +58,8 @@ pub fn explained(context: &Context<'_>, flights: &[Recorded]) -> Result<Explaine
 /// # Errors
 /// The flight says nothing.
 pub fn alone(context: &Context<'_>, log: &Path, out: &Path) -> Result<ExplainStudy, CommandError> {
-    let step = Step::of(&["explain"])
-        .word(log)
-        .option("--vehicle", context.folder.vehicle())
-        .option("--out", out);
+    let step =
+        Step::of(&["explain"]).word(log).option("--vehicle", context.folder.vehicle()).option("--out", out);
     made(context, &step)
 }
 
@@ -81,6 +79,7 @@ fn made(context: &Context<'_>, step: &Step) -> Result<ExplainStudy, CommandError
 /// The answer, and what a further flight would bring, in lines of the terminal.
 pub fn answer(study: &ExplainStudy) -> String {
     let sentences = [Some(explanation_answer(study)), next_flight_words(study)];
-    let lines = sentences.into_iter().flatten().map(|sentence| text::wrapped(&sentence, columns()).join("\n"));
+    let lines =
+        sentences.into_iter().flatten().map(|sentence| text::wrapped(&sentence, columns()).join("\n"));
     lines.collect::<Vec<_>>().join("\n")
 }

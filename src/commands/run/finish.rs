@@ -7,7 +7,7 @@ use mavid::text;
 
 use super::context::Context;
 use super::step::Step;
-use crate::commands::{CommandError, export, identify, output};
+use crate::commands::{export, identify, output};
 
 /// Folder of the appendix: the rigid body alone, without effects.
 const RIGID_BODY: &str = "rigid_body";

@@ -99,9 +99,8 @@ pub fn fly(context: &Context<'_>, target: &Target, step: &Step) -> Result<Flight
     let watched = bar.clone();
     let manner = Manner {
         own: target.embedded.as_ref().map(|embedded| embedded.nonce),
-        watches: watched.map(|bar| -> Box<dyn FnOnce(&_) + Send> {
-            Box::new(move |pictures| bar.follow(pictures))
-        }),
+        watches: watched
+            .map(|bar| -> Box<dyn FnOnce(&_) + Send> { Box::new(move |pictures| bar.follow(pictures)) }),
     };
     let flown = fly::flown((context.stderr, context.work), &args, manner);
     bar.iter().for_each(Progress::end);

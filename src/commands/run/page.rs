@@ -73,10 +73,8 @@ impl<'a> Document<'a> {
 /// The lines on where everything is.
 pub fn places(context: &Context<'_>, made: &Made<'_>) -> String {
     let place = |name: &str| text::path(&context.folder.of(name));
-    let mut lines = vec![
-        format!("report      {}", place("report.html")),
-        format!("model       {}", place("model.toml")),
-    ];
+    let mut lines =
+        vec![format!("report      {}", place("report.html")), format!("model       {}", place("model.toml"))];
     if !made.exports.is_empty() {
         lines.push(format!("simulators  {} ({} files)", place("export"), made.exports.len()));
     }

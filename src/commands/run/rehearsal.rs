@@ -56,7 +56,10 @@ pub fn rehearse(context: &Context<'_>, trajectory: &Path) -> Result<(), CommandE
         )));
     }
     let study = explained::alone(context, &flight.recorded.radio, &out)?;
-    let would = format!("of a vehicle that is as its file says, the flight would say: {}", explanation_answer(&study));
+    let would = format!(
+        "of a vehicle that is as its file says, the flight would say: {}",
+        explanation_answer(&study)
+    );
     text::wrapped(&would, explained::columns()).iter().for_each(|line| output::message(line));
     Ok(())
 }
@@ -75,7 +78,8 @@ pub fn prepare(context: &Context<'_>, target: &mut Target, mass_kg: f64) -> Resu
 /// A folder for the rehearsal: an earlier one stays.
 fn free(context: &Context<'_>) -> Result<std::path::PathBuf, CommandError> {
     let names = (2_u32..).map(|number| format!("rehearsal{number}"));
-    let mut folders = std::iter::once("rehearsal".to_owned()).chain(names).map(|name| context.folder.of(&name));
+    let mut folders =
+        std::iter::once("rehearsal".to_owned()).chain(names).map(|name| context.folder.of(&name));
     let folder = folders.find(|folder| leftover::is_free(folder, mavid::wire::SystemId(255)));
     let folder = folder.unwrap_or_else(|| context.folder.of("rehearsal"));
     output::folder(&folder)?;

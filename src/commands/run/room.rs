@@ -46,8 +46,7 @@ fn typed(text: &str) -> Result<[f64; 3], String> {
 /// The room is too small: what it needs.
 pub fn limits_in([x_m, y_m, z_m]: [f64; 3], vehicle: &Vehicle) -> Result<Limits, String> {
     let (reach, floor_m) = (Reach::of(vehicle), floor_m(vehicle));
-    let (side_m, height_m) =
-        (2.0 * (reach.side_m + LEAST_SIDE_M), floor_m + LEAST_HEIGHT_M + reach.up_m);
+    let (side_m, height_m) = (2.0 * (reach.side_m + LEAST_SIDE_M), floor_m + LEAST_HEIGHT_M + reach.up_m);
     if x_m < side_m || y_m < side_m || z_m < height_m {
         return Err(format!(
             "a room of at least {side_m:.1},{side_m:.1},{height_m:.1} m for this vehicle (its rotors reach {:.2} m to each \
@@ -109,12 +108,14 @@ fn asked(ask: Ask, vehicle: &Vehicle, is_simulated: bool) -> Result<[f64; 3], Co
         "Free room round the vehicle, which stands in its middle: length, width, height in m? [{x},{y},{z}]"
     );
     let fits = |text: &str| typed(text).and_then(|sides| limits_in(sides, vehicle).map(|_| sides));
-    let alone = || match is_simulated {
+    let alone = || {
+        match is_simulated {
         true => Ok(None),
         false => Err(CommandError::Input(
             "--room: expected the free room round the vehicle as X,Y,Z in m, got none: with --yes nobody confirms one"
                 .to_owned(),
         )),
+    }
     };
     Ok(ask.value(&question, fits, alone)?.unwrap_or(USUAL_M))
 }

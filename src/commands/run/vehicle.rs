@@ -101,11 +101,7 @@ fn drafted(context: &Context<'_>, target: &mut Target, path: &Path) -> Result<()
 }
 
 /// The parameters of the vehicle, which are written into the folder. From now on it is the vehicle of the run.
-pub fn asked(
-    context: &Context<'_>,
-    target: &mut Target,
-    given: &Given,
-) -> Result<Answered, CommandError> {
+pub fn asked(context: &Context<'_>, target: &mut Target, given: &Given) -> Result<Answered, CommandError> {
     let needed = |stack: &'static Stack, known: &BTreeMap<String, f64>| -> BTreeSet<String> {
         let of_flight = wanted(stack.autopilot, ROTORS).into_iter().flat_map(|wanted| wanted.names);
         let rehearsed = context.args.rehearse.then_some(of_flight).into_iter().flatten();
@@ -120,11 +116,8 @@ pub fn asked(
     let name = found.autopilot.stack().map_or("an unknown autopilot", |stack| stack.name);
     output::message(&format!("found system {}, {name}, at {}", found.system, target.connect));
     target.system = Some(found.system);
-    let all = Parameters {
-        autopilot: found.autopilot,
-        values: found.parameters.clone(),
-        ..Parameters::default()
-    };
+    let all =
+        Parameters { autopilot: found.autopilot, values: found.parameters.clone(), ..Parameters::default() };
     let text = all.to_toml().map_err(|error| CommandError::Failure(error.to_string()))?;
     output::file(&context.folder.parameters(), &text)?;
     Ok(found)
@@ -139,7 +132,8 @@ pub fn autopilot(context: &Context<'_>) -> Option<Autopilot> {
 fn mass(context: &Context<'_>) -> Result<f64, CommandError> {
     let missing = || {
         CommandError::Input(
-            "--mass: expected the mass with battery and payload in kg, got none: weigh the vehicle".to_owned(),
+            "--mass: expected the mass with battery and payload in kg, got none: weigh the vehicle"
+                .to_owned(),
         )
     };
     match context.args.mass {

@@ -127,7 +127,8 @@ fn flown(context: &Context<'_>) -> Result<Flown, CommandError> {
         context.stage(if flights.len() == 1 { "Explanation" } else { "Explanation of all flights together" });
         let study = &done.insert(explained(context, &flights)?).study;
         let goes_on = record.as_ref().is_none_or(|record: &Record| record.outcome.is_whole());
-        let Some(target) = target.as_ref().filter(|_| goes_on && flights.len() < context.flights_max()) else {
+        let Some(target) = target.as_ref().filter(|_| goes_on && flights.len() < context.flights_max())
+        else {
             break;
         };
         if study.is_certain() || !matches!(&study.next, Some(Ok(_))) || !wanted(context, study)? {
