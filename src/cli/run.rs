@@ -52,6 +52,9 @@ pub struct RunArgs {
     /// before each flight, set what the autopilot logs so that an identification can use it; it is put back after the flight
     #[arg(long)]
     pub set_logging: bool,
+    /// distance to the reference at which a flight is aborted, m [default: 1]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub tracking_max: Option<f64>,
     /// the vehicle's MAVLink system id; without it the only vehicle on the link
     #[arg(long, value_name = "ID", value_parser = clap::value_parser!(u32).range(1..=255))]
     pub system_id: Option<u32>,

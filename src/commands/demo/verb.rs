@@ -62,6 +62,7 @@ fn show(out: (bool, &StandardError), args: &DemoArgs, work: &Work) -> Result<Out
         arm: false,
         rehearse: false,
         set_logging: false,
+        tracking_max: None,
         system_id: None,
         plain: args.plain,
     };

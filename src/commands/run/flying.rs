@@ -78,6 +78,7 @@ pub fn step_of(
         .option("--trajectory", trajectory)
         .option("--origin", "here")
         .option("--out", out)
+        .maybe("--tracking-max", args.tracking_max.map(|most_m| most_m.to_string()))
         .flag("--set-logging", set_logging)
         .flag("--no-fetch-log", context.recipe.is_demo)
         .word("--record-only")

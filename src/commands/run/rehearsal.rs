@@ -2,8 +2,12 @@
 
 use std::path::Path;
 
+use mavid::config::{read_limits, read_trajectory};
+use mavid::fly::{Around, Course};
+use mavid::plan::{Extremes, Reach};
 use mavid::report::explanation_answer;
 use mavid::text;
+use mavid::vehicle::Vehicle;
 
 use super::context::Context;
 use super::embedded::Embedded;
@@ -18,7 +22,7 @@ use crate::commands::{CommandError, leftover, output};
 ///
 /// # Errors
 /// The twin cannot fly it: neither could the vehicle.
-pub fn rehearse(context: &Context<'_>, trajectory: &Path) -> Result<(), CommandError> {
+pub fn rehearse(context: &Context<'_>, vehicle: &Vehicle, trajectory: &Path) -> Result<(), CommandError> {
     let folder = &context.folder;
     let stack = autopilot(context).and_then(mavid::autopilot::Autopilot::stack);
     let stack = stack.ok_or_else(|| {
@@ -45,10 +49,15 @@ pub fn rehearse(context: &Context<'_>, trajectory: &Path) -> Result<(), CommandE
     })?;
     let flown = &flight.record.outcome.flown;
     output::message(&format!(
-        "rehearsed: {} periods; at most {:.2} m off the trajectory (the flight is aborted at 1 m), {:.1} degrees of tilt where \
+        "rehearsed: {} periods; at most {:.2} m off the trajectory (the flight is aborted at {} m), {:.1} degrees of tilt where \
          {:.1} were planned",
-        flown.periods, flown.tracking_max_m, flown.tilt_max_deg, flown.tilt_planned_deg
+        flown.periods,
+        flown.tracking_max_m,
+        context.args.tracking_max.unwrap_or(1.0),
+        flown.tilt_max_deg,
+        flown.tilt_planned_deg
     ));
+    output::message(&reserve(context, vehicle, trajectory, flown.tracking_max_m)?);
     if !flight.record.outcome.is_whole() {
         let cause = flight.record.outcome.cause.as_ref().map_or_else(String::new, ToString::to_string);
         return Err(CommandError::Failure(format!(
@@ -62,6 +71,39 @@ pub fn rehearse(context: &Context<'_>, trajectory: &Path) -> Result<(), CommandE
     );
     text::wrapped(&would, explained::columns()).iter().for_each(|line| output::message(line));
     Ok(())
+}
+
+/// What is left of the room when the vehicle was so far off its trajectory: to the next wall, and to ceiling and floor, m.
+fn reserve(
+    context: &Context<'_>,
+    vehicle: &Vehicle,
+    trajectory: &Path,
+    off_m: f64,
+) -> Result<String, CommandError> {
+    let stored = read_trajectory(trajectory)?;
+    let limits = read_limits(&context.folder.limits())?;
+    let around = stored.transitions.map(|stored| Around {
+        takeoff: stored.takeoff,
+        landing: stored.landing,
+        to_start_s: stored.to_start_s,
+        to_landing_s: stored.to_landing_s,
+    });
+    let course = Course::new(&stored.series, stored.repeats, around.as_ref(), &limits, vehicle);
+    let course = course.map_err(|error| CommandError::Failure(error.to_string()))?;
+    let (extremes, reach) = (Extremes::of(course.path(), vehicle), Reach::of(vehicle));
+    let side = |wall: Option<f64>, axis: usize| {
+        wall.map(|wall_m| wall_m - extremes.high_m[axis].max(-extremes.low_m[axis]) - reach.side_m - off_m)
+    };
+    let wall_m = [side(limits.x_max_m, 0), side(limits.y_max_m, 1)].into_iter().flatten();
+    let above_m = limits.z_max_m.map(|ceiling_m| ceiling_m - extremes.high_m[2] - reach.up_m - off_m);
+    Ok(format!(
+        "so far off, its rotors have {:.2} m left to a wall and {:.2} m to the ceiling, and it is {:.2} m above the ground at \
+         least; from takeoff to landing it takes {:.0} s",
+        wall_m.fold(f64::INFINITY, f64::min),
+        above_m.unwrap_or(f64::INFINITY),
+        extremes.low_m[2] - off_m,
+        course.path().duration_s()
+    ))
 }
 
 /// Asks the vehicle for the parameters that its twin flies by, unless it was asked for them before.

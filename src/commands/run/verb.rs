@@ -119,7 +119,7 @@ fn flown(context: &Context<'_>) -> Result<Flown, CommandError> {
         if context.args.rehearse {
             context.stage("Rehearsal on the embedded twin");
             rehearsal::prepare(context, target, vehicle.body.mass_kg)?;
-            rehearsal::rehearse(context, &trajectory)?;
+            rehearsal::rehearse(context, &vehicle, &trajectory)?;
         }
         record = Some(fly_one(context, target, (&trajectory, &mut logging), &mut flights)?);
     }
