@@ -40,12 +40,18 @@ fn what_cannot_be_is_told_before_anybody_is_spoken_to() {
     let vehicle = format!("{}/configs/x500.toml", env!("CARGO_MANIFEST_DIR"));
     for (arguments, expected) in [
         // nobody can be asked
-        (vec![nobody[0], nobody[1], "--mass", "2"], "expected a terminal at which questions can be answered, or --yes"),
+        (
+            vec![nobody[0], nobody[1], "--mass", "2"],
+            "expected a terminal at which questions can be answered, or --yes",
+        ),
         (vec!["--mass", "2", "--yes"], "--connect <ADDRESS>"),
         (vec![nobody[0], nobody[1], "--sitl", "--yes"], "cannot be used with"),
         (vec![nobody[0], nobody[1], "--arm"], "--yes"),
         (vec![nobody[0], nobody[1], "--autopilot", "px4", "--yes"], "--sitl"),
-        (vec![nobody[0], nobody[1], "--yes"], "--mass: expected the mass with battery and payload in kg, got none"),
+        (
+            vec![nobody[0], nobody[1], "--yes"],
+            "--mass: expected the mass with battery and payload in kg, got none",
+        ),
         (vec![nobody[0], nobody[1], "--yes", "--room", "4,4"], "--room: expected length, width and height"),
         (vec!["--connect", "nowhere", "--mass", "2", "--yes"], "udpin:HOST:PORT"),
         (vec!["--sitl", "--yes", "--effects", "nowhere.toml"], "nowhere.toml"),
@@ -85,7 +91,8 @@ fn a_doubt_ends_a_run_without_a_person_and_says_what_to_do() {
 fn a_real_room_is_never_assumed() {
     let out = folder("no_room");
     std::fs::create_dir_all(&out).unwrap();
-    std::fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml"), out.join("vehicle.toml")).unwrap();
+    std::fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml"), out.join("vehicle.toml"))
+        .unwrap();
     let output = run(&out, &["--connect", "udpin:127.0.0.1:0", "--yes"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("--room: expected the free room"), "{}", stderr(&output));

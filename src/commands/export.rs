@@ -19,6 +19,7 @@ struct Document {
 /// Runs the verb.
 pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
     let Exported { text, left_out } = make(args)?;
+    left_out.iter().for_each(|note| output::message(&format!("note: {note}")));
     if json {
         let file = args.out.as_ref().map(|path| text::path(&path));
         output::json(&Document { schema: 1, file, text, left_out })?;
@@ -43,7 +44,6 @@ pub fn make(args: &ExportArgs) -> Result<Exported, CommandError> {
         ExportFormat::Rotorpy => Format::Rotorpy,
     };
     let exported = export(&loaded.vehicle, &active, format).map_err(|error| refuse(&error))?;
-    exported.left_out.iter().for_each(|note| output::message(&format!("note: {note}")));
     if let Some(path) = &args.out {
         output::file(path, &exported.text)?;
     }

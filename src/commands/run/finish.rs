@@ -28,6 +28,7 @@ pub fn rigid_body(context: &Context<'_>, logs: &[PathBuf]) {
     let folder = context.folder.of(RIGID_BODY);
     let step = logs.iter().fold(Step::of(&["identify"]), Step::word);
     let step = step.option("--vehicle", context.folder.vehicle()).option("--out", folder.join("model.toml"));
+    let step = step.option("--report", folder.join("report.html"));
     let make = || {
         output::folder(&folder)?;
         context.tell(&step);
@@ -56,6 +57,11 @@ pub fn exports(context: &Context<'_>) -> Vec<String> {
             Ok(()) => files.push(text::path(&file)),
             Err(error) => output::warning(&format!("not exported to {format}: {error}")),
         }
+    }
+    if !files.is_empty() {
+        output::message(
+            "what a simulator cannot hold of the model, its command says where it is given alone",
+        );
     }
     files
 }

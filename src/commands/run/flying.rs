@@ -95,8 +95,9 @@ pub fn step_of(
 pub fn fly(context: &Context<'_>, target: &Target, step: &Step) -> Result<Flight, CommandError> {
     context.tell(step);
     let args = step.fly()?;
-    let drawn = args.yes && !args.plain && context.stderr.can_draw();
-    let bar = drawn.then(|| Progress::new(context.stderr));
+    // whoever watches a vehicle of the program has nothing to decide
+    let brief = args.yes && target.embedded.is_some();
+    let bar = brief.then(|| Progress::new(context.stderr, !args.plain && context.stderr.can_draw()));
     let watched = bar.clone();
     let manner = Manner {
         own: target.embedded.as_ref().map(|embedded| embedded.nonce),

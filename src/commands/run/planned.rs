@@ -15,6 +15,9 @@ use crate::commands::{CommandError, output, plan};
 /// The demo's flight is short.
 const SHORT: [&str; 6] = ["--period", "6", "--repeats", "4", "--starts", "8"];
 
+/// Products of inertia are near zero: their relative errors say nothing.
+const PRODUCTS: [&str; 3] = ["ixy", "ixz", "iyz"];
+
 /// The trajectory of the first flight: the one that is there, or a new one.
 ///
 /// # Errors
@@ -29,9 +32,11 @@ pub fn first(context: &Context<'_>, vehicle: &Vehicle) -> Result<PathBuf, Comman
     let step = if context.recipe.is_demo { SHORT.iter().fold(step, Step::word) } else { step };
     let study = made(context, step.option("--out", &path), &path)?;
     let flight_s = study.series.period_s * f64::from(study.repeats);
+    let shown = |(name, _): &&(&str, f64)| !PRODUCTS.contains(name);
+    let one = |(name, relative): &(&str, f64)| format!("{name} {:.2} %", 100.0 * relative);
     let errors = study.standard_errors().map_or_else(String::new, |errors| {
-        let one = |(name, relative): &(&str, f64)| format!("{name} {:.1} %", 100.0 * relative);
-        format!("; expected standard errors: {}", errors.iter().map(one).collect::<Vec<_>>().join(", "))
+        let all: Vec<String> = errors.iter().filter(shown).map(one).collect();
+        format!("; expected standard errors: {}", all.join(", "))
     });
     output::message(&format!("{flight_s:.0} s of trajectory inside the room{errors}"));
     Ok(path)

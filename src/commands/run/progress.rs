@@ -1,4 +1,4 @@
-//! How far a flight is, as one bar.
+//! How far a flight is: one bar, or lines where nothing can be drawn.
 
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
@@ -6,6 +6,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use mavid::fly::view::ViewModel;
 
+use crate::commands::output;
 use crate::commands::standard_error::StandardError;
 
 /// Hundredths of the whole at which the stages end.
@@ -17,30 +18,39 @@ const TICK: Duration = Duration::from_millis(100);
 
 /// The display.
 #[derive(Debug, Clone)]
-pub struct Progress(ProgressBar);
+pub struct Progress(Option<ProgressBar>);
 
 impl Progress {
-    /// An empty bar.
-    pub fn new(stderr: &StandardError) -> Self {
-        let bar = stderr.bar(ProgressBar::new(100));
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {bar:30} {elapsed:>4} {msg}") {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(TICK);
-        Self(bar)
+    /// An empty bar, or a line for each phase.
+    pub fn new(stderr: &StandardError, drawn: bool) -> Self {
+        Self(drawn.then(|| {
+            let bar = stderr.bar(ProgressBar::new(100));
+            if let Ok(style) = ProgressStyle::with_template("{spinner} {bar:30} {elapsed:>4} {msg}") {
+                bar.set_style(style);
+            }
+            bar.enable_steady_tick(TICK);
+            bar
+        }))
     }
 
     /// Follows a flight until it is over.
     pub fn follow(&self, pictures: &Receiver<ViewModel>) {
+        let mut last = String::new();
         for model in pictures {
-            self.0.set_position(hundredths(&model).max(self.0.position()));
-            self.0.set_message(words(&model));
+            let text = words(&model);
+            if let Some(bar) = &self.0 {
+                bar.set_position(hundredths(&model).max(bar.position()));
+                bar.set_message(text);
+            } else if model.state != last {
+                output::message(&format!("[{:5.1} s] {text}", model.elapsed_s));
+                last = model.state;
+            }
         }
     }
 
     /// Takes the bar away.
     pub fn end(&self) {
-        self.0.finish_and_clear();
+        self.0.iter().for_each(ProgressBar::finish_and_clear);
     }
 }
 
