@@ -83,7 +83,7 @@ fn a_doubt_ends_a_run_without_a_person_and_says_what_to_do() {
     assert_eq!(light.status.code(), Some(2), "{}", stderr(&light));
     let said = stderr(&light);
     assert!(said.contains("the vehicle is doubtful") && said.contains("State mass and size anew"), "{said}");
-    assert!(said.contains("$ mavid vehicle init --from udpout:127.0.0.1:"), "{said}");
+    assert!(said.contains("$ mavid vehicle init --from tcpout:127.0.0.1:"), "{said}");
     assert!(!out.join("vehicle.toml").exists() && out.join("vehicle.toml.doubtful").exists());
 }
 

@@ -1,4 +1,4 @@
-//! The embedded vehicle of a run: on a thread and a runtime of its own, reached by a UDP socket and by nothing else.
+//! The embedded vehicle of a run: on a thread and a runtime of its own, reached by a socket and by nothing else.
 
 use std::sync::mpsc::{Sender, channel};
 use std::thread::{self, JoinHandle};
@@ -13,7 +13,7 @@ use crate::cli::SitlArgs;
 use crate::commands::{CommandError, network, sitl};
 
 /// Any port.
-const ANY: &str = "udpin:127.0.0.1:0";
+const ANY: &str = "tcpin:127.0.0.1:0";
 
 /// The vehicle while it runs.
 #[derive(Debug)]
@@ -47,7 +47,7 @@ impl Embedded {
 
     /// The address by which it is reached.
     pub fn address(&self) -> String {
-        format!("udpout:127.0.0.1:{}", self.port)
+        format!("tcpout:127.0.0.1:{}", self.port)
     }
 
     /// Ends it.

@@ -104,9 +104,7 @@ pub fn settle(
 
 fn asked(ask: Ask, vehicle: &Vehicle, is_simulated: bool) -> Result<[f64; 3], CommandError> {
     let [x, y, z] = USUAL_M;
-    let question = format!(
-        "Free room round the vehicle, which stands in its middle: length, width, height in m? [{x},{y},{z}]"
-    );
+    let question = format!("Free room round the vehicle: length, width, height in m? [{x},{y},{z}]");
     let fits = |text: &str| typed(text).and_then(|sides| limits_in(sides, vehicle).map(|_| sides));
     let alone = || {
         match is_simulated {
