@@ -47,7 +47,7 @@ fn what_cannot_be_is_told_before_anybody_is_spoken_to() {
         (vec!["--mass", "2", "--yes"], "--connect <ADDRESS>"),
         (vec![nobody[0], nobody[1], "--sitl", "--yes"], "cannot be used with"),
         (vec![nobody[0], nobody[1], "--arm"], "--yes"),
-        (vec![nobody[0], nobody[1], "--autopilot", "px4", "--yes"], "--sitl"),
+        (vec![nobody[0], nobody[1], "--autopilot", "px4", "--yes"], "cannot be used with"),
         (
             vec![nobody[0], nobody[1], "--yes"],
             "--mass: expected the mass with battery and payload in kg, got none",

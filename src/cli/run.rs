@@ -17,10 +17,10 @@ pub struct RunArgs {
     #[arg(long)]
     pub sitl: bool,
     /// with --sitl: the autopilot that is simulated [default: px4]
-    #[arg(long, value_parser = autopilots(), requires = "sitl")]
+    #[arg(long, value_parser = autopilots(), conflicts_with = "connect")]
     pub autopilot: Option<Autopilot>,
     /// with --sitl: effects to conceal: [[effect]] tables with `id` and the parameters by name
-    #[arg(long, value_name = "FILE", requires = "sitl")]
+    #[arg(long, value_name = "FILE", conflicts_with = "connect")]
     pub effects: Option<PathBuf>,
     /// mass with battery, kg: weigh it. The rest of the vehicle comes from its parameters and rules of thumb
     #[arg(long, value_name = "KG", allow_negative_numbers = true)]
