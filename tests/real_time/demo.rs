@@ -56,7 +56,7 @@ fn is_taken_up(out: &Path, first: &Value) {
         assert!(lines.iter().any(|line| line.starts_with(&begin)), "{verb}: {lines:?}");
     }
     let flight = lines.iter().find(|line| line.starts_with("mavid fly ")).unwrap();
-    assert!(flight.contains("--record-only --arm --yes"), "{flight}");
+    assert!(flight.contains(" --record-only ") && flight.ends_with(" --arm --yes"), "{flight}");
     let said = out.join("flight1/flight.tlog");
     let recorded = std::fs::metadata(&said).unwrap().modified().unwrap();
     let answer = &first["explanation"]["answer"];
