@@ -236,6 +236,7 @@ fn a_name_that_the_hold_out_refutes_is_withdrawn() {
         read: ReadSettings::default(),
         transient_s: ExplainRequest::TRANSIENT_S,
         design_next: false,
+        next_limits: None,
     };
     let study = study::explain(&request, &Silent).unwrap();
     assert!(study.effects.is_empty() && study.closest.is_empty(), "{:?}", study.effects);

@@ -97,8 +97,8 @@ fn a_kill_loses_no_event_that_was_written() {
 fn without_a_vehicle_it_ends_when_it_is_told_to() {
     let out = folder("fly_nobody");
     // results of an earlier flight would pass for those of this one
-    std::fs::create_dir_all(out.join("explained")).unwrap();
-    let earlier = ["report.html", "explained/report.html", "mine.html"].map(|name| out.join(name));
+    std::fs::create_dir_all(out.join("rigid_body")).unwrap();
+    let earlier = ["report.html", "rigid_body/report.html", "mine.html"].map(|name| out.join(name));
     earlier.iter().for_each(|path| std::fs::write(path, "earlier").unwrap());
     let child = nobody(&out).spawn().unwrap();
     // its first event is written once the handlers of signals stand

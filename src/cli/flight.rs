@@ -79,6 +79,9 @@ pub struct FlyArgs {
     /// do not fetch it [default: where it takes a minute at most]
     #[arg(long)]
     pub no_fetch_log: bool,
+    /// fly and record, and make nothing of it: for `explain` of several flights together
+    #[arg(long)]
+    pub record_only: bool,
     /// print lines instead of the terminal view
     #[arg(long)]
     pub plain: bool,

@@ -69,6 +69,10 @@ pub struct SitlArgs {
     /// a parameter of the autopilot instead of its default; may be given several times
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
     pub param: Vec<(String, f64)>,
+    /// parameters of a real vehicle, as `fly` and `run` write them: those that the simulated autopilot has take the place of its
+    /// defaults, but for those of the battery
+    #[arg(long, value_name = "PARAMETERS.TOML")]
+    pub parameters: Option<PathBuf>,
     /// sign, and accept only signed messages: a file with 32 bytes, 64 hexadecimal digits, or a passphrase
     #[arg(long, value_name = "FILE")]
     pub signing_key_file: Option<PathBuf>,
@@ -84,7 +88,7 @@ pub struct SitlArgs {
 }
 
 /// Names of the autopilots that can be simulated.
-fn autopilots() -> impl TypedValueParser<Value = Autopilot> {
+pub(super) fn autopilots() -> impl TypedValueParser<Value = Autopilot> {
     let named = STACKS.into_iter().filter(|stack| Firmware::of(stack.autopilot).is_some());
     let names = named.map(|stack| PossibleValue::new(stack.id).help(stack.vehicles));
     PossibleValuesParser::new(names).map(|id| Autopilot::of_id(&id))

@@ -9,12 +9,13 @@ mod model;
 mod onboard;
 mod plan;
 mod recording;
+mod run;
 mod verb;
 mod verbosity;
 
 pub use compare::CompareArgs;
 pub use flight::{CheckName, FlyArgs, OriginName};
-pub use given::{DraftArgs, ShapeArgs};
+pub use given::ShapeArgs;
 pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 pub use model::{ExportArgs, ExportFormat, InitArgs, SimulateArgs, VehicleArgs, VehicleVerb};
 pub use onboard::{LogArgs, LogFetchArgs, LogListArgs, LogPrepareArgs, LogVerb, VehicleLinkArgs};
@@ -22,5 +23,6 @@ pub use plan::{CriterionName, PlanArgs};
 pub use recording::{
     ExplainArgs, IdentifyArgs, InspectArgs, PageFormat, ProveArgs, RedactArgs, ValidateArgs,
 };
+pub use run::RunArgs;
 pub use verb::{Cli, Verb};
 pub use verbosity::Verbosity;

@@ -40,8 +40,8 @@ pub struct PlanArgs {
     /// where the series starts and ends: metres and degrees; without Z the height is chosen
     #[arg(long, value_name = "X,Y[,Z[,YAW]]", value_delimiter = ',', allow_hyphen_values = true)]
     pub start: Option<Vec<f64>>,
-    /// check and assess this trajectory instead of planning one
-    #[arg(long, value_name = "TRAJECTORY", conflicts_with_all = ["out", "start"])]
+    /// check and assess this trajectory instead of planning one; --out writes it with the ways from takeoff and to landing
+    #[arg(long, value_name = "TRAJECTORY", conflicts_with = "start")]
     pub check: Option<PathBuf>,
     /// the circular validation path (44) instead of a plan: metres, seconds a turn, metres of height;
     /// without HEIGHT the middle of the room

@@ -63,6 +63,9 @@ pub struct ExplainArgs {
     /// design the flight that best separates what these flights cannot separate, and write its trajectory here
     #[arg(long, value_name = "TRAJECTORY.TOML")]
     pub next: Option<PathBuf>,
+    /// with --next: file with a [limits] table, instead of the vehicle's
+    #[arg(long, value_name = "FILE", requires = "next")]
+    pub limits: Option<PathBuf>,
     /// write report.html, model.toml and explanation.json into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

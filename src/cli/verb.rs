@@ -9,6 +9,7 @@ use super::model::{ExportArgs, SimulateArgs, VehicleArgs};
 use super::onboard::LogArgs;
 use super::plan::PlanArgs;
 use super::recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, RedactArgs, ValidateArgs};
+use super::run::RunArgs;
 use super::verbosity::Verbosity;
 
 /// Identifies a multirotor's parameters from a flight and names the physical effects that the model lacks
@@ -31,6 +32,8 @@ const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 
 /// The verbs.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
+    /// From a vehicle to what its model lacks, step by step: plan, check, fly, explain, until every name is certain
+    Run(RunArgs),
     /// Plan, fly, identify and explain the flight of a simulated vehicle with a concealed fault, in under two minutes
     Demo(DemoArgs),
     /// Check a vehicle file (or a model) and print what follows from it
@@ -70,6 +73,9 @@ pub enum Verb {
 impl Verb {
     /// It talks to vehicles: nothing in it waits for standard error.
     pub fn is_live(&self) -> bool {
-        matches!(self, Self::Demo(_) | Self::Fly(_) | Self::Sitl(_) | Self::Record(_) | Self::Replay(_))
+        matches!(
+            self,
+            Self::Run(_) | Self::Demo(_) | Self::Fly(_) | Self::Sitl(_) | Self::Record(_) | Self::Replay(_)
+        )
     }
 }

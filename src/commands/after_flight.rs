@@ -14,8 +14,8 @@ use super::progress::Notes;
 use super::words::Word;
 use super::{CommandError, Outcome, output};
 
-/// Folder of the explanation in that of the flight.
-const EXPLAINED: &str = "explained";
+/// Folder of the appendix in that of the flight: the rigid body alone, without the effects that were found.
+const RIGID_BODY: &str = "rigid_body";
 /// Names of what is written of the parameters.
 const MODEL: &str = "model.toml";
 const CHART: &str = "parameters.svg";
@@ -27,9 +27,9 @@ const NOT_WRITTEN: u8 = 1;
 /// What a flight says; a part that it cannot say holds why.
 #[derive(Debug)]
 pub struct Analysis {
-    /// written beside the recording
+    /// the appendix, written into a folder of its own
     pub identified: Result<IdentifyStudy, String>,
-    /// written into a folder of its own
+    /// written beside it: the one model and the one report
     pub explained: Result<ExplainStudy, String>,
     /// what of it is in no file, why, and how it is made again: of the parameters, and of the explanation
     pub unwritten: [Option<String>; 2],
@@ -47,8 +47,9 @@ impl Analysis {
         system: Option<SystemId>,
         tell: &mut impl FnMut(Word),
     ) -> Result<Option<Self>, CommandError> {
-        let parameters = [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(|name| folder.join(name));
-        let explanation = explain::WRITTEN.map(|name| folder.join(EXPLAINED).join(name));
+        let parameters =
+            [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(|name| folder.join(RIGID_BODY).join(name));
+        let explanation = explain::WRITTEN.map(|name| folder.join(name));
         // a model that was flown by is what this flight's own are compared with
         for path in parameters.iter().chain(&explanation).filter(|path| !output::is_same(path, vehicle)) {
             output::outdated(path)?.map(Word::Message).into_iter().for_each(&mut *tell);
@@ -87,15 +88,15 @@ impl Analysis {
     /// Where the report lies, if there is one.
     pub fn report(&self) -> Option<PathBuf> {
         let written = self.explained.is_ok() && self.unwritten[1].is_none();
-        written.then(|| self.folder.join(EXPLAINED).join(REPORT))
+        written.then(|| self.folder.join(REPORT))
     }
 
     /// For people: parameters, then the explanation's answer and where its report lies.
     pub fn page(&self) -> String {
         let mut parts: Vec<String> = self.identified.iter().map(identification_text).collect();
         if self.identified.is_ok() && self.unwritten[0].is_none() {
-            let parameters = self.folder.join(REPORT);
-            parts.push(format!("report of the parameters: {}", text::path(&parameters)));
+            let parameters = self.folder.join(RIGID_BODY).join(REPORT);
+            parts.push(format!("the rigid body alone, without effects: {}", text::path(&parameters)));
         }
         parts.extend(self.explained.iter().map(explanation_answer));
         parts.extend(self.report().map(|path| format!("report: {}", text::path(&path))));
@@ -131,10 +132,11 @@ struct Written<'a> {
 impl Written<'_> {
     /// Writes the parameters: model, report and chart, and the page and the document beside them. What of it is in no file.
     fn parameters(&self, study: &IdentifyStudy) -> Option<String> {
-        let place = |name| self.folder.join(name);
+        let place = |name| self.folder.join(RIGID_BODY).join(name);
         let targets =
             Targets { model: Some(place(MODEL)), report: Some(place(REPORT)), chart: Some(place(CHART)) };
         let written = || {
+            output::folder(&self.folder.join(RIGID_BODY))?;
             output::file(&place(PAGE), &format!("{}\n", identification_text(study)))?;
             output::file(&place(DOCUMENT), &output::json_text(&IdentificationDocument::new(study))?)?;
             targets.write(study)
@@ -146,9 +148,9 @@ impl Written<'_> {
 
     /// Writes the explanation. What of it is in no file.
     fn explanation(&self, study: &ExplainStudy) -> Option<String> {
-        let out = self.folder.join(EXPLAINED);
-        let error = explain::write(study, &out).err()?;
-        Some(self.again(&error, &explain::WRITTEN.map(|name| out.join(name)), ("explain", &out)))
+        let error = explain::write(study, self.folder).err()?;
+        let names = explain::WRITTEN.map(|name| self.folder.join(name));
+        Some(self.again(&error, &names, ("explain", self.folder)))
     }
 
     /// What of these files is missing, why, and the command that makes it again.
@@ -177,8 +179,8 @@ mod tests {
         let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
         let folder = std::env::temp_dir().join(format!("mavid-after-flight-{}", std::process::id()));
         let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(folder.join("identification.txt.part")).unwrap();
-        fs::create_dir_all(folder.join("explained/report.html.part")).unwrap();
+        fs::create_dir_all(folder.join("rigid_body/identification.txt.part")).unwrap();
+        fs::create_dir_all(folder.join("report.html.part")).unwrap();
         fs::copy(fixtures.join("p04_identify_10_22s.tlog"), folder.join(fly::TLOG)).unwrap();
         let vehicle = fixtures.join("p04_vehicle.toml");
         let mut told = Vec::new();
@@ -194,7 +196,7 @@ mod tests {
             assert!(said.contains("flight.tlog --vehicle"), "{said}");
             assert!(names.iter().all(|name| said.contains(name)), "{said}");
         }
-        assert!(!folder.join(MODEL).exists() && !folder.join(EXPLAINED).join(REPORT).exists());
+        assert!(!folder.join(RIGID_BODY).join(MODEL).exists() && !folder.join(REPORT).exists());
         // it is told all the same
         assert!(
             analysis.page().contains("ixx") && !analysis.page().contains("report"),

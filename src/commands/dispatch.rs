@@ -10,6 +10,7 @@ use crate::cli::{Cli, Verb};
 /// Runs the verb.
 pub fn run(cli: &Cli, stderr: &StandardError) -> Result<Outcome, CommandError> {
     match &cli.verb {
+        Verb::Run(args) => super::run::run(cli.json, stderr, args),
         Verb::Demo(args) => demo::run(cli.json, stderr, args),
         Verb::Vehicle(args) => vehicle::run(cli.json, args),
         Verb::Plan(args) => plan::run(cli.json, stderr, args),

@@ -26,6 +26,20 @@ pub const WRITTEN: [&str; 3] = [MODEL, REPORT, DOCUMENT];
 
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Outcome, CommandError> {
+    let study = make(stderr, args)?;
+    if json {
+        output::json(&ExplanationDocument::new(&study))?;
+    } else if args.format == PageFormat::Md {
+        output::text(&explanation_markdown(&study))?;
+    } else {
+        output::text(&explanation_text(&study))?;
+    }
+    remarks(&study).iter().for_each(Word::say);
+    Ok(outcome(&study))
+}
+
+/// Explains, and writes what is asked for.
+pub fn make(stderr: &StandardError, args: &ExplainArgs) -> Result<ExplainStudy, CommandError> {
     let request = ExplainRequest {
         logs: args.logs.clone(),
         vehicle: args.given.given(),
@@ -33,6 +47,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Out
         read: args.read.settings(),
         transient_s: args.transient,
         design_next: args.next.is_some(),
+        next_limits: args.limits.clone(),
     };
     request.check()?;
     check_targets(args)?;
@@ -43,15 +58,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Out
     if let Some(folder) = &args.out {
         write(&study, folder)?;
     }
-    if json {
-        output::json(&ExplanationDocument::new(&study))?;
-    } else if args.format == PageFormat::Md {
-        output::text(&explanation_markdown(&study))?;
-    } else {
-        output::text(&explanation_text(&study))?;
-    }
-    remarks(&study).iter().for_each(Word::say);
-    Ok(outcome(&study))
+    Ok(study)
 }
 
 /// Writes model, report and document into a folder, which is made.

@@ -1,5 +1,7 @@
 //! `mavid export MODEL --to FORMAT`: the model for another simulator.
 
+use std::path::PathBuf;
+
 use mavid::export::{Exported, Format, export};
 use mavid::study::effects_of;
 use mavid::text;
@@ -18,10 +20,33 @@ struct Document {
 
 /// Runs the verb.
 pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
+    let Made { exported: Exported { text, left_out }, origin, warnings } = make(args)?;
+    output::warnings(&origin, &warnings);
+    left_out.iter().for_each(|note| output::message(&format!("note: {note}")));
+    if json {
+        let file = args.out.as_ref().map(|path| text::path(&path));
+        output::json(&Document { schema: 1, file, text, left_out })?;
+    } else if args.out.is_none() {
+        output::text(text.trim_end())?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// A model that was exported.
+#[derive(Debug)]
+pub struct Made {
+    exported: Exported,
+    /// what messages call the model
+    origin: PathBuf,
+    /// what is doubtful about it
+    warnings: Vec<String>,
+}
+
+/// Exports, and writes the file that is asked for.
+pub fn make(args: &ExportArgs) -> Result<Made, CommandError> {
     let (loaded, origin) = args.draft.given(args.model.as_ref()).alone()?;
     let refuse =
         |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&origin)));
-    output::warnings(&origin, &loaded.warnings);
     let active = effects_of(&loaded.model.effects, &text::path(&origin), &loaded.vehicle)?;
     let format = match args.to {
         ExportFormat::Px4Sih => Format::Px4Sih,
@@ -30,17 +55,10 @@ pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
         ExportFormat::Mjcf => Format::Mjcf,
         ExportFormat::Rotorpy => Format::Rotorpy,
     };
-    let Exported { text, left_out } =
-        export(&loaded.vehicle, &active, format).map_err(|error| refuse(&error))?;
-    left_out.iter().for_each(|note| output::message(&format!("note: {note}")));
+    let exported = export(&loaded.vehicle, &active, format).map_err(|error| refuse(&error))?;
     if let Some(path) = &args.out {
-        output::file(path, &text)?;
+        output::file(path, &exported.text)?;
     }
-    if json {
-        let file = args.out.as_ref().map(|path| text::path(&path));
-        output::json(&Document { schema: 1, file, text, left_out })?;
-    } else if args.out.is_none() {
-        output::text(text.trim_end())?;
-    }
-    Ok(Outcome::Done)
+    let warnings = loaded.warnings;
+    Ok(Made { exported, origin, warnings })
 }

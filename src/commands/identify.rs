@@ -53,6 +53,18 @@ impl Targets {
 
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &IdentifyArgs) -> Result<Outcome, CommandError> {
+    let (study, targets) = make(stderr, args)?;
+    if json {
+        output::json(&IdentificationDocument::new(&study))?;
+    } else {
+        output::text(&identification_text(&study))?;
+    }
+    targets.write(&study)?;
+    Ok(tell(study.inputs.iter()))
+}
+
+/// Identifies, and says where that is to be written.
+pub fn make(stderr: &StandardError, args: &IdentifyArgs) -> Result<(IdentifyStudy, Targets), CommandError> {
     let request = IdentifyRequest {
         logs: args.logs.clone(),
         vehicle: args.given.given(),
@@ -68,13 +80,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &IdentifyArgs) -> Result<Ou
     let inputs: Vec<&PathBuf> = args.logs.iter().chain(&args.given.vehicle).collect();
     output::refuse_overwriting(&inputs, &targets.all())?;
     let study = identify(&request, &Spinner::new(stderr))?;
-    if json {
-        output::json(&IdentificationDocument::new(&study))?;
-    } else {
-        output::text(&identification_text(&study))?;
-    }
-    targets.write(&study)?;
-    Ok(tell(study.inputs.iter()))
+    Ok((study, targets))
 }
 
 /// Says what is to be known of the logs, and what of them was lost.

@@ -33,6 +33,12 @@ pub fn make_way(folder: &Path, station: SystemId) -> Result<(), CommandError> {
     output::folder(folder)
 }
 
+/// Whether a flight can be recorded into this folder: it holds no recording of a vehicle.
+pub fn is_free(folder: &Path, station: SystemId) -> bool {
+    let tlog = folder.join(TLOG);
+    !tlog.exists() || nothing_heard(&tlog, station).unwrap_or(false)
+}
+
 /// Whether every byte of a recording is of the station's own frames.
 fn nothing_heard(tlog: &Path, station: SystemId) -> Option<bool> {
     let file = File::open(tlog).ok()?;

@@ -33,6 +33,8 @@ enum Phase {
     Fetching,
     /// it ends by itself, soon
     Ending,
+    /// it asks a person, or works out what can be worked out again
+    Between,
 }
 
 /// What is known of a verb.
@@ -55,6 +57,11 @@ impl Work {
     /// A vehicle depends on it: it alone knows when it may end.
     pub fn flies(&self) {
         self.enters(Phase::Flying);
+    }
+
+    /// It asks a person, or works out what can be worked out again: a signal ends it at once.
+    pub fn waits(&self) {
+        self.enters(Phase::Between);
     }
 
     /// It fetches what it can do without, and hears of signals: the first Ctrl-C ends the download and not the program.
@@ -126,6 +133,9 @@ pub fn run(
         let Some(name) = &signals.asked else { continue };
         let text = match phase.borrow().phase {
             Phase::Before => format!("mavid: ended by {name} before it began"),
+            Phase::Between => {
+                format!("mavid: ended by {name}; the same command goes on where it was left")
+            }
             Phase::Flying => continue,
             Phase::Fetching | Phase::Ending if since.get_or_insert_with(Instant::now).elapsed() < GRACE => {
                 continue;

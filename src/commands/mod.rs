@@ -26,6 +26,7 @@ mod prove;
 mod record;
 mod redact;
 mod replay;
+mod run;
 mod simulate;
 mod sitl;
 mod standard_error;

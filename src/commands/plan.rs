@@ -25,6 +25,9 @@ pub fn run(json: bool, stderr: &StandardError, args: &PlanArgs) -> Result<Outcom
 
 /// Plans or checks, and writes the trajectory where one is asked for.
 pub fn make(stderr: &StandardError, args: &PlanArgs) -> Result<PlanStudy, CommandError> {
+    let (read, written): (Vec<_>, Vec<_>) =
+        (args.check.iter().chain(&args.vehicle).chain(&args.limits).collect(), args.out.iter().collect());
+    output::refuse_overwriting(&read, &written)?;
     let study = plan_flight(&request(args)?, &Steps::new(stderr, "planning {bar:30} {pos}/{len} descents"))?;
     if let Some(path) = &args.out {
         let text = trajectory_to_toml(&study.stored())?;

@@ -1,12 +1,14 @@
 //! `mavid sitl`: the embedded simulated vehicle on its own, for any ground station.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use mavid::config::{LoadedVehicle, parse_vehicle};
+use mavid::fly::parameters::Parameters;
 use mavid::link::{Address, LinkOptions, LinkReader, SigningKey};
 use mavid::sitl::{Firmware, LinkRole, Pace, SensorSettings, Served, Settings, Vehicle, serve};
 use mavid::study::with_further;
+use mavid::text;
 use mavid::wire::{ComponentId, SystemId};
 use serde::Serialize;
 
@@ -135,7 +137,8 @@ fn firmware(args: &SitlArgs) -> Result<Firmware, CommandError> {
     }
 }
 
-fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
+/// The simulated vehicle of these arguments.
+pub fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
     let kind = firmware(args)?;
     let (LoadedVehicle { vehicle, warnings, model }, origin) = loaded(args)?;
     output::warnings(&origin, &warnings);
@@ -159,9 +162,22 @@ fn settings(args: &SitlArgs) -> Result<Settings, CommandError> {
         warm_up: args.warm_up.map(|seconds| seconds_from("warm-up", seconds)).transpose()?,
         signing_key,
         boot_unix_us: unix_us(),
+        taken_over: args.parameters.as_deref().map_or_else(|| Ok(Vec::new()), taken_over)?,
         parameters: args.param.clone(),
         ..base
     })
+}
+
+/// Beginnings of the names of parameters of the battery: the simulated vehicle has its own.
+const BATTERY: &str = "BAT";
+
+/// What the simulated vehicle takes over of a file of parameters.
+fn taken_over(path: &Path) -> Result<Vec<(String, f64)>, CommandError> {
+    let name = text::path(path);
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| CommandError::Input(format!("cannot read {name}: {error}")))?;
+    let all = Parameters::from_toml(&text, &name).map_err(|error| CommandError::Input(error.to_string()))?;
+    Ok(all.values.into_iter().filter(|(name, _)| !name.starts_with(BATTERY)).collect())
 }
 
 /// Of the host.
@@ -189,8 +205,8 @@ fn pace(args: &SitlArgs) -> Result<Pace, CommandError> {
         return Ok(Pace::Lockstep);
     }
     if !(args.speed > 0.0 && args.speed <= 1000.0) {
-        let text = format!("--speed: expected above 0 and at most 1000, got {}", args.speed);
-        return Err(CommandError::Input(text));
+        let what = format!("--speed: expected above 0 and at most 1000, got {}", args.speed);
+        return Err(CommandError::Input(what));
     }
     Ok(Pace::Times(args.speed))
 }

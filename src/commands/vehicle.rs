@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use mavid::config::read_vehicle;
-use mavid::draft::parameters_of;
+use mavid::draft::{Draft, parameters_of};
 use mavid::link::Address;
 use mavid::report::vehicle_text;
 use mavid::study::{draft_from_log, draft_from_parameters, draft_text, vehicle_summary, with_thrust_stand};
 use mavid::text;
 
-use super::log::parameters_of_vehicle;
+use super::log::{Answered, parameters_of_vehicle};
 use super::{CommandError, Outcome, output};
 use crate::cli::{InitArgs, VehicleArgs, VehicleLinkArgs, VehicleVerb};
 
@@ -55,7 +55,7 @@ fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
     let given = args.shape.given(args.mass);
     let mut draft = match link(args) {
         Some(link) => {
-            let (autopilot, parameters) =
+            let Answered { autopilot, parameters, .. } =
                 parameters_of_vehicle(&link, |stack, known| parameters_of(stack, &given, known))?;
             draft_from_parameters((autopilot, parameters), &given, &link.connect)?
         }
@@ -64,7 +64,12 @@ fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
     if let Some(table) = &args.thrust_stand {
         draft = with_thrust_stand(draft, table)?;
     }
-    draft.doubts.iter().for_each(|doubt| output::warning(doubt));
-    output::file(&args.out, &draft_text(&draft)?)?;
+    write(args, &draft)?;
     check(json, &args.out)
+}
+
+/// Writes the draft, and says what contradicts it.
+pub fn write(args: &InitArgs, draft: &Draft) -> Result<(), CommandError> {
+    draft.doubts.iter().for_each(|doubt| output::warning(doubt));
+    output::file(&args.out, &draft_text(draft)?)
 }

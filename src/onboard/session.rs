@@ -16,6 +16,8 @@ use tokio::time::{Instant, MissedTickBehavior, interval};
 /// Between two looks at what is due.
 const TICK: Duration = Duration::from_millis(5);
 const HEARTBEAT: Duration = Duration::from_secs(1);
+/// Between two words about how long a vehicle is waited for.
+const STILL_WAITING: Duration = Duration::from_secs(6);
 /// HEARTBEAT, where its base mode is, and the bit of an armed vehicle.
 const HEARTBEAT_ID: u32 = 0;
 const BASE_MODE: usize = 6;
@@ -79,6 +81,7 @@ impl Session {
         let mut roster = Roster::default();
         let mut absent = None;
         let mut beats = interval(HEARTBEAT);
+        let mut told = STILL_WAITING;
         loop {
             tokio::select! {
                 received = reader.receive() => match received? {
@@ -117,6 +120,10 @@ impl Session {
                         within_s: patience.as_secs(),
                         heard: absent.map_or_else(|| roster.heard(), |why| format!("nobody ({why})")),
                     });
+                }
+                Choice::Wait if start.elapsed() >= told && told < patience => {
+                    tell(&waiting(&address, told, patience));
+                    told += STILL_WAITING;
                 }
                 Choice::Wait => {}
             }
@@ -232,6 +239,12 @@ impl Session {
     pub fn elapsed(&self) -> Duration {
         self.start.elapsed()
     }
+}
+
+/// How long a vehicle was waited for, of how long.
+fn waiting(address: &Address, waited: Duration, patience: Duration) -> Note {
+    let text = format!("no vehicle yet: waiting {} of {} s", waited.as_secs(), patience.as_secs());
+    Note::remark(About::Link(address.to_string()), text)
 }
 
 /// Says once that nobody is at the other end.

@@ -24,7 +24,7 @@ pub use chart::{Band, Bars, Line, Panel, Strip, Stroke, svg};
 pub use comparison::{ComparisonDocument, comparison_html, comparison_text};
 pub use explanation::{
     ExplanationDocument, explained_model, explanation_answer, explanation_html, explanation_markdown,
-    explanation_text,
+    explanation_text, next_flight_words,
 };
 pub use identification::{
     IdentificationDocument, history_charts, identification_html, identification_text, identified_model,

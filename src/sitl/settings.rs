@@ -98,6 +98,8 @@ pub struct Settings {
     pub signing_key: Option<SigningKey>,
     /// what the program that starts it knows it by
     pub nonce: Option<Nonce>,
+    /// parameters of another vehicle, which take the place of the autopilot's defaults as far as this one has them
+    pub taken_over: Vec<(String, f64)>,
     /// values instead of the autopilot's defaults
     pub parameters: Vec<(String, f64)>,
     /// host's time at boot, microseconds since 1970 UTC
@@ -132,6 +134,7 @@ impl Settings {
             fence: Vec::new(),
             signing_key: None,
             nonce: None,
+            taken_over: Vec::new(),
             parameters: Vec::new(),
             boot_unix_us: 1_700_000_000_000_000,
         }

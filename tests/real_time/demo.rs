@@ -1,4 +1,4 @@
-//! `mavid demo` as it is run from a clone: the whole story in real time.
+//! `mavid demo` as it is run from a clone: the whole story in real time, and a run that takes its folder up again.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -34,12 +34,52 @@ fn the_demo_names_what_it_conceals_with_its_size() {
     assert!(improvement.as_f64().unwrap() > 60.0, "{improvement}");
     let report = std::fs::read_to_string(document["report"].as_str().unwrap()).unwrap();
     assert!(report.contains("rear_left"));
-    // what flies, identifies and explains was told nothing
-    let told = ["vehicle.toml", "trajectory.toml", "parameters.toml", "limits.toml"];
+    // what flies and explains was told nothing
+    let told = ["vehicle.toml", "plan.toml", "limits.toml", "flight1/parameters.toml"];
     assert!(told.iter().all(|file| !std::fs::read_to_string(out.join(file)).unwrap().contains("weak")));
+    // one report and one model at the root, the rigid body in an appendix
+    for file in ["report.html", "model.toml", "rigid_body/model.toml", "export/model.sdf"] {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+    assert!(!out.join("flight1/report.html").exists() && !out.join("flight1/model.toml").exists());
+    is_taken_up(&out, &document);
     let again = demo(&["--out", &out.display().to_string()]);
     assert_eq!(again.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&again.stderr).contains("exists already"));
+}
+
+/// Neither is a flight flown again, nor is a vehicle needed; and the lines that were said are commands.
+fn is_taken_up(out: &Path, first: &Value) {
+    let lines: Vec<&str> = first["commands"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    for verb in ["sitl", "plan", "fly", "explain", "identify", "export"] {
+        let begin = format!("mavid {verb} ");
+        assert!(lines.iter().any(|line| line.starts_with(&begin)), "{verb}: {lines:?}");
+    }
+    let flight = lines.iter().find(|line| line.starts_with("mavid fly ")).unwrap();
+    assert!(flight.contains(" --record-only ") && flight.ends_with(" --arm --yes"), "{flight}");
+    let said = out.join("flight1/flight.tlog");
+    let recorded = std::fs::metadata(&said).unwrap().modified().unwrap();
+    let answer = &first["explanation"]["answer"];
+    let output = Command::new(env!("CARGO_BIN_EXE_mavid"))
+        .args(["--json", "run", "--sitl", "--yes", "--flights", "1", "--out", &out.display().to_string()])
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&document["explanation"]["answer"], &document["flights"]), (answer, &1.into()), "{told}");
+    assert_eq!(document["flight"], Value::Null, "{told}");
+    assert!(!told.contains("$ mavid fly ") && !out.join("flight2").exists(), "{told}");
+    assert_eq!(std::fs::metadata(&said).unwrap().modified().unwrap(), recorded);
+    // alone, the line does what was done
+    let line = lines.iter().find(|line| line.starts_with("mavid explain ")).unwrap();
+    let alone = Command::new(env!("CARGO_BIN_EXE_mavid"))
+        .args(line.split(' ').skip(1))
+        .arg("--json")
+        .output()
+        .unwrap();
+    let document: Value = serde_json::from_slice(&alone.stdout).unwrap();
+    assert_eq!(&document["answer"], answer, "{line}");
 }
 
 #[test]
@@ -52,5 +92,5 @@ fn what_cannot_be_concealed_is_refused_before_anything_flies() {
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(said.contains("phlogiston") && said.contains("demo_wrong.toml"), "{said}");
-    assert!(!out.join("flight.tlog").exists());
+    assert!(!out.join("flight1").exists());
 }

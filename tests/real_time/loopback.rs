@@ -79,12 +79,13 @@ fn both_autopilots_fly_over_every_link_and_are_identified() {
                 "trajectory.toml",
                 "vehicle.toml",
                 "model.toml",
-                "identification.txt",
-                "identification.json",
-                "parameters.svg",
-                "explained/report.html",
-                "explained/model.toml",
-                "explained/explanation.json",
+                "report.html",
+                "explanation.json",
+                "rigid_body/model.toml",
+                "rigid_body/report.html",
+                "rigid_body/identification.txt",
+                "rigid_body/identification.json",
+                "rigid_body/parameters.svg",
             ] {
                 assert!(out.join(file).exists(), "{name}: {file}");
             }

@@ -103,6 +103,7 @@ fn one(wanted: Wanted) -> Result<(Judged, String), String> {
         read: ReadSettings::default(),
         transient_s: ExplainRequest::TRANSIENT_S,
         design_next: false,
+        next_limits: None,
     };
     let study = explain(&request, &Silent).map_err(|error| error.to_string());
     let said = serde_json::to_value(ExplanationDocument::new(&study?)).map_err(|error| error.to_string())?;

@@ -2,6 +2,7 @@
 //! `--vehicle` drafts the vehicle from its own parameters.
 
 mod document;
+mod flown;
 mod ride;
 mod typed;
 mod vehicle;
@@ -9,8 +10,6 @@ mod verb;
 mod watch;
 mod words;
 
-pub use document::Document;
-pub use ride::ride;
+pub use flown::{Flown, Manner, flown};
+pub use ride::is_attended;
 pub use verb::{outcome, run};
-pub use watch::fly_it;
-pub use words::words;

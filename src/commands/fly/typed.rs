@@ -96,8 +96,10 @@ pub fn read_keys(pressed: &UnboundedSender<KeyCommand>, shown: &Shown) {
     let (mut lines, mut bytes, mut ends) = (Lines::default(), [0; LINE_MAX], 0);
     let mut told_early = false;
     loop {
-        let came = match input::read(&mut bytes, shown) {
-            Ok((0, _)) => match lines.end() {
+        let over = || pressed.is_closed();
+        let came = match input::read(&mut bytes, shown, &over) {
+            Ok(None) => return,
+            Ok(Some((0, _))) => match lines.end() {
                 Some(line) => vec![line],
                 // at a terminal Ctrl-D ends nothing but the line
                 None if io::stdin().is_terminal() && ends < ENDS_MAX => {
@@ -110,7 +112,7 @@ pub fn read_keys(pressed: &UnboundedSender<KeyCommand>, shown: &Shown) {
                     return;
                 }
             },
-            Ok((count, after_page)) => lines.take(&bytes[..count], after_page),
+            Ok(Some((count, after_page))) => lines.take(&bytes[..count], after_page),
             Err(error) => {
                 output::warning(&format!("keys are no longer read ({error}): Ctrl-C alone ends the flight"));
                 return;
@@ -137,16 +139,28 @@ mod input {
     use std::io;
 
     const NO_WAIT: Timespec = Timespec { tv_sec: 0, tv_nsec: 0 };
+    /// Between two looks whether the flight is over.
+    const LOOK: Timespec = Timespec { tv_sec: 0, tv_nsec: 100_000_000 };
 
-    /// The bytes that came, and whether that was after the page; none at its end.
-    pub(super) fn read(bytes: &mut [u8], shown: &Shown) -> io::Result<(usize, bool)> {
+    /// The bytes that came, and whether that was after the page; no bytes at its end, and `None` once the flight is over:
+    /// what is typed afterwards is for whoever asks next.
+    pub(super) fn read(
+        bytes: &mut [u8],
+        shown: &Shown,
+        over: &dyn Fn() -> bool,
+    ) -> io::Result<Option<(usize, bool)>> {
         let stdin = io::stdin();
-        let ready = |limit| {
+        let ready = |limit: Option<&Timespec>| {
             let mut wanted = [PollFd::new(&stdin, PollFlags::IN)];
             retry_on_intr(|| poll(&mut wanted, limit))
         };
         loop {
-            ready(None)?;
+            if over() {
+                return Ok(None);
+            }
+            if ready(Some(&LOOK))? == 0 {
+                continue;
+            }
             // whoever shows the page waits here: what is read is of one side of it
             let shown = shown.locked();
             // thrown away meanwhile
@@ -154,7 +168,7 @@ mod input {
                 continue;
             }
             let count = retry_on_intr(|| read_some(&stdin, &mut *bytes))?;
-            return Ok((count, *shown));
+            return Ok(Some((count, *shown)));
         }
     }
 
@@ -171,9 +185,13 @@ mod input {
     use std::io::{self, Read};
 
     /// The bytes that came, and whether that was after the page; none at its end.
-    pub(super) fn read(bytes: &mut [u8], shown: &Shown) -> io::Result<(usize, bool)> {
+    pub(super) fn read(
+        bytes: &mut [u8],
+        shown: &Shown,
+        _over: &dyn Fn() -> bool,
+    ) -> io::Result<Option<(usize, bool)>> {
         let count = io::stdin().lock().read(bytes)?;
-        Ok((count, *shown.locked()))
+        Ok(Some((count, *shown.locked())))
     }
 
     pub(super) fn throw_away() {}

@@ -3,24 +3,17 @@
 use std::io::IsTerminal;
 
 use mavid::fly::{Ending, Record};
-use mavid::wire::SystemId;
 
 use super::document::Document;
-use super::ride::{asks_for_the_word, is_attended, ride};
+use super::flown::{Flown, Manner, flown};
 use super::vehicle::file_of;
-use super::watch::{View, Watch, fly_it, watch};
-use super::words::words;
+use super::watch::View;
 use crate::cli::FlyArgs;
 use crate::commands::after_flight::Analysis;
 use crate::commands::last_word::{PATIENCE, within};
 use crate::commands::live::{self, Work};
-use crate::commands::log::{self, Fetching};
 use crate::commands::standard_error::StandardError;
-use crate::commands::words::{Word, Words};
 use crate::commands::{CommandError, Outcome, output};
-
-/// Messages and log lines while the view is shown, in the folder of the flight.
-const LOG: &str = "log.txt";
 
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &FlyArgs) -> Result<Outcome, CommandError> {
@@ -29,48 +22,16 @@ pub fn run(json: bool, stderr: &StandardError, args: &FlyArgs) -> Result<Outcome
 }
 
 fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> Result<Outcome, CommandError> {
-    let drawn = !args.plain && is_attended();
-    if stderr.is_quiet() && !drawn && asks_for_the_word(args) {
-        let expected =
-            "--quiet: expected --yes with --arm and --plain: with --quiet nothing asks for the word";
-        return Err(CommandError::Input(expected.to_owned()));
-    }
-    let mut ride = ride(args)?;
-    if args.set_logging {
-        // a signal ends the conversation with the vehicle
-        work.ends_itself();
-    }
-    let before = log::before_flight(args)?;
-    // the vehicle that was spoken to, and no other
-    ride.sortie.system = before.system.map(SystemId).or(ride.sortie.system);
-    ride.sortie.settings.log_awaited.clone_from(&before.awaited);
-    let how = Watch {
-        drawn: drawn.then(|| stderr.clone()),
-        log: args.out.join(LOG),
-        // lines of a script that did not ask for it are the script's
-        typed: args.plain || std::io::stdin().is_terminal(),
-        has_page: ride.sortie.settings.await_word,
-    };
-    let flown = fly_it(ride, work, move |pictures, pressed| watch(&how, pictures, pressed));
-    let mut notes = Vec::new();
-    if !before.noted.is_empty() {
-        // not ended by a signal that ended the flight: what was set has to be put back
-        work.flies();
-        log::put_back(args, &before, &mut |note| notes.push(note));
-        work.ends_itself();
-    }
-    let (record, view) = flown.inspect_err(|_| notes.iter().for_each(Word::say))?;
-    let mut said = Words::new(view == View::Stuck);
-    said.say(words(&record));
-    said.say(std::mem::take(&mut notes));
+    let Flown { record, onboard, mut said, view } = flown((stderr, work), args, Manner::default())?;
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
-    let fetching = if record.outcome.ending == Ending::Landed { Fetching::of(args) } else { Fetching::Not };
-    // each line when it is due: how long a download takes is said before it
-    let onboard = log::after_flight((args, work), record.system, fetching, &mut |note| said.say(vec![note]));
+    let mut notes = Vec::new();
     let flown = (&*args.out, landed, onboard.as_deref());
-    let analysis = Analysis::of(flown, &file_of(args), record.system, &mut |note| notes.push(note));
+    let analysis = if args.record_only {
+        None
+    } else {
+        Analysis::of(flown, &file_of(args), record.system, &mut |note| notes.push(note))?
+    };
     said.say(notes);
-    let analysis = analysis?;
     let heard = view == View::Ended && said.are_heard();
     let told = if json {
         let document = output::json_text(&Document::new(&record, &args.out, analysis.as_ref()))?;
@@ -81,7 +42,7 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
         true
     };
     said.say(analysis.as_ref().map(Analysis::remarks).unwrap_or_default());
-    let outcome = outcome(&record, analysis.as_ref())?;
+    let outcome = outcome(&record, analysis.as_ref().map(Analysis::outcome))?;
     // all is done and in its files, but not all of it was told
     Ok(if told && view == View::Ended && said.are_heard() { outcome } else { Outcome::DoneWithLoss })
 }
@@ -102,8 +63,11 @@ fn result(
     within(PATIENCE, tell).map_or(Ok(false), |told| told.map(|()| true))
 }
 
-/// How a flight and what was made of it end the program.
-pub fn outcome(record: &Record, analysis: Option<&Analysis>) -> Result<Outcome, CommandError> {
+/// How a flight and what was made of it end the program; `None`: it was told to fly where nothing can be identified.
+pub fn outcome(
+    record: &Record,
+    analysed: Option<Result<Outcome, CommandError>>,
+) -> Result<Outcome, CommandError> {
     let outcome = &record.outcome;
     if outcome.ending == Ending::NotFlown {
         let why = outcome.cause.as_ref().map_or("no reason given".to_owned(), ToString::to_string);
@@ -113,10 +77,9 @@ pub fn outcome(record: &Record, analysis: Option<&Analysis>) -> Result<Outcome, 
         && outcome.losses.is_empty()
         && record.recorder.is_whole()
         && record.events_failure.is_none();
-    match analysis.map(Analysis::outcome) {
+    match analysed {
         Some(Err(failure)) if outcome.is_whole() => Err(failure),
         Some(Ok(outcome)) if whole => Ok(outcome),
-        // it was told to fly where nothing can be identified
         None if whole => Ok(Outcome::Done),
         _ => Ok(Outcome::DoneWithLoss),
     }

@@ -100,7 +100,7 @@ fn tell(
     let shown = Shown::new(has_page);
     if typed {
         let (pressed, shown) = (pressed.clone(), shown.clone());
-        // it ends with the process: nothing else can be done about a read that waits
+        // it ends soon after the flight
         let reading = thread::Builder::new().name("keys".into()).spawn(move || read_keys(&pressed, &shown));
         match reading {
             Ok(_) => output::message(KEYS),

@@ -50,14 +50,26 @@ async fn begin(
     Ok(Session::open(request).await?)
 }
 
+/// What a vehicle answered.
+#[derive(Debug, Clone)]
+pub struct Answered {
+    /// its MAVLink system id
+    pub system: u32,
+    /// whose parameters they are
+    pub autopilot: Autopilot,
+    /// by name, in the autopilot's own unit
+    pub parameters: BTreeMap<String, f64>,
+}
+
 /// What is `needed` of the vehicle's parameters, as [`read_as_needed`] asks for it.
 pub fn parameters_of_vehicle(
     link: &VehicleLinkArgs,
     needed: impl Fn(&Stack, &BTreeMap<String, f64>) -> BTreeSet<String>,
-) -> Result<(Autopilot, BTreeMap<String, f64>), CommandError> {
+) -> Result<Answered, CommandError> {
     network::block_on(async {
         let mut session = open(link).await?;
-        let known = read_as_needed(&mut session, needed).await?;
-        Ok((session.stack.autopilot, known))
+        let parameters = read_as_needed(&mut session, needed).await?;
+        let (system, autopilot) = (session.vehicle.system.0, session.stack.autopilot);
+        Ok(Answered { system, autopilot, parameters })
     })
 }

@@ -1,11 +1,10 @@
 //! The page before the flight: warnings, the trajectory and its place, and the failsafes.
 
-use std::fmt::Write;
-
 use super::Situation;
 use super::failsafes::TAKEOVER;
 use crate::fly::finding::{Finding, Level};
 use crate::plan::{Extremes, path_samples};
+use crate::text::wrapped;
 use crate::units::deg_from_rad;
 
 /// Columns of a drawing, and the rows of the one from above: letters are twice as high as wide.
@@ -153,42 +152,9 @@ fn cell(value: f64, (low, high): (f64, f64), count: usize) -> Option<usize> {
     })
 }
 
-/// Lines of at most so many columns, broken between words; those after the first are moved in.
-fn wrapped(text: &str, columns: usize) -> Vec<String> {
-    const INDENT: &str = "  ";
-    let columns = columns.max(20);
-    let mut lines = Vec::new();
-    let mut line = String::new();
-    for word in text.split_whitespace() {
-        let space = usize::from(!line.trim().is_empty());
-        if space > 0 && line.chars().count() + space + word.chars().count() > columns {
-            lines.push(std::mem::replace(&mut line, INDENT.to_owned()));
-        }
-        let between = if line.trim().is_empty() { "" } else { " " };
-        // writing to a String cannot fail
-        let _ = write!(line, "{between}{word}");
-    }
-    if !line.trim().is_empty() {
-        lines.push(line);
-    }
-    lines
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn lines_are_broken_between_words_and_none_is_lost() {
-        let text =
-            "warning: fence: expected a fence round the place of the flight, got none in force; set one";
-        for columns in [20, 37, 80, 200] {
-            let lines = wrapped(text, columns);
-            assert!(lines.iter().all(|line| line.chars().count() <= columns), "{lines:#?}");
-            let words: Vec<&str> = lines.iter().flat_map(|line| line.split_whitespace()).collect();
-            assert_eq!(words, text.split_whitespace().collect::<Vec<_>>());
-        }
-    }
 
     #[test]
     fn a_canvas_shows_what_is_inside_and_keeps_its_size() {

@@ -10,6 +10,7 @@ mod json;
 mod markdown;
 mod model;
 mod pictures;
+mod prospect;
 mod text;
 
 pub use answer::answer as explanation_answer;
@@ -17,4 +18,5 @@ pub use html::explanation_html;
 pub use json::ExplanationDocument;
 pub use markdown::explanation_markdown;
 pub use model::explained_model;
+pub use prospect::next_flight_words;
 pub use text::explanation_text;

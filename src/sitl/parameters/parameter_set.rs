@@ -42,6 +42,10 @@ impl Parameters {
         for (name, remaining) in [("BATT_LOW_VOLT", 0.15), ("BATT_CRT_VOLT", 0.07)] {
             all.set(name, Battery::volts_at(settings.battery_v, remaining));
         }
+        for (name, value) in &settings.taken_over {
+            // those of another release, or of what is not simulated, are left out
+            all.set(name, *value);
+        }
         for (name, value) in &settings.parameters {
             if !all.set(name, *value) {
                 return Err(SitlError::Setting {

@@ -12,6 +12,7 @@ mod meant;
 mod next_flight;
 mod path;
 mod predicted;
+mod prospect;
 mod readers;
 mod request;
 mod result;

@@ -19,6 +19,8 @@ pub struct ExplainRequest {
     pub transient_s: f64,
     /// design the flight that distinguishes best what these cannot
     pub design_next: bool,
+    /// file with the limits of that flight; `None`: the vehicle's own
+    pub next_limits: Option<PathBuf>,
 }
 
 impl ExplainRequest {

@@ -5,7 +5,7 @@ use super::hold_out::{hold_back, refuse_shared};
 use super::request::ExplainRequest;
 use super::result::{ExplainStudy, Given};
 use super::shown_on::ShownOn;
-use crate::config::LoadedVehicle;
+use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{ExplainSettings, Explanation, Trace, Verdict};
@@ -39,6 +39,8 @@ const CHANGES_LATE: &str = "something changes in the part that would be held bac
 pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<ExplainStudy, StudyError> {
     request.check()?;
     let known = request.vehicle.of_file()?;
+    // a file that cannot be used is told before the work
+    let next_limits = request.next_limits.as_deref().map(read_limits).transpose()?;
     progress.stage(Stage::Reading);
     let logs = load_all(&request.logs, &request.read, &EXPLAINED)?;
     let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
@@ -88,7 +90,8 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     study.drafted = draft;
     if request.design_next {
         progress.stage(Stage::Designing);
-        study.next = Some(design(&study.explanation, &flights.signals, &vehicle, &NextSettings::default()));
+        let inside = Vehicle { limits: next_limits.unwrap_or(vehicle.limits), ..vehicle.clone() };
+        study.next = Some(design(&study.explanation, &flights.signals, &inside, &NextSettings::default()));
     }
     Ok(study)
 }

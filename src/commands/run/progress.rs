@@ -1,4 +1,4 @@
-//! How far the demo is: one bar, or lines where nothing can be drawn.
+//! How far a flight is: one bar, or lines where nothing can be drawn.
 
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
@@ -10,48 +10,27 @@ use crate::commands::output;
 use crate::commands::standard_error::StandardError;
 
 /// Hundredths of the whole at which the stages end.
-pub const PLANNED: u64 = 3;
-const READY: u64 = 25;
-const FLOWN: u64 = 80;
-pub const LANDED: u64 = 95;
+const READY: u64 = 20;
+const FLOWN: u64 = 85;
+const LANDED: u64 = 99;
 /// Of the bar's own picture.
 const TICK: Duration = Duration::from_millis(100);
 
 /// The display.
 #[derive(Debug, Clone)]
-pub struct Progress {
-    bar: Option<ProgressBar>,
-}
+pub struct Progress(Option<ProgressBar>);
 
 impl Progress {
-    /// A bar, or lines.
+    /// An empty bar, or a line for each phase.
     pub fn new(stderr: &StandardError, drawn: bool) -> Self {
-        let bar = drawn.then(|| {
+        Self(drawn.then(|| {
             let bar = stderr.bar(ProgressBar::new(100));
-            if let Ok(style) = ProgressStyle::with_template("{spinner} {bar:40} {elapsed:>4} {msg}") {
+            if let Ok(style) = ProgressStyle::with_template("{spinner} {bar:30} {elapsed:>4} {msg}") {
                 bar.set_style(style);
             }
             bar.enable_steady_tick(TICK);
             bar
-        });
-        Self { bar }
-    }
-
-    /// A line that stays.
-    pub fn say(&self, text: &str) {
-        // the bar keeps clear of messages
-        output::message(text);
-    }
-
-    /// What is done now, at how many hundredths of the whole.
-    pub fn stage(&self, text: &str, at: u64) {
-        match &self.bar {
-            Some(bar) => {
-                bar.set_position(at);
-                bar.set_message(text.to_owned());
-            }
-            None => output::message(text),
-        }
+        }))
     }
 
     /// Follows a flight until it is over.
@@ -59,7 +38,7 @@ impl Progress {
         let mut last = String::new();
         for model in pictures {
             let text = words(&model);
-            if let Some(bar) = &self.bar {
+            if let Some(bar) = &self.0 {
                 bar.set_position(hundredths(&model).max(bar.position()));
                 bar.set_message(text);
             } else if model.state != last {
@@ -71,9 +50,7 @@ impl Progress {
 
     /// Takes the bar away.
     pub fn end(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
+        self.0.iter().for_each(ProgressBar::finish_and_clear);
     }
 }
 
@@ -92,6 +69,6 @@ fn hundredths(model: &ViewModel) -> u64 {
             READY + (FLOWN - READY) * steps / 1000
         }
         _ if model.state == "land" => LANDED.min(FLOWN + seconds % (LANDED - FLOWN)),
-        _ => READY.min(PLANNED + seconds),
+        _ => READY.min(seconds),
     }
 }

@@ -1,30 +1,25 @@
-//! The demo's vehicle: on a thread and a runtime of its own, reached by a UDP socket and by nothing else.
+//! The embedded vehicle of a run: on a thread and a runtime of its own, reached by a socket and by nothing else.
 
-use std::path::PathBuf;
 use std::sync::mpsc::{Sender, channel};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
 
-use mavid::config::parse_vehicle;
-use mavid::link::{Address, Link, LinkOptions};
-use mavid::sitl::{Firmware, LinkRole, Pace, Settings, Vehicle, serve};
+use mavid::link::{Link, LinkOptions};
+use mavid::sitl::{LinkRole, Pace, Settings, Vehicle, serve};
 use mavid::wire::{ComponentId, Nonce, SystemId};
 use tokio::sync::oneshot;
 
-use super::concealed::concealed;
-use crate::commands::CommandError;
-use crate::commands::sitl::DEFAULT_VEHICLE;
+use super::step::Step;
+use crate::cli::SitlArgs;
+use crate::commands::{CommandError, network, sitl};
 
-/// From boot until the position estimate is good.
-const WARM_UP: Duration = Duration::from_secs(2);
 /// Any port.
-const LISTEN: &str = "udpin:127.0.0.1:0";
+const ANY: &str = "tcpin:127.0.0.1:0";
 
 /// The vehicle while it runs.
 #[derive(Debug)]
 pub struct Embedded {
     /// where it listens
-    pub port: u16,
+    port: u16,
     /// what it is known by: another vehicle on that port is not armed
     pub nonce: Nonce,
     stop: oneshot::Sender<()>,
@@ -32,20 +27,27 @@ pub struct Embedded {
 }
 
 impl Embedded {
-    /// Starts it with what it conceals: that of the file, or the demo's own.
-    pub fn start(effects: Option<PathBuf>) -> Result<Self, CommandError> {
+    /// Starts it by this step of `mavid sitl`, which names no address; and the step with the address at which it listens.
+    pub fn start(step: &Step) -> Result<(Self, Step), CommandError> {
+        let args = step.clone().option("--listen", ANY).sitl()?;
         let (stop, stopped) = oneshot::channel();
         let (listening, port) = channel();
         let nonce = Nonce::random();
         let work = move || {
-            if let Err(error) = run((effects, nonce), stopped, &listening) {
+            if let Err(error) = run(&args, nonce, stopped, &listening) {
                 // the starter waits for one of both
                 let _ = listening.send(Err(error));
             }
         };
         let thread = thread::Builder::new().name("vehicle".into()).spawn(work).map_err(|e| failed(&e))?;
         let port = port.recv().map_err(|error| failed(&error))??;
-        Ok(Self { port, nonce, stop, thread })
+        let said = step.clone().option("--listen", ANY.replace(":0", &format!(":{port}")));
+        Ok((Self { port, nonce, stop, thread }, said))
+    }
+
+    /// The address by which it is reached.
+    pub fn address(&self) -> String {
+        format!("tcpout:127.0.0.1:{}", self.port)
     }
 
     /// Ends it.
@@ -61,25 +63,20 @@ fn failed(error: &dyn std::fmt::Display) -> CommandError {
 }
 
 fn run(
-    (effects, nonce): (Option<PathBuf>, Nonce),
+    args: &SitlArgs,
+    nonce: Nonce,
     stopped: oneshot::Receiver<()>,
     listening: &Sender<Result<u16, CommandError>>,
 ) -> Result<(), CommandError> {
-    let described = parse_vehicle(DEFAULT_VEHICLE, "the vehicle within the program")?.vehicle;
-    let settings = Settings {
-        effects: concealed(effects.as_deref(), &described)?,
-        warm_up: Some(WARM_UP),
-        esc_telemetry: true,
-        nonce: Some(nonce),
-        ..Settings::new(described, Firmware::PX4)
-    };
+    let settings = Settings { nonce: Some(nonce), ..sitl::settings(args)? };
+    let address = network::address("--listen", args.listen.first().map_or(ANY, String::as_str))?;
     let system = SystemId(settings.system.into());
     let vehicle = Vehicle::new(settings).map_err(|error| CommandError::Input(error.to_string()))?;
     let runtime =
         tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(|e| failed(&e))?;
     runtime.block_on(async {
-        let address: Address = LISTEN.parse().map_err(|error| failed(&error))?;
-        let options = LinkOptions { system, component: ComponentId(1), ..LinkOptions::default() };
+        let options =
+            LinkOptions { system, component: ComponentId(1), patient: true, ..LinkOptions::default() };
         let ends = Link::open(&address, options).await.map_err(|error| failed(&error))?;
         let port = ends.0.local_address().map(|local| local.port());
         let port = port.ok_or_else(|| failed(&"its socket has no port"))?;
@@ -88,7 +85,7 @@ fn run(
         let stop = async {
             let _ = stopped.await;
         };
-        serve(vehicle, vec![(LinkRole::GroundStation, ends)], (Pace::Times(1.0), None), stop).await;
+        serve(vehicle, vec![(LinkRole::GroundStation, ends)], (Pace::Times(args.speed), None), stop).await;
         Ok(())
     })
 }

@@ -1,27 +1,22 @@
-//! What the demo conceals, and how what was found compares with it.
+//! What the embedded vehicle conceals, and how what was found compares with it.
 
 use std::path::Path;
 
 use mavid::diagnose::Named;
 use mavid::physics::ActiveEffect;
 use mavid::report::with_error;
-use mavid::study::{effects_file, effects_text};
+use mavid::study::effects_file;
 use mavid::vehicle::Vehicle;
 use serde::Serialize;
 
 use crate::commands::CommandError;
 
-/// The demo's own.
-const EFFECTS: &str = include_str!("../../../configs/demo/concealed.toml");
 /// Parameter that is a number of a rotor, from 0.
 const ROTOR: &str = "rotor";
 
-/// What acts on the embedded vehicle: that of the file, or without one the demo's own.
-pub fn concealed(file: Option<&Path>, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
-    Ok(match file {
-        Some(file) => effects_file(file, vehicle)?,
-        None => effects_text(EFFECTS, "the demo's own effects", vehicle)?,
-    })
+/// What the file conceals in the embedded vehicle.
+pub fn acting(file: &Path, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
+    Ok(effects_file(file, vehicle)?)
 }
 
 /// One parameter of a concealed effect beside what was found.

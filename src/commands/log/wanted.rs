@@ -1,0 +1,40 @@
+//! What a flight would have to change of the logging, looked at before anybody is asked.
+
+use mavid::onboard;
+
+use super::link::open;
+use super::prepare::changes_page;
+use super::state;
+use crate::cli::VehicleLinkArgs;
+use crate::commands::CommandError;
+use crate::commands::network;
+
+/// What a vehicle will log, and what an identification needs beyond.
+#[derive(Debug, Clone, Default)]
+pub struct Wanted {
+    /// what it will log, in sentences without their ends
+    pub logs: Vec<String>,
+    /// what is to be changed, in one line; empty: nothing
+    pub changes: String,
+    /// it counts only after a restart of the autopilot
+    pub restarts: bool,
+}
+
+/// Asks the vehicle how it logs. Nothing on it is changed.
+///
+/// # Errors
+/// It does not answer.
+pub fn wanted(link: &VehicleLinkArgs) -> Result<Wanted, CommandError> {
+    network::block_on(async {
+        let mut session = open(link).await?;
+        let offer = session.offer().await?;
+        let notes = state::notes(&session.known_as(&offer))?;
+        let state = onboard::look(&mut session, &notes).await?;
+        let names: Vec<&str> = state.plan.changes.iter().map(|change| change.parameter).collect();
+        Ok(Wanted {
+            changes: changes_page(&state.plan.changes),
+            restarts: onboard::needs_restart(&session, &names),
+            logs: state.plan.logs,
+        })
+    })
+}

@@ -1,0 +1,174 @@
+//! What a run has made so far: it is told by the files that are there.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use mavid::fly::{EVENTS, TLOG};
+use mavid::text;
+use mavid::wire::SystemId;
+use serde::Deserialize;
+
+use crate::commands::{CommandError, leftover};
+
+/// Endings of the logs that a vehicle writes itself.
+const ONBOARD: [&str; 2] = ["ulg", "bin"];
+/// What this station calls itself.
+const STATION: SystemId = SystemId(255);
+/// The phase of a flight from which on there is something to explain.
+const TRAJECTORY: &str = "trajectory";
+
+/// The folder of a run.
+#[derive(Debug, Clone)]
+pub struct Folder(PathBuf);
+
+/// A flight that was recorded.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Recorded {
+    /// of the link
+    pub radio: PathBuf,
+    /// the vehicle's own log, if it was fetched
+    pub onboard: Option<PathBuf>,
+}
+
+impl Folder {
+    /// At this place, which is made.
+    pub fn at(place: PathBuf) -> Result<Self, CommandError> {
+        if place.exists() && !place.is_dir() {
+            let got = text::path(&place);
+            return Err(CommandError::Input(format!("--out: expected a folder, {got} is a file")));
+        }
+        fs::create_dir_all(&place)
+            .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", text::path(&place))))?;
+        Ok(Self(place))
+    }
+
+    /// The folder itself.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// A file or a folder in it.
+    pub fn of(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    /// The vehicle's file.
+    pub fn vehicle(&self) -> PathBuf {
+        self.of("vehicle.toml")
+    }
+
+    /// The parameters that the vehicle answered.
+    pub fn parameters(&self) -> PathBuf {
+        self.of("parameters.toml")
+    }
+
+    /// The room, and how lively it is flown.
+    pub fn limits(&self) -> PathBuf {
+        self.of("limits.toml")
+    }
+
+    /// The trajectory of the flight of this number, from 1.
+    pub fn plan(&self, number: usize) -> PathBuf {
+        if number == 1 { self.of("plan.toml") } else { self.of(&format!("plan{number}.toml")) }
+    }
+
+    /// The trajectory that separates best what the flights so far cannot separate.
+    pub fn next(&self) -> PathBuf {
+        self.of("next.toml")
+    }
+
+    /// Flights that reached their trajectory, in their order.
+    pub fn flights(&self) -> Vec<Recorded> {
+        let folders = (1..).map(|number| self.flight(number)).take_while(|folder| folder.exists());
+        folders.filter(|folder| reached_trajectory(folder)).map(|folder| Recorded::of(&folder)).collect()
+    }
+
+    /// The folder of the next flight: the first that holds no recording of a vehicle.
+    pub fn new_flight(&self) -> PathBuf {
+        let mut folders = (1..).map(|number| self.flight(number));
+        folders.find(|folder| leftover::is_free(folder, STATION)).unwrap_or_default()
+    }
+
+    fn flight(&self, number: usize) -> PathBuf {
+        self.of(&format!("flight{number}"))
+    }
+}
+
+impl Recorded {
+    fn of(folder: &Path) -> Self {
+        let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+        let is_log = |path: &PathBuf| {
+            let ending = path.extension().and_then(|ending| ending.to_str());
+            ending.is_some_and(|ending| ONBOARD.iter().any(|known| ending.eq_ignore_ascii_case(known)))
+        };
+        let mut logs: Vec<PathBuf> = entries.filter(is_log).collect();
+        logs.sort();
+        Self { radio: folder.join(TLOG), onboard: logs.pop() }
+    }
+}
+
+/// A line of a flight's events.
+#[derive(Deserialize)]
+struct Event {
+    kind: String,
+    text: String,
+}
+
+fn phases(folder: &Path) -> Vec<String> {
+    let text = fs::read_to_string(folder.join(EVENTS)).unwrap_or_default();
+    let events = text.lines().filter_map(|line| serde_json::from_str::<Event>(line).ok());
+    events.filter(|event| event.kind == "phase").map(|event| event.text).collect()
+}
+
+fn reached_trajectory(folder: &Path) -> bool {
+    folder.join(TLOG).is_file() && phases(folder).iter().any(|phase| phase == TRAJECTORY)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn made(name: &str) -> Folder {
+        let place = std::env::temp_dir().join(format!("mavid-run-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&place);
+        Folder::at(place).unwrap()
+    }
+
+    fn flown(folder: &Path, phases: &[&str]) {
+        fs::create_dir_all(folder).unwrap();
+        fs::write(folder.join(TLOG), "recorded").unwrap();
+        let line = |phase: &&str| {
+            format!("{{\"time_s\":1.0,\"level\":\"information\",\"kind\":\"phase\",\"text\":\"{phase}\"}}\n")
+        };
+        fs::write(folder.join(EVENTS), phases.iter().map(line).collect::<String>()).unwrap();
+    }
+
+    #[test]
+    fn a_flight_that_is_recorded_counts_and_what_never_flew_does_not() {
+        let folder = made("state");
+        assert_eq!(folder.flights(), []);
+        fs::create_dir_all(folder.of("flight1")).unwrap();
+        assert_eq!(folder.new_flight(), folder.of("flight1"), "an empty folder blocks nothing");
+        flown(&folder.of("flight1"), &["connect", "check", "over"]);
+        assert_eq!((folder.flights().len(), folder.new_flight()), (0, folder.of("flight2")));
+        flown(&folder.of("flight2"), &["connect", "check", "take off", "trajectory", "land", "over"]);
+        fs::write(folder.of("flight2/log_3.ulg"), "").unwrap();
+        fs::write(folder.of("flight2/log_4.ulg.part"), "").unwrap();
+        let flights = folder.flights();
+        assert_eq!(flights.len(), 1);
+        assert_eq!(flights[0].onboard, Some(folder.of("flight2/log_3.ulg")));
+        fs::create_dir_all(folder.of("flight3")).unwrap();
+        fs::write(folder.of("flight3").join(TLOG), "").unwrap();
+        assert_eq!(folder.new_flight(), folder.of("flight3"), "nobody was there");
+        fs::remove_dir_all(folder.path()).unwrap();
+    }
+
+    #[test]
+    fn a_file_is_no_folder() {
+        let folder = made("file");
+        let file = folder.of("file");
+        fs::write(&file, "").unwrap();
+        assert!(Folder::at(file).unwrap_err().to_string().contains("is a file"));
+        fs::remove_dir_all(folder.path()).unwrap();
+    }
+}

@@ -1,0 +1,36 @@
+//! `mavid run`: from a vehicle to what its model lacks. Each step is a command that exists, and is said as it is typed.
+//!
+//! ```text
+//! target       the vehicle: at an address, or embedded
+//! vehicle      its file, from its parameters and what a person knows
+//! room         limits that a person confirms
+//! planned      the trajectory of each flight
+//! rehearsal    the same flight on the embedded twin
+//! flying       the flight
+//! explained    what all flights say together, and whether a further one would bring more
+//! finish       the appendix, and the model for simulators
+//! page         the answer
+//! ```
+//!
+//! What was done is told by the files in the folder: a run is taken up where it was left.
+
+mod ask;
+mod concealed;
+mod context;
+mod embedded;
+mod explained;
+mod finish;
+mod flying;
+mod folder;
+mod page;
+mod planned;
+mod progress;
+mod rehearsal;
+mod room;
+mod step;
+mod target;
+mod vehicle;
+mod verb;
+
+pub use context::Recipe;
+pub use verb::{run, story};

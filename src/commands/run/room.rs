@@ -1,0 +1,171 @@
+//! The room: confirmed by a person, and written as the limits of every plan.
+
+use std::fmt::Write;
+
+use mavid::plan::{Reach, floor_m, with_room};
+use mavid::units::deg_from_rad;
+use mavid::vehicle::{Limits, Vehicle};
+
+use super::ask::Ask;
+use super::folder::Folder;
+use crate::commands::{CommandError, output};
+
+/// Where none is stated: length, width and height, m.
+pub const USUAL_M: [f64; 3] = [4.0, 4.0, 3.0];
+/// Lengths of rooms, m.
+const SIDES_M: (f64, f64) = (0.5, 200.0);
+/// Where the lowest point of a flight is, if the room is high enough, m.
+const LOW_M: f64 = 1.0;
+/// A flight has at least this much to climb and to sink, m, ...
+const LEAST_HEIGHT_M: f64 = 0.3;
+/// ... and this much to each side.
+const LEAST_SIDE_M: f64 = 0.3;
+
+/// Length, width and height, checked.
+///
+/// # Errors
+/// What was expected.
+pub fn sides(numbers: &[f64]) -> Result<[f64; 3], String> {
+    match numbers {
+        [x, y, z] if numbers.iter().all(|side| (SIDES_M.0..=SIDES_M.1).contains(side)) => Ok([*x, *y, *z]),
+        _ => Err(format!(
+            "length, width and height as X,Y,Z, each of {} to {} m, such as 4,4,3",
+            SIDES_M.0, SIDES_M.1
+        )),
+    }
+}
+
+fn typed(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|side| side.trim().parse().ok()).collect();
+    sides(&numbers.unwrap_or_default())
+}
+
+/// The limits inside a room for this vehicle, which stands in its middle.
+///
+/// # Errors
+/// The room is too small: what it needs.
+pub fn limits_in([x_m, y_m, z_m]: [f64; 3], vehicle: &Vehicle) -> Result<Limits, String> {
+    let (reach, floor_m) = (Reach::of(vehicle), floor_m(vehicle));
+    let (side_m, height_m) = (2.0 * (reach.side_m + LEAST_SIDE_M), floor_m + LEAST_HEIGHT_M + reach.up_m);
+    if x_m < side_m || y_m < side_m || z_m < height_m {
+        return Err(format!(
+            "a room of at least {side_m:.1},{side_m:.1},{height_m:.1} m for this vehicle (its rotors reach {:.2} m to each \
+             side, and its lowest flight is at {floor_m:.2} m)",
+            reach.side_m
+        ));
+    }
+    let lowest = (z_m - reach.up_m - 2.0 * LEAST_HEIGHT_M).clamp(floor_m, LOW_M.max(floor_m));
+    let room = Limits {
+        x_max_m: Some(x_m / 2.0),
+        y_max_m: Some(y_m / 2.0),
+        z_min_m: Some(lowest),
+        z_max_m: Some(z_m),
+        ..Limits::default()
+    };
+    Ok(with_room(&room, vehicle).limits)
+}
+
+/// The height of the hover after takeoff, m: the middle between the lowest and the highest flight.
+pub fn hover_m(limits: &Limits, vehicle: &Vehicle) -> f64 {
+    let low_m = limits.z_min_m.unwrap_or(LOW_M);
+    let high_m = limits.z_max_m.unwrap_or(USUAL_M[2]) - Reach::of(vehicle).up_m;
+    (50.0 * (low_m + high_m)).round() / 100.0
+}
+
+/// The room in the file `limits.toml` of the folder: that of `given`, or the one that is agreed to. A file that is there stays.
+///
+/// # Errors
+/// The room is too small, or nobody states one where nobody can be asked.
+pub fn settle(
+    (folder, ask): (&Folder, Ask),
+    given: Option<&[f64]>,
+    vehicle: &Vehicle,
+    is_simulated: bool,
+) -> Result<(), CommandError> {
+    let path = folder.limits();
+    if path.exists() {
+        if given.is_some() {
+            output::message("the room of limits.toml stays; remove the file to state another one");
+        }
+        return Ok(());
+    }
+    let option = |why: String| CommandError::Input(format!("--room: expected {why}"));
+    let sides_m = match given {
+        Some(numbers) => sides(numbers).map_err(option)?,
+        None => asked(ask, vehicle, is_simulated)?,
+    };
+    let came = |why: String| {
+        let [x, y, z] = sides_m;
+        option(format!("{why}, got {x},{y},{z}"))
+    };
+    let limits = limits_in(sides_m, vehicle).map_err(came)?;
+    output::file(&path, &text_of(&limits))
+}
+
+fn asked(ask: Ask, vehicle: &Vehicle, is_simulated: bool) -> Result<[f64; 3], CommandError> {
+    let [x, y, z] = USUAL_M;
+    let question = format!("Free room round the vehicle: length, width, height in m? [{x},{y},{z}]");
+    let fits = |text: &str| typed(text).and_then(|sides| limits_in(sides, vehicle).map(|_| sides));
+    let alone = || {
+        match is_simulated {
+        true => Ok(None),
+        false => Err(CommandError::Input(
+            "--room: expected the free room round the vehicle as X,Y,Z in m, got none: with --yes nobody confirms one"
+                .to_owned(),
+        )),
+    }
+    };
+    Ok(ask.value(&question, fits, alone)?.unwrap_or(USUAL_M))
+}
+
+/// The limits as a file, to be read and changed by people.
+fn text_of(limits: &Limits) -> String {
+    let mut text = String::from(
+        "# The free room round the place of takeoff, and how lively it is flown. Every plan of this folder keeps it.\n[limits]\n",
+    );
+    let mut line = |name: &str, value: Option<f64>, comment: &str| {
+        if let Some(value) = value {
+            let value = (1e4 * value).round() / 1e4;
+            // writing to a String cannot fail
+            let _ = writeln!(text, "{name} = {value:?}{comment}");
+        }
+    };
+    line("x_max_m", limits.x_max_m, "   # half the length, south to north");
+    line("y_max_m", limits.y_max_m, "   # half the width, west to east");
+    line("z_min_m", limits.z_min_m, "   # lowest flight");
+    line("z_max_m", limits.z_max_m, "   # ceiling");
+    line("speed_max_m_s", limits.speed_max_m_s, "");
+    line("roll_max_deg", limits.roll_max_rad.map(deg_from_rad), "");
+    line("pitch_max_deg", limits.pitch_max_rad.map(deg_from_rad), "");
+    line("yaw_rate_max_deg_s", limits.yaw_rate_max_rad_s.map(deg_from_rad), "");
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mavid::config::parse_limits;
+    use mavid::simulate::random_vehicle;
+
+    #[test]
+    fn a_room_is_written_as_it_is_read() {
+        let vehicle = random_vehicle(1).truth;
+        let limits = limits_in([6.0, 4.0, 5.0], &vehicle).unwrap();
+        let read = parse_limits(&text_of(&limits), "limits.toml").unwrap();
+        assert_eq!((read.x_max_m, read.y_max_m, read.z_max_m), (Some(3.0), Some(2.0), Some(5.0)));
+        assert_eq!(with_room(&read, &vehicle).notes, Vec::<String>::new());
+        let hover_m = hover_m(&read, &vehicle);
+        assert!(hover_m > read.z_min_m.unwrap() && hover_m < 5.0);
+    }
+
+    #[test]
+    fn a_room_that_is_too_small_says_what_is_needed() {
+        let vehicle = random_vehicle(1).truth;
+        let said = limits_in([0.5, 4.0, 3.0], &vehicle).unwrap_err();
+        assert!(said.contains("a room of at least") && said.contains("rotors reach"), "{said}");
+        assert!(limits_in([4.0, 4.0, 0.6], &vehicle).is_err());
+        assert!(sides(&[4.0, 4.0]).is_err() && sides(&[4.0, -4.0, 3.0]).is_err());
+        assert_eq!(typed("4, 5,3"), Ok([4.0, 5.0, 3.0]));
+        assert!(typed("large").is_err());
+    }
+}

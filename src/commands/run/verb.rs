@@ -1,0 +1,172 @@
+//! The run of `mavid run`, from the arguments to the answer.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use mavid::config::{parse_vehicle, read_vehicle};
+use mavid::fly::Record;
+use mavid::vehicle::Vehicle;
+
+use super::ask::Ask;
+use super::concealed::{acting, compare, table};
+use super::context::{Context, Recipe};
+use super::embedded::Embedded;
+use super::explained::{Explained, answer, explained};
+use super::folder::{Folder, Recorded};
+use super::page::{Document, Made, places};
+use super::target::Target;
+use super::{finish, flying, planned, rehearsal, room, vehicle};
+use crate::cli::RunArgs;
+use crate::commands::live::{self, Work};
+use crate::commands::sitl::DEFAULT_VEHICLE;
+use crate::commands::standard_error::StandardError;
+use crate::commands::{CommandError, Outcome, explain, fly, output};
+
+/// The folder where none is given.
+const FOLDER: &str = "mavid-run";
+
+/// Runs the verb.
+pub fn run(json: bool, stderr: &StandardError, args: &RunArgs) -> Result<Outcome, CommandError> {
+    let (args, stderr) = (args.clone(), stderr.clone());
+    live::run(move |work| story((json, &stderr), (&args, Recipe::default()), work))
+}
+
+/// Does it, step by step.
+///
+/// # Errors
+/// A step failed, or a doubt needs a person.
+pub fn story(
+    (json, stderr): (bool, &StandardError),
+    (args, recipe): (&RunArgs, Recipe),
+    work: &Work,
+) -> Result<Outcome, CommandError> {
+    let since = Instant::now();
+    let ask = Ask::new(args.yes)?;
+    checked(args)?;
+    let folder = Folder::at(args.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER)))?;
+    let context = Context::new((args, recipe), (folder, ask), (stderr, work));
+    let flown = flown(&context)?;
+    let Flown { explained: Explained { study, logs }, record, flights } = &flown;
+    context.stage("Model and report");
+    finish::rigid_body(&context, logs);
+    let exports = finish::exports(&context);
+    // the verdict is written: only now is it read what was concealed
+    let concealed = match &args.effects {
+        Some(file) => compare(&acting(file, &flying_vehicle(args)?)?, &study.effects),
+        None => Vec::new(),
+    };
+    let took_s = since.elapsed().as_secs_f64();
+    let made = Made { study, record: record.as_ref(), flights: *flights, exports, concealed, took_s };
+    if json {
+        output::json(&Document::new(&context, made))?;
+    } else {
+        output::message("");
+        let shown = (!made.concealed.is_empty()).then(|| table(&made.concealed, study.vehicle()));
+        let parts = [Some(answer(study)), shown, Some(places(&context, &made))];
+        output::text(&parts.into_iter().flatten().collect::<Vec<_>>().join("\n\n"))?;
+    }
+    match record {
+        Some(record) => fly::outcome(record, Some(Ok(explain::outcome(study)))),
+        None => Ok(explain::outcome(study)),
+    }
+}
+
+/// What can be told before anybody is spoken to.
+fn checked(args: &RunArgs) -> Result<(), CommandError> {
+    if let Some(numbers) = &args.room {
+        room::sides(numbers).map_err(|why| CommandError::Input(format!("--room: expected {why}")))?;
+    }
+    if let Some(file) = &args.effects {
+        acting(file, &flying_vehicle(args)?)?;
+    }
+    Ok(())
+}
+
+/// The embedded vehicle as it is described.
+fn flying_vehicle(args: &RunArgs) -> Result<Vehicle, CommandError> {
+    Ok(match &args.vehicle {
+        Some(file) => read_vehicle(file)?.vehicle,
+        None => parse_vehicle(DEFAULT_VEHICLE, "the vehicle within the program")?.vehicle,
+    })
+}
+
+/// All flights, explained.
+struct Flown {
+    explained: Explained,
+    /// of the last flight, where one was flown now
+    record: Option<Record>,
+    flights: usize,
+}
+
+/// Flies until every name is certain, or nobody wants a further flight.
+fn flown(context: &Context<'_>) -> Result<Flown, CommandError> {
+    let mut flights = context.folder.flights();
+    let is_over = flights.len() >= context.flights_max();
+    context.stage("Vehicle");
+    let mut target = if is_over { None } else { Some(Target::of(context)?) };
+    let vehicle = match &mut target {
+        Some(target) => vehicle::settle(context, target)?,
+        None => read_vehicle(&context.folder.vehicle())?.vehicle,
+    };
+    let is_simulated = context.args.sitl;
+    context.stage("Room and trajectory");
+    room::settle((&context.folder, context.ask), context.args.room.as_deref(), &vehicle, is_simulated)?;
+    let (mut record, mut logging) = (None, None);
+    let mut done = None;
+    if flights.is_empty() {
+        let trajectory = planned::first(context, &vehicle)?;
+        let Some(target) = &mut target else { return Err(nothing_flown()) };
+        if context.args.rehearse {
+            context.stage("Rehearsal on the embedded twin");
+            rehearsal::prepare(context, target, vehicle.body.mass_kg)?;
+            rehearsal::rehearse(context, &vehicle, &trajectory)?;
+        }
+        record = Some(fly_one(context, target, (&trajectory, &mut logging), &mut flights)?);
+    }
+    loop {
+        context.stage(if flights.len() == 1 { "Explanation" } else { "Explanation of all flights together" });
+        let study = &done.insert(explained(context, &flights)?).study;
+        let goes_on = record.as_ref().is_none_or(|record: &Record| record.outcome.is_whole());
+        let Some(target) = target.as_ref().filter(|_| goes_on && flights.len() < context.flights_max())
+        else {
+            break;
+        };
+        if study.is_certain() || !matches!(&study.next, Some(Ok(_))) || !wanted(context, study)? {
+            break;
+        }
+        context.stage("Next flight");
+        let trajectory = planned::further(context, &vehicle, flights.len() + 1)?;
+        record = Some(fly_one(context, target, (&trajectory, &mut logging), &mut flights)?);
+    }
+    target.and_then(|target| target.embedded).into_iter().for_each(Embedded::stop);
+    Ok(Flown { explained: done.ok_or_else(nothing_flown)?, record, flights: flights.len() })
+}
+
+fn nothing_flown() -> CommandError {
+    CommandError::Input("--flights: expected a flight, or one in the folder, got none".to_owned())
+}
+
+/// Whether a further flight is wanted.
+fn wanted(context: &Context<'_>, study: &mavid::study::ExplainStudy) -> Result<bool, CommandError> {
+    answer(study).lines().for_each(output::message);
+    context.ask.agreed("Fly it?", true)
+}
+
+/// One flight, which joins the others.
+fn fly_one(
+    context: &Context<'_>,
+    target: &Target,
+    (trajectory, logging): (&std::path::Path, &mut Option<bool>),
+    flights: &mut Vec<Recorded>,
+) -> Result<Record, CommandError> {
+    context.stage("Flight");
+    let set_logging = match *logging {
+        Some(known) => known,
+        None => *logging.insert(flying::may_set_logging(context, target)?),
+    };
+    let out = context.folder.new_flight();
+    let step = flying::step_of(context, target, (trajectory, &out), set_logging);
+    let flight = flying::fly(context, target, &step)?;
+    flights.push(flight.recorded);
+    Ok(flight.record)
+}

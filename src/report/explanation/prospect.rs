@@ -1,0 +1,54 @@
+//! What a further flight would bring, in one sentence.
+
+use crate::diagnose::called;
+use crate::diagnose::experiment::{NextFlight, Pair};
+use crate::study::ExplainStudy;
+
+/// What a further flight would bring; `None` where none was designed.
+#[must_use]
+pub fn next_flight_words(study: &ExplainStudy) -> Option<String> {
+    let next = study.next.as_ref()?;
+    if study.is_certain() {
+        let names = if study.effects.is_empty() { "" } else { "Every name is certain: " };
+        return Some(capital(&format!("{names}no further flight is needed.")));
+    }
+    Some(match next {
+        Ok(next) => format!("{}{}", known(study), brought(next)),
+        Err(why) => format!("{}A further flight would not tell more: {why}.", known(study)),
+    })
+}
+
+/// A sentence on the sizes that are known, where there are some.
+fn known(study: &ExplainStudy) -> String {
+    let one = |effect| {
+        let percent = 100.0 * study.known_to(effect)?;
+        let digits = usize::from(percent < 1.0);
+        Some(format!("{} is known to {percent:.digits$} %", called(effect.id)))
+    };
+    let all: Vec<String> = study.effects.iter().filter_map(one).collect();
+    if all.is_empty() { String::new() } else { format!("{}. ", capital(&all.join(", "))) }
+}
+
+/// What the designed flight separates.
+fn brought(next: &NextFlight) -> String {
+    let seconds = format!("A further flight of {:.0} s would", next.seconds);
+    let sigma = |pair: &Pair| {
+        let both = pair.now.hypot(pair.after);
+        format!("now {:.1}, with it {both:.1} standard deviations", pair.now)
+    };
+    let pairs = next.pairs.iter().map(|pair| match pair.other {
+        Some(other) => {
+            format!("{seconds} tell {} from {} ({})", called(pair.named), called(other), sigma(pair))
+        }
+        None => format!("{seconds} determine {} better ({} from zero)", called(pair.named), sigma(pair)),
+    });
+    let apart = next.inseparable.iter().map(|pair| {
+        format!("No trajectory tells {} from {}: {}", called(pair.named), called(pair.other), pair.why)
+    });
+    pairs.chain(apart).map(|sentence| format!("{sentence}.")).collect::<Vec<_>>().join(" ")
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

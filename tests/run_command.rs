@@ -1,0 +1,127 @@
+//! `mavid run` at its process boundary, as far as it goes without a flight; and how long a vehicle is waited for.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
+
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::time::Duration;
+
+use mavid::link::LinkOptions;
+use mavid::note::Note;
+use mavid::onboard::{OnboardError, Session, SessionRequest};
+
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("run").join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    path
+}
+
+/// Runs it without a terminal.
+fn run(out: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_mavid"))
+        .arg("run")
+        .arg("--out")
+        .arg(out)
+        .args(arguments)
+        .stdin(std::process::Stdio::null())
+        .output()
+        .unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+#[test]
+fn what_cannot_be_is_told_before_anybody_is_spoken_to() {
+    let out = folder("wrong");
+    let nobody = ["--connect", "udpin:127.0.0.1:0"];
+    let vehicle = format!("{}/configs/x500.toml", env!("CARGO_MANIFEST_DIR"));
+    for (arguments, expected) in [
+        // nobody can be asked
+        (
+            vec![nobody[0], nobody[1], "--mass", "2"],
+            "expected a terminal at which questions can be answered, or --yes",
+        ),
+        (vec!["--mass", "2", "--yes"], "--connect <ADDRESS>"),
+        (vec![nobody[0], nobody[1], "--sitl", "--yes"], "cannot be used with"),
+        (vec![nobody[0], nobody[1], "--arm"], "--yes"),
+        (vec![nobody[0], nobody[1], "--autopilot", "px4", "--yes"], "cannot be used with"),
+        (
+            vec![nobody[0], nobody[1], "--yes"],
+            "--mass: expected the mass with battery and payload in kg, got none",
+        ),
+        (vec![nobody[0], nobody[1], "--yes", "--room", "4,4"], "--room: expected length, width and height"),
+        (vec!["--connect", "nowhere", "--mass", "2", "--yes"], "udpin:HOST:PORT"),
+        (vec!["--sitl", "--yes", "--effects", "nowhere.toml"], "nowhere.toml"),
+        (vec![nobody[0], nobody[1], "--mass", "2", "--vehicle", &vehicle, "--yes"], "cannot be used with"),
+    ] {
+        let output = run(&out, &arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
+        assert!(output.stdout.is_empty());
+    }
+}
+
+#[test]
+fn a_doubt_ends_a_run_without_a_person_and_says_what_to_do() {
+    let out = folder("doubt");
+    // an empty folder blocks nothing
+    std::fs::create_dir_all(&out).unwrap();
+    let small = run(&out, &["--sitl", "--yes", "--room", "0.8,4,3"]);
+    assert_eq!(small.status.code(), Some(2), "{}", stderr(&small));
+    assert!(stderr(&small).contains("--room: expected a room of at least"), "{}", stderr(&small));
+    assert!(!out.join("limits.toml").exists());
+    // the vehicle's file is there from now on
+    let other = run(&out, &["--sitl", "--yes", "--mass", "3", "--room", "4,4,3"]);
+    assert_eq!(other.status.code(), Some(2), "{}", stderr(&other));
+    assert!(stderr(&other).contains("--mass: expected the 2.0643 kg of"), "{}", stderr(&other));
+    // by the vehicle's own parameters it is a vehicle of this size: no such mass flies with it
+    let out = folder("contradiction");
+    let light = run(&out, &["--sitl", "--yes", "--mass", "0.006", "--room", "4,4,3"]);
+    assert_eq!(light.status.code(), Some(2), "{}", stderr(&light));
+    let said = stderr(&light);
+    assert!(said.contains("the vehicle is doubtful") && said.contains("State mass and size anew"), "{said}");
+    assert!(said.contains("$ mavid vehicle init --from tcpout:127.0.0.1:"), "{said}");
+    assert!(!out.join("vehicle.toml").exists() && out.join("vehicle.toml.doubtful").exists());
+}
+
+#[test]
+fn a_real_room_is_never_assumed() {
+    let out = folder("no_room");
+    std::fs::create_dir_all(&out).unwrap();
+    std::fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml"), out.join("vehicle.toml"))
+        .unwrap();
+    let output = run(&out, &["--connect", "udpin:127.0.0.1:0", "--yes"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("--room: expected the free room"), "{}", stderr(&output));
+    assert!(!out.join("plan.toml").exists());
+}
+
+thread_local! {
+    static TOLD: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
+}
+
+fn tell(note: &Note) {
+    TOLD.with_borrow_mut(|told| told.push(note.sentence()));
+}
+
+/// The clock stands still but for what is waited for.
+#[tokio::test(start_paused = true)]
+async fn who_waits_for_a_vehicle_says_how_long() {
+    let request = SessionRequest {
+        address: "udpin:127.0.0.1:0".parse().unwrap(),
+        options: LinkOptions::default(),
+        system: None,
+        patience: Duration::from_secs(30),
+        interrupt: Box::pin(std::future::pending()),
+        tell,
+    };
+    let Err(error) = Session::open(request).await else { panic!("nobody is there") };
+    assert!(matches!(error, OnboardError::Absent { within_s: 30, .. }), "{error}");
+    let told = TOLD.with_borrow(Clone::clone);
+    let waited: Vec<&String> = told.iter().filter(|line| line.contains("waiting")).collect();
+    assert_eq!(waited.len(), 4, "{told:?}");
+    assert!(waited[1].ends_with("no vehicle yet: waiting 12 of 30 s"), "{told:?}");
+}
