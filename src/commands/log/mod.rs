@@ -11,5 +11,8 @@ mod verb;
 
 pub use before::{before_flight, link_of, put_back};
 pub use flown::{Fetching, after_flight};
-pub use link::parameters_of_vehicle;
+pub use hint::link_options;
+pub use link::{open, parameters_of_vehicle};
+pub use prepare::{agreed, put_back_page};
+pub use state::notes_of_loaded;
 pub use verb::run;
