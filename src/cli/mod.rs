@@ -17,7 +17,7 @@ pub use compare::CompareArgs;
 pub use flight::{CheckName, FlyArgs, OriginName};
 pub use given::ShapeArgs;
 pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
-pub use model::{ExportArgs, ExportFormat, InitArgs, SimulateArgs, VehicleArgs, VehicleVerb};
+pub use model::{ExportArgs, ExportFormat, InitArgs, LoadArgs, SimulateArgs, VehicleArgs, VehicleVerb};
 pub use onboard::{LogArgs, LogFetchArgs, LogListArgs, LogPrepareArgs, LogVerb, VehicleLinkArgs};
 pub use plan::{CriterionName, PlanArgs};
 pub use recording::{

@@ -1,6 +1,7 @@
 //! Arguments of the verbs that take a vehicle or a model alone.
 
 use super::given::{DraftArgs, ShapeArgs};
+use super::onboard::VehicleLinkArgs;
 use super::recording::ReadArgs;
 use clap::{ArgGroup, Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -23,6 +24,28 @@ pub enum VehicleVerb {
     /// Write a first vehicle file from a log: rotors and thrust curve from the autopilot's parameters, thrust from the
     /// flight, the rest from rules of thumb, marked as guesses
     Init(InitArgs),
+    /// Set the parameters of a file on a vehicle: shows old and new values, asks, keeps what was found, reads back
+    Load(LoadArgs),
+}
+
+/// Arguments of `mavid vehicle load`.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("what").required(true).args(["file", "undo"]))]
+pub struct LoadArgs {
+    /// the vehicle
+    #[command(flatten)]
+    pub link: VehicleLinkArgs,
+    /// the parameters, as `mavid export --to px4-params` or `ardupilot-params` or a ground station writes them
+    pub file: Option<PathBuf>,
+    /// put back what was found before a file was loaded onto this vehicle
+    #[arg(long)]
+    pub undo: bool,
+    /// set them without a question
+    #[arg(long, conflicts_with = "undo")]
+    pub yes: bool,
+    /// leave out what the vehicle does not have; without it nothing is set then
+    #[arg(long, conflicts_with = "undo")]
+    pub known_only: bool,
 }
 
 /// Arguments of `mavid vehicle init`.
@@ -91,7 +114,7 @@ pub struct ExportArgs {
     /// in its place
     #[command(flatten)]
     pub draft: DraftArgs,
-    /// the simulator
+    /// the simulator, or the autopilot of the aircraft
     #[arg(long, value_enum)]
     pub to: ExportFormat,
     /// file to write; without it standard output
@@ -99,7 +122,7 @@ pub struct ExportArgs {
     pub out: Option<PathBuf>,
 }
 
-/// Names of the simulators.
+/// Names of the simulators and of the aircraft's autopilots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ExportFormat {
     /// parameters of PX4's simulation in hardware
@@ -112,4 +135,8 @@ pub enum ExportFormat {
     Mjcf,
     /// RotorPy
     Rotorpy,
+    /// parameters of the aircraft's PX4 that follow from the model, each with its error and its reason
+    Px4Params,
+    /// parameters of the aircraft's ArduPilot that follow from the model, each with its error and its reason
+    ArdupilotParams,
 }

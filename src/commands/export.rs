@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use mavid::export::{Exported, Format, export};
+use mavid::export::{
+    AircraftParameter, AircraftParameters, Exported, Format, ParameterStyle, aircraft_parameters, export,
+};
 use mavid::study::effects_of;
 use mavid::text;
 use serde::Serialize;
@@ -15,17 +17,56 @@ struct Document {
     schema: u32,
     file: Option<String>,
     text: String,
+    /// of the aircraft's autopilot; none for a simulator
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    parameters: Vec<ParameterLine>,
     left_out: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct ParameterLine {
+    name: String,
+    value: f64,
+    std: Option<f64>,
+    unit: &'static str,
+    why: String,
+}
+
+impl From<AircraftParameter> for ParameterLine {
+    fn from(parameter: AircraftParameter) -> Self {
+        let AircraftParameter { name, value, std, unit, why, .. } = parameter;
+        Self { name, value, std, unit, why }
+    }
+}
+
+/// What the format stands for.
+enum Target {
+    Simulator(Format),
+    Aircraft(ParameterStyle),
+}
+
+impl From<ExportFormat> for Target {
+    fn from(to: ExportFormat) -> Self {
+        match to {
+            ExportFormat::Px4Sih => Self::Simulator(Format::Px4Sih),
+            ExportFormat::ArdupilotSitl => Self::Simulator(Format::ArdupilotSitl),
+            ExportFormat::Sdf => Self::Simulator(Format::Sdf),
+            ExportFormat::Mjcf => Self::Simulator(Format::Mjcf),
+            ExportFormat::Rotorpy => Self::Simulator(Format::Rotorpy),
+            ExportFormat::Px4Params => Self::Aircraft(ParameterStyle::Px4),
+            ExportFormat::ArdupilotParams => Self::Aircraft(ParameterStyle::ArduPilot),
+        }
+    }
 }
 
 /// Runs the verb.
 pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
-    let Made { exported: Exported { text, left_out }, origin, warnings } = make(args)?;
+    let Made { text, left_out, parameters, origin, warnings } = make(args)?;
     output::warnings(&origin, &warnings);
     left_out.iter().for_each(|note| output::message(&format!("note: {note}")));
     if json {
         let file = args.out.as_ref().map(|path| text::path(&path));
-        output::json(&Document { schema: 1, file, text, left_out })?;
+        output::json(&Document { schema: 1, file, text, parameters, left_out })?;
     } else if args.out.is_none() {
         output::text(text.trim_end())?;
     }
@@ -35,7 +76,11 @@ pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
 /// A model that was exported.
 #[derive(Debug)]
 pub struct Made {
-    exported: Exported,
+    text: String,
+    /// what of the model is not in it
+    left_out: Vec<String>,
+    /// of the aircraft's autopilot; none for a simulator
+    parameters: Vec<ParameterLine>,
     /// what messages call the model
     origin: PathBuf,
     /// what is doubtful about it
@@ -48,17 +93,23 @@ pub fn make(args: &ExportArgs) -> Result<Made, CommandError> {
     let refuse =
         |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&origin)));
     let active = effects_of(&loaded.model.effects, &text::path(&origin), &loaded.vehicle)?;
-    let format = match args.to {
-        ExportFormat::Px4Sih => Format::Px4Sih,
-        ExportFormat::ArdupilotSitl => Format::ArdupilotSitl,
-        ExportFormat::Sdf => Format::Sdf,
-        ExportFormat::Mjcf => Format::Mjcf,
-        ExportFormat::Rotorpy => Format::Rotorpy,
+    let (text, left_out, parameters) = match Target::from(args.to) {
+        Target::Simulator(format) => {
+            let Exported { text, left_out } =
+                export(&loaded.vehicle, &active, format).map_err(|error| refuse(&error))?;
+            (text, left_out, Vec::new())
+        }
+        Target::Aircraft(style) => {
+            let identified = loaded.model.identified.as_ref();
+            let AircraftParameters { parameters, left_out, text } =
+                aircraft_parameters(&loaded.vehicle, &active, identified, style)
+                    .map_err(|error| refuse(&error))?;
+            (text, left_out, parameters.into_iter().map(ParameterLine::from).collect())
+        }
     };
-    let exported = export(&loaded.vehicle, &active, format).map_err(|error| refuse(&error))?;
     if let Some(path) = &args.out {
-        output::file(path, &exported.text)?;
+        output::file(path, &text)?;
     }
     let warnings = loaded.warnings;
-    Ok(Made { exported, origin, warnings })
+    Ok(Made { text, left_out, parameters, origin, warnings })
 }

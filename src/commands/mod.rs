@@ -16,6 +16,7 @@ mod inspect;
 mod last_word;
 mod leftover;
 mod live;
+mod load;
 mod log;
 mod network;
 mod outcome;

@@ -17,6 +17,7 @@ use crate::cli::{InitArgs, VehicleArgs, VehicleLinkArgs, VehicleVerb};
 pub fn run(json: bool, args: &VehicleArgs) -> Result<Outcome, CommandError> {
     match (&args.verb, &args.file) {
         (Some(VehicleVerb::Init(init)), _) => draft(json, init),
+        (Some(VehicleVerb::Load(load)), _) => super::load::run(json, load),
         (None, Some(file)) => check(json, file),
         (None, None) => Ok(Outcome::Done),
     }

@@ -1,9 +1,10 @@
-//! A model for the simulators people use.
+//! A model for the simulators people use, and for the autopilot of the aircraft itself.
 //!
 //! Signs, frames and units are converted here and nowhere else: body forward-left-up becomes
 //! forward-right-down for PX4 and ArduPilot. What a simulator has no place for is told, never dropped in
 //! silence.
 
+mod aircraft;
 mod ardupilot;
 mod axes;
 mod drag;
@@ -17,6 +18,7 @@ mod rotorpy;
 mod sdf;
 mod source;
 
+pub use aircraft::{AircraftParameter, AircraftParameters, ParameterStyle, aircraft_parameters};
 pub use error::ExportError;
 pub use format::{Format, export};
 pub use places::{PLACES, places};

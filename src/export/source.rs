@@ -28,14 +28,14 @@ impl<'a> Source<'a> {
     /// [`Self::take`], `missing` where the model does not have the effect or does not state the parameter.
     pub(super) fn take_or(&mut self, id: &'static str, parameter: &str, missing: f64) -> f64 {
         self.taken.push(id);
-        let active = self.effects.iter().find(|active| active.effect().id() == id);
-        active.map_or(missing, |active| {
-            let names = active.effect().parameters().iter().chain(active.effect().finer_parameters());
-            names
-                .zip(active.parameters())
-                .find(|(p, _)| p.name == parameter)
-                .map_or(missing, |(_, value)| *value)
-        })
+        self.value(id, parameter).unwrap_or(missing)
+    }
+
+    /// An effect's parameter, where the model has the effect; it is not carried over by that.
+    pub(super) fn value(&self, id: &str, parameter: &str) -> Option<f64> {
+        let active = self.effects.iter().find(|active| active.effect().id() == id)?;
+        let names = active.effect().parameters().iter().chain(active.effect().finer_parameters());
+        names.zip(active.parameters()).find(|(p, _)| p.name == parameter).map(|(_, value)| *value)
     }
 
     /// An effect was looked at and this simulator cannot hold it: it is told as left out.

@@ -56,8 +56,9 @@ pub enum NotesError {
     },
 }
 
-/// Beginning and end of the name of a vehicle's file.
+/// Beginning and end of the name of a vehicle's file: of what was changed for its logging, and of a file that was loaded.
 const PREFIX: &str = "logging-";
+const LOADED: &str = "loaded-";
 const SUFFIX: &str = ".toml";
 
 /// The notes of one vehicle.
@@ -68,14 +69,24 @@ pub struct Notes {
 }
 
 impl Notes {
-    /// Of this vehicle, in this folder.
+    /// Of this vehicle's logging, in this folder.
     #[must_use]
     pub fn of(folder: &Path, vehicle: &str) -> Self {
-        let path = folder.join(format!("{PREFIX}{}{SUFFIX}", local_name(vehicle)));
+        Self::named(PREFIX, folder, vehicle)
+    }
+
+    /// Of what was loaded onto this vehicle from a file, in this folder.
+    #[must_use]
+    pub fn of_loaded(folder: &Path, vehicle: &str) -> Self {
+        Self::named(LOADED, folder, vehicle)
+    }
+
+    fn named(prefix: &str, folder: &Path, vehicle: &str) -> Self {
+        let path = folder.join(format!("{prefix}{}{SUFFIX}", local_name(vehicle)));
         Self { path, vehicle: vehicle.to_owned() }
     }
 
-    /// Whether a file of this name holds notes.
+    /// Whether a file of this name holds notes of logging.
     #[must_use]
     pub fn are_at(path: &Path) -> bool {
         let name = path.file_name().and_then(|name| name.to_str());

@@ -49,6 +49,11 @@ impl ParameterValue {
         Self { value, of_type, is_whole: whole.is_some() }
     }
 
+    /// Whether it takes whole numbers alone.
+    pub(super) fn is_whole(&self) -> bool {
+        self.is_whole
+    }
+
     /// Another value of the same parameter, as PARAM_SET has it.
     #[expect(clippy::cast_possible_truncation, reason = "the message has no more room")]
     pub(super) fn encoded(&self, peer: &Peer, value: f64) -> f32 {

@@ -28,6 +28,12 @@ impl Known {
     pub fn value(&self, name: &str) -> Option<f64> {
         self.0.get(name).map(|parameter| parameter.value)
     }
+
+    /// Whether a parameter takes whole numbers alone.
+    #[must_use]
+    pub fn is_whole(&self, name: &str) -> bool {
+        self.0.get(name).is_some_and(ParameterValue::is_whole)
+    }
 }
 
 /// Reads some parameters.

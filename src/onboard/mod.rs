@@ -7,17 +7,22 @@
 //! ```text
 //! Session::open -> offer -> list -> fetch        the logs
 //!                        -> look -> change       the parameters of logging
-//!                        -> put_back             what an earlier run changed of them
+//!                        -> compare -> load      the parameters of a file
+//!                        -> put_back             what an earlier run changed of either
 //! ```
 
 mod download;
 mod error;
+mod loading;
 mod logging;
+mod parameter_file;
 mod parameters;
 mod session;
 
 pub use download::{Download, Listed, Progress, fetch, list};
 pub use error::OnboardError;
+pub use loading::{Loading, Wanted, compare, load};
 pub use logging::{LoggingState, PutBack, change, look, needs_restart, put_back};
+pub use parameter_file::{ParameterFileError, read_parameter_file};
 pub use parameters::read_as_needed;
 pub use session::{Flow, Interrupt, Session, SessionRequest};

@@ -15,7 +15,7 @@ use crate::commands::{CommandError, network, output};
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Opens the link and waits for the vehicle; one that is armed is refused. A host that refuses is not waited for.
-pub(super) async fn open(args: &VehicleLinkArgs) -> Result<Session, CommandError> {
+pub async fn open(args: &VehicleLinkArgs) -> Result<Session, CommandError> {
     begin(args, LinkOptions::default(), PATIENCE).await
 }
 

@@ -9,13 +9,21 @@ use crate::commands::CommandError;
 /// The variable that names the folder.
 const FOLDER: &str = "MAVID_STATE_DIR";
 
-/// The notes of a vehicle.
+/// The notes of a vehicle's logging.
 pub fn notes(vehicle: &str) -> Result<Notes, CommandError> {
-    let folder = folder().ok_or_else(|| {
+    Ok(Notes::of(&given_folder()?, vehicle))
+}
+
+/// The notes of what was loaded onto a vehicle.
+pub fn notes_of_loaded(vehicle: &str) -> Result<Notes, CommandError> {
+    Ok(Notes::of_loaded(&given_folder()?, vehicle))
+}
+
+fn given_folder() -> Result<PathBuf, CommandError> {
+    folder().ok_or_else(|| {
         let expected = "expected a folder for what is to be put back on the vehicle";
         CommandError::Input(format!("{expected}: set {FOLDER}, XDG_STATE_HOME or HOME"))
-    })?;
-    Ok(Notes::of(&folder, vehicle))
+    })
 }
 
 /// Whether there are notes of any vehicle.

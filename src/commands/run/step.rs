@@ -76,7 +76,10 @@ impl Step {
     /// Of `mavid vehicle init`.
     pub fn init(&self) -> Result<InitArgs, CommandError> {
         self.picked(|verb| match verb {
-            Verb::Vehicle(vehicle) => vehicle.verb.map(|VehicleVerb::Init(args)| args),
+            Verb::Vehicle(vehicle) => match vehicle.verb {
+                Some(VehicleVerb::Init(args)) => Some(args),
+                _ => None,
+            },
             _ => None,
         })
     }

@@ -1,0 +1,67 @@
+//! Rotors as PX4's control allocation takes them, CA_ROTORn_*.
+//!
+//! Places are from the centre of mass, forward-right-down; CT is relative, because the allocation divides by the sum.
+
+use super::determined::Determined;
+use super::parameter::{AircraftParameter, ParameterStyle};
+use crate::export::axes::frd;
+use crate::export::source::Source;
+use crate::text::with_error;
+
+/// PX4's default of CA_ROTORn_CT.
+const CT: f64 = 6.5;
+
+/// Places from the centre of mass that was found, and what a weak rotor gives.
+pub(super) fn geometry(
+    source: &mut Source<'_>,
+    determined: &Determined<'_>,
+    style: ParameterStyle,
+) -> Vec<AircraftParameter> {
+    if style != ParameterStyle::Px4 {
+        if source.has("weak_rotor") || source.has("com_offset") {
+            source.note(
+                "ArduPilot has no parameter for a rotor that gives less, or for a centre of mass beside the rotors' centre: balance the vehicle",
+            );
+        }
+        return Vec::new();
+    }
+    let mut parameters = places(source, determined);
+    parameters.extend(coefficients(source, determined));
+    parameters
+}
+
+fn places(source: &mut Source<'_>, determined: &Determined<'_>) -> Vec<AircraftParameter> {
+    let stds = ["x", "y"].map(|axis| determined.std("com_offset", axis));
+    let [Some(std_x), Some(std_y)] = stds else { return Vec::new() };
+    let rotors: Vec<String> = source.vehicle.rotors.iter().map(|rotor| rotor.name.clone()).collect();
+    let arms = source.arms_m();
+    let place = |(index, (arm, name)): (usize, (&nalgebra::Vector3<f64>, &String))| {
+        let [x, y, _] = frd(arm);
+        let why = format!("{name}, from the centre of mass that was found");
+        [("PX", x, std_x), ("PY", y, std_y)].map(|(end, value, std)| {
+            AircraftParameter::number(format!("CA_ROTOR{index}_{end}"), (value, std), "m", why.clone())
+        })
+    };
+    arms.iter().zip(&rotors).enumerate().flat_map(place).collect()
+}
+
+fn coefficients(source: &mut Source<'_>, determined: &Determined<'_>) -> Vec<AircraftParameter> {
+    let Some(std) = determined.std("weak_rotor", "factor") else { return Vec::new() };
+    let rotor = source.take_or("weak_rotor", "rotor", f64::NAN);
+    let factor = source.take("weak_rotor", "factor");
+    let one = |(index, rotor_file): (usize, &crate::vehicle::Rotor)| {
+        let is_weak = (index as f64 - rotor).abs() < 0.5;
+        let name = format!("CA_ROTOR{index}_CT");
+        let why = format!("{}, relative to the others", rotor_file.name);
+        if is_weak {
+            let why = format!(
+                "{why}: it gives {} of their thrust; repair it rather than fly with this",
+                with_error(factor, std)
+            );
+            AircraftParameter::number(name, (CT * factor, CT * std), "-", why)
+        } else {
+            AircraftParameter::switch(name, CT, false, why)
+        }
+    };
+    source.vehicle.rotors.iter().enumerate().map(one).collect()
+}

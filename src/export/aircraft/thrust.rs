@@ -1,0 +1,200 @@
+//! Hover throttle, thrust curve and battery compensation.
+//!
+//! Both autopilots take the share of thrust `(1 - f) u + f u^2` for a command u of the motors, and invert it: f is
+//! THR_MDL_FAC or MOT_THST_EXPO. MPC_THR_HOVER and MOT_THST_HOVER are shares of thrust behind that curve.
+
+use super::determined::Determined;
+use super::parameter::{AircraftParameter, ParameterStyle};
+use crate::export::source::Source;
+use crate::text::with_error;
+use crate::vehicle::ThrustLaw;
+
+/// Names and documented bounds.
+struct Names {
+    curve: &'static str,
+    curve_bounds: (f64, f64),
+    hover: &'static str,
+    hover_bounds: (f64, f64),
+}
+
+const fn names(style: ParameterStyle) -> Names {
+    match style {
+        ParameterStyle::Px4 => Names {
+            curve: "THR_MDL_FAC",
+            curve_bounds: (0.0, 1.0),
+            hover: "MPC_THR_HOVER",
+            hover_bounds: (0.1, 0.8),
+        },
+        ParameterStyle::ArduPilot => Names {
+            curve: "MOT_THST_EXPO",
+            curve_bounds: (-1.0, 1.0),
+            hover: "MOT_THST_HOVER",
+            hover_bounds: (0.125, 0.6875),
+        },
+    }
+}
+
+/// A rotor's thrust about hover: its command there, and by how many per cent the thrust grows with one per cent of command.
+#[derive(Debug, Clone, Copy)]
+struct AtHover {
+    command: f64,
+    elasticity: f64,
+}
+
+impl AtHover {
+    /// Factor f of the curve `(1 - f) u + f u^2` that has this elasticity at this command.
+    fn factor(self) -> f64 {
+        let beyond_linear = self.elasticity - 1.0;
+        beyond_linear / (beyond_linear + self.command * (1.0 - beyond_linear))
+    }
+}
+
+/// Share of full thrust by a curve of this factor.
+fn share(factor: f64, command: f64) -> f64 {
+    (1.0 - factor) * command + factor * command * command
+}
+
+/// Curve, hover and battery, as far as they were identified.
+pub(super) fn thrust(
+    source: &mut Source<'_>,
+    determined: &Determined<'_>,
+    style: ParameterStyle,
+) -> Vec<AircraftParameter> {
+    let names = names(style);
+    let propulsion = source.vehicle.propulsion;
+    // one rotor that gives less needs more of the command
+    let more = hover_commands(source);
+    let command = propulsion.command_from_thrust(more * source.airframe.hover_thrust_n);
+    let stated = match propulsion.law {
+        ThrustLaw::Speed { .. } => 1.0,
+        ThrustLaw::Curve { expo, .. } => expo,
+    };
+    let law = AtHover { command, elasticity: 1.0 + stated * command / ((1.0 - stated) + stated * command) };
+    let mut parameters = Vec::new();
+    let curve = curve(source, determined, law, &names);
+    let factor = curve.as_ref().map_or(stated, |curve| curve.value);
+    let factor_std = curve.as_ref().and_then(|curve| curve.std).unwrap_or(0.0);
+    parameters.extend(curve);
+    parameters.extend(hover(source, determined, (factor, factor_std, command), &names));
+    parameters.extend(battery(source, determined, factor, style));
+    parameters
+}
+
+/// Mean over the rotors of what each must be commanded to carry its share, over what a sound one must.
+fn hover_commands(source: &Source<'_>) -> f64 {
+    let count = source.vehicle.rotors.len() as f64;
+    let weak = source.value("weak_rotor", "factor").filter(|factor| *factor > 0.0);
+    weak.map_or(1.0, |factor| (count - 1.0 + factor.recip()) / count)
+}
+
+fn curve(
+    source: &mut Source<'_>,
+    determined: &Determined<'_>,
+    law: AtHover,
+    names: &Names,
+) -> Option<AircraftParameter> {
+    let Some(std) = determined.std("thrust_curve", "curvature") else {
+        source.note(format!(
+            "{} does not follow from this model: no other thrust curve than the vehicle file's was identified",
+            names.curve
+        ));
+        return None;
+    };
+    let curvature = source.take("thrust_curve", "curvature");
+    let at = |curvature: f64| AtHover { elasticity: law.elasticity * (1.0 + curvature), ..law }.factor();
+    let value = at(curvature);
+    let (least, most) = names.curve_bounds;
+    if !(least..=most).contains(&value) {
+        source.note(format!(
+            "{} is left out: the curve that was identified would need {value:.3}, and the autopilot documents {least} to {most}",
+            names.curve
+        ));
+        return None;
+    }
+    let value_std = 0.5 * (at(curvature + std) - at(curvature - std)).abs();
+    let why = format!(
+        "thrust curve about hover, bent by {} against that of the vehicle file",
+        with_error(curvature, std)
+    );
+    Some(AircraftParameter::number(names.curve, (value, value_std), "-", why))
+}
+
+fn hover(
+    source: &mut Source<'_>,
+    determined: &Determined<'_>,
+    (factor, factor_std, command): (f64, f64, f64),
+    names: &Names,
+) -> Option<AircraftParameter> {
+    let Some(load_std) = determined.load_relative_std() else {
+        source.note(format!(
+            "{} does not follow from this model: neither mass nor thrust was identified with a standard error",
+            names.hover
+        ));
+        return None;
+    };
+    let value = share(factor, command);
+    let (least, most) = names.hover_bounds;
+    if !(least..=most).contains(&value) {
+        source.note(format!(
+            "{} is left out: it would be {value:.3}, and the autopilot documents {least} to {most}",
+            names.hover
+        ));
+        return None;
+    }
+    let by_curve = factor_std * command * (1.0 - command);
+    let voltage = source.value("battery_sag", "full_voltage");
+    let voltage = voltage.map_or_else(
+        || "at the battery voltages of the flight".to_owned(),
+        |full_v| format!("at {full_v:.2} V"),
+    );
+    let why = format!(
+        "weight of {:.4} kg over full thrust of all rotors {voltage}, with {} = {factor:.3}",
+        source.vehicle.body.mass_kg, names.curve
+    );
+    Some(AircraftParameter::number(names.hover, (value, (value * load_std).hypot(by_curve)), "-", why))
+}
+
+/// ArduPilot's compensation of the voltage; PX4's has a law of its own.
+fn battery(
+    source: &mut Source<'_>,
+    determined: &Determined<'_>,
+    factor: f64,
+    style: ParameterStyle,
+) -> Option<AircraftParameter> {
+    let std = determined.std("battery_sag", "exponent")?;
+    let exponent = source.value("battery_sag", "exponent")?;
+    let full_v = source.value("battery_sag", "full_voltage")?;
+    let said = format!("thrust goes with the voltage to the power {}", with_error(exponent, std));
+    if style == ParameterStyle::Px4 {
+        source.note(format!(
+            "battery_sag: {said}; PX4 holds no such law: MC_BAT_SCALE_EN scales by its own estimate of the charge, and is not set here"
+        ));
+        return None;
+    }
+    // (1 - f) r + f r^2 about the full voltage goes with the power 1 + f
+    if (exponent - (1.0 + factor)).abs() > 2.0 * std {
+        source.note(format!(
+            "battery_sag: {said}; ArduPilot's compensation would take the power {:.2}: MOT_BAT_VOLT_MAX is left out",
+            1.0 + factor
+        ));
+        return None;
+    }
+    let _ = source.take("battery_sag", "exponent");
+    source.note("MOT_BAT_VOLT_MIN does not follow from the model: set it by the cells, at least 0.6 of MOT_BAT_VOLT_MAX");
+    let why = format!("{said}, as ArduPilot compensates it; full thrust of the model is at this voltage");
+    Some(AircraftParameter { unit: "V", ..AircraftParameter::switch("MOT_BAT_VOLT_MAX", full_v, false, why) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_factor_of_a_curve_is_found_from_its_slope() {
+        for (factor, command) in [(0.0, 0.4), (0.3, 0.55), (0.65, 0.3), (1.0, 0.5)] {
+            let slope = (1.0 - factor) + 2.0 * factor * command;
+            let at = AtHover { command, elasticity: slope * command / share(factor, command) };
+            assert!((at.factor() - factor).abs() < 1e-12, "{factor} {}", at.factor());
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! The parameters of a model, and their file.
+
+use super::determined::Determined;
+use super::drag::drag;
+use super::geometry::geometry;
+use super::parameter::{AircraftParameter, AircraftParameters, ParameterStyle};
+use super::thrust::thrust;
+use crate::export::error::ExportError;
+use crate::export::notes::line_comments;
+use crate::export::source::Source;
+use crate::physics::ActiveEffect;
+use crate::text::{line_comment, significant, with_error};
+use crate::vehicle::Vehicle;
+use std::fmt::Write;
+use toml::Table;
+
+/// MAV_PARAM_TYPE of a single-precision number and of a whole one.
+const REAL: u8 = 9;
+const WHOLE: u8 = 6;
+
+/// The parameters of the aircraft's autopilot that follow from a model; `identified` is the table of that name in its file.
+/// What has no standard error there has no parameter.
+///
+/// # Errors
+/// [`ExportError`] where the vehicle is not physical, or where nothing follows from the model.
+pub fn aircraft_parameters(
+    vehicle: &Vehicle,
+    effects: &[ActiveEffect],
+    identified: Option<&Table>,
+    style: ParameterStyle,
+) -> Result<AircraftParameters, ExportError> {
+    let determined = Determined::of(identified);
+    let mut source = Source::new(vehicle, effects)?;
+    let mut parameters = thrust(&mut source, &determined, style);
+    parameters.extend(drag(&mut source, &determined, style));
+    parameters.extend(geometry(&mut source, &determined, style));
+    source.note(match style {
+        ParameterStyle::Px4 => "CA_ROTORn_KM does not follow from the model: the torque of a rotor is the vehicle file's",
+        ParameterStyle::ArduPilot => {
+            "MOT_SPIN_ARM, MOT_SPIN_MIN and MOT_SPIN_MAX do not follow from the model: a flight does not show where motors stop"
+        }
+    });
+    if parameters.is_empty() {
+        return Err(ExportError::Unfit {
+            format: style.name(),
+            expected: "a model that `mavid identify` or `mavid explain` wrote, with standard errors",
+            got: "no identified value that the autopilot has a parameter for".to_owned(),
+        });
+    }
+    let exported = source.finish(|notes| file(&vehicle.name, &parameters, notes, style));
+    Ok(AircraftParameters { parameters, left_out: exported.left_out, text: exported.text })
+}
+
+fn file(name: &str, parameters: &[AircraftParameter], notes: &[String], style: ParameterStyle) -> String {
+    let autopilot = style.autopilot();
+    let mut text =
+        line_comment("#", &format!("{name}: parameters of the aircraft's {autopilot}, not of a simulator"));
+    text.push_str(&line_comment(
+        "#",
+        "to set them: mavid vehicle load --connect ADDRESS FILE; any ground station loads them too",
+    ));
+    for parameter in parameters {
+        let AircraftParameter { name, value, std, unit, is_integer, why } = parameter;
+        let said = std.map_or_else(|| significant(*value, 4), |std| with_error(*value, std));
+        let unit = if *unit == "-" { String::new() } else { format!(" {unit}") };
+        text.push_str(&line_comment("#", &format!("{name} {said}{unit}: {why}")));
+        let value = if *is_integer { format!("{value:.0}") } else { significant(*value, 6) };
+        let _ = match style {
+            ParameterStyle::Px4 => {
+                let kind = if *is_integer { WHOLE } else { REAL };
+                writeln!(text, "1\t1\t{name}\t{value}\t{kind}")
+            }
+            ParameterStyle::ArduPilot => writeln!(text, "{name},{value}"),
+        };
+    }
+    text.push_str(&line_comments("#", notes));
+    text
+}
