@@ -14,6 +14,8 @@ pub enum Needed {
     Mavsdk,
     /// MuJoCo, which is not to be had for every platform
     Mujoco,
+    /// DuckDB, Polars, pandas, PyArrow and mcap, which are not to be had for every platform
+    Tables,
     /// the folder of shared recordings
     Shared,
     /// a loopback address of IPv6
@@ -21,7 +23,8 @@ pub enum Needed {
 }
 
 impl Needed {
-    pub const ALL: [Self; 5] = [Self::Peers, Self::Mavsdk, Self::Mujoco, Self::Shared, Self::Ipv6];
+    pub const ALL: [Self; 6] =
+        [Self::Peers, Self::Mavsdk, Self::Mujoco, Self::Tables, Self::Shared, Self::Ipv6];
 
     /// As `MAVID_REQUIRE` names it.
     pub fn word(self) -> &'static str {
@@ -29,6 +32,7 @@ impl Needed {
             Self::Peers => "peers",
             Self::Mavsdk => "mavsdk",
             Self::Mujoco => "mujoco",
+            Self::Tables => "tables",
             Self::Shared => "shared",
             Self::Ipv6 => "ipv6",
         }
