@@ -35,6 +35,9 @@ fn said(output: &Output) -> String {
 /// Fixtures and what damage makes of them, in a folder with what is no log.
 fn logs(at: &Path) {
     fs::create_dir_all(at.join("deep")).unwrap();
+    let vehicle = root().join("fixtures/p01_vehicle.toml");
+    let list = format!("[[vehicle]]\nname = \"p01\"\nfile = {vehicle:?}\nlogs = \"*/a.tlog\"\n");
+    fs::write(at.join("vehicles.toml"), list).unwrap();
     let copy = |from: &str, to: &str| fs::copy(root().join("fixtures").join(from), at.join(to)).unwrap();
     copy("p01_identify_0_25s.tlog", "a.tlog");
     copy("p04_identify_10_22s.tlog", "deep/b.tlog");
@@ -80,8 +83,13 @@ fn parts(out: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 fn run(sources: &Path, out: &Path, more: &[&str]) -> (Option<i32>, Value) {
     let (sources, out) = (sources.display().to_string(), out.display().to_string());
-    let common = ["fleet", &sources, "--out", &out, "--format", "jsonl", "--depth", "balance", "--json"];
-    let output = mavid(&[&common[..], more].concat());
+    let list = format!("{sources}/vehicles.toml");
+    let mut arguments =
+        vec!["fleet", &sources, "--out", &out, "--format", "jsonl", "--depth", "balance", "--json"];
+    if Path::new(&list).is_file() {
+        arguments.extend(["--vehicles", &list]);
+    }
+    let output = mavid(&[&arguments[..], more].concat());
     let tally = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", said(&output)));
     (output.status.code(), tally)
 }
@@ -141,12 +149,13 @@ fn killed_and_run_again_ends_in_the_same_rows_and_shards_share_them() {
     let whole = at.join("whole");
     run(&sources, &whole, &[]);
     let expected = all_lines(&whole);
+    let list = sources.join("vehicles.toml").display().to_string();
 
     // killed after the first parts: what is written stays, and half a part goes
     let resumed = at.join("resumed");
     let arguments = ["--format", "jsonl", "--depth", "balance", "--part-logs", "1", "--jobs", "1"];
     let mut child = Command::new(env!("CARGO_BIN_EXE_mavid"))
-        .args(["fleet", sources.to_str().unwrap(), "--out", resumed.to_str().unwrap()])
+        .args(["fleet", sources.to_str().unwrap(), "--out", resumed.to_str().unwrap(), "--vehicles", &list])
         .args(arguments)
         .stdout(std::process::Stdio::null())
         .stderr(std::process::Stdio::null())
@@ -176,6 +185,7 @@ fn killed_and_run_again_ends_in_the_same_rows_and_shards_share_them() {
     for index in 0..3 {
         let output = Command::new(env!("CARGO_BIN_EXE_mavid"))
             .args(["fleet", sources.to_str().unwrap(), "--out", shared.to_str().unwrap(), "--shards", "3"])
+            .args(["--vehicles", &list])
             .args(arguments)
             .env("JOB_COMPLETION_INDEX", index.to_string())
             .output()
@@ -201,7 +211,7 @@ fn a_log_beyond_its_bounds_is_an_error_and_a_row() {
     let at = folder("fleet_bounds");
     let sources = at.join("logs");
     fs::create_dir_all(&sources).unwrap();
-    fs::copy(root().join("fixtures/p04_identify_10_22s.tlog"), sources.join("small.tlog")).unwrap();
+    fs::copy(root().join("fixtures/px4_flight.ulg"), sources.join("small.ulg")).unwrap();
     // a table of 40 million numbers
     let row = "1.0,".repeat(999) + "1.0\n";
     fs::write(sources.join("large.csv"), "t,".to_owned() + &row.repeat(1200)).unwrap();
@@ -298,7 +308,8 @@ fn the_vehicle_that_changed_is_found_with_its_rotor_and_flight() {
     assert_eq!((&step["from"], &step["changes"][0]["rotor"]), (&3.into(), &2.into()), "{step}");
     assert_eq!(changed["rotors"][2]["thrust_per_command"].as_array().unwrap().len(), 6);
     let alarms = &document["false_alarms"];
-    assert_eq!(alarms["shuffled"], 100);
+    // orders that divide the flights as the change does are left out
+    assert!((80..100).contains(&alarms["shuffled"].as_u64().unwrap()), "{alarms}");
     assert!(alarms["least_sigmas"].as_f64().unwrap() >= 4.5 && alarms["rate"].as_f64().unwrap() <= 0.01);
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(

@@ -8,7 +8,7 @@ use super::vehicles::{OfLog, own_name, own_type, system_of};
 use crate::config::vehicle_to_toml;
 use crate::inspect::{Inspection, Reading};
 use crate::note::{Note, Severity};
-use crate::study::{AloneRequest, AloneStudy, OwnWords, ReadSettings, alone};
+use crate::study::{AloneRequest, AloneStudy, Depth, OwnWords, ReadSettings, alone};
 use crate::vehicle::Vehicle;
 
 /// The rows of a log. A log that cannot be read has one row in `logs`, with the reason; nothing is an error of this function.
@@ -119,8 +119,8 @@ fn studied(task: &LogTask, study: &AloneStudy) -> LogRows {
     rows.warnings.extend(study.notes.iter().map(|note| warning(task, (&vehicle, None), note)));
     rows.warnings.extend(said(task, &vehicle, found));
     rows.logs.push(LogRow {
-        status: if study.flights.is_empty() { "no_flight" } else { "flown" }.to_owned(),
-        error: study.refused.clone(),
+        status: status(task, study).to_owned(),
+        error: study.refused.as_ref().map(|why| why.replace(OF_ONE_LOG, OF_FLEET)),
         vehicle: Some(vehicle),
         vehicle_type: Some(kind),
         format: Some(format_name(&found.reading).to_owned()),
@@ -137,6 +137,18 @@ fn studied(task: &LogTask, study: &AloneStudy) -> LogRows {
     });
     rows
 }
+
+fn status(task: &LogTask, study: &AloneStudy) -> &'static str {
+    match (task.settings.depth, study.flights.is_empty()) {
+        (_, false) => "flown",
+        (Depth::Inspect, true) => "inspected",
+        (_, true) => "no_flight",
+    }
+}
+
+/// How a command on one log is told of the frame, and how a fleet is.
+const OF_ONE_LOG: &str = "give the frame (--frame quadrotor-x)";
+const OF_FLEET: &str = "list the vehicle in the file of --vehicles, with its file, or its mass and frame";
 
 fn format_name(reading: &Reading) -> &'static str {
     match reading {

@@ -10,7 +10,7 @@ table_rows! {
         log: String, "", "SHA-256 of the log's bytes; of a log that was not read whole, of its address and size";
         uri: String, "", "where it was found";
         bytes: i64, "B", "its size";
-        status: String, "", "`flown`: at least one flight is in the tables; `no_flight`: it was read and holds none that can be used; `error`: it could not be read within its bounds";
+        status: String, "", "`flown`: at least one flight is in the tables; `no_flight`: it was read and holds none that can be used; `inspected`: it was not asked for flights; `error`: it could not be read within its bounds";
         error: Option<String>, "", "why it has no flight, or could not be read";
         vehicle: Option<String>, "", "vehicle it is of";
         vehicle_type: Option<String>, "", "type of that vehicle: vehicles of one type are compared";
@@ -48,7 +48,7 @@ table_rows! {
         log: String, "", "SHA-256 of the log's bytes";
         flight: i64, "1", "place in the log";
         vehicle: String, "", "vehicle it is of";
-        name: String, "", "`mass`, `ixx`, `latency`, `vibration`, `power`, `full_thrust_over_weight`, or `effect.parameter`";
+        name: String, "", "`mass`, `ixx`, `latency`, `vibration`, `power`, or `effect.parameter`";
         unit: String, "", "unit of value and error";
         value: f64, "in `unit`", "value";
         std: Option<f64>, "in `unit`", "standard error";

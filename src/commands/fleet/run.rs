@@ -109,10 +109,13 @@ fn settings(args: &FleetRunArgs) -> Result<LogSettings, CommandError> {
 }
 
 fn told(tally: &Tally, out: &std::path::Path) -> String {
-    let Tally { logs, done_before, twins, flown, no_flight, errors, rows, parts } = tally;
+    let Tally { logs, done_before, twins, flown, no_flight, inspected, errors, rows, parts } = tally;
     let mut page = format!(
         "{logs} logs: {flown} with a flight, {no_flight} without one that can be used, {errors} that could not be read"
     );
+    if *inspected > 0 {
+        page.push_str(&format!("; {inspected} were inspected, and not asked for flights"));
+    }
     if *done_before > 0 {
         page.push_str(&format!("; {done_before} are in the tables from before"));
     }

@@ -47,6 +47,8 @@ pub struct Tally {
     pub flown: usize,
     /// read, without a flight that can be used
     pub no_flight: usize,
+    /// read, and not asked for flights
+    pub inspected: usize,
     /// could not be read within the bounds
     pub errors: usize,
     /// rows that were written
@@ -140,10 +142,9 @@ impl Work<'_> {
         let since = modified.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
         let modified_ns = since.map_or(0, |since| u64::try_from(since.as_nanos()).unwrap_or(u64::MAX));
         let listed = |sha256| Listed { sha256, uri: source.uri.clone(), bytes, modified_ns };
-        if let Some(same) = known.get(source.uri.as_str()) {
-            if (same.bytes, same.modified_ns) == (bytes, modified_ns) && modified_ns > 0 {
-                return ((*same).clone(), None);
-            }
+        let is_same = |same: &&&Listed| (same.bytes, same.modified_ns) == (bytes, modified_ns) && modified_ns > 0;
+        if let Some(same) = known.get(source.uri.as_str()).filter(is_same) {
+            return ((*same).clone(), None);
         }
         let unread = |why: String| (listed(unread_name(&source.uri, bytes)), Some(why));
         match metadata {
@@ -192,6 +193,7 @@ impl Work<'_> {
             match rows.logs.first().map(|log| log.status.as_str()) {
                 Some("flown") => tally.flown += 1,
                 Some("no_flight") => tally.no_flight += 1,
+                Some("inspected") => tally.inspected += 1,
                 _ => tally.errors += 1,
             }
             let batch = open.entry(one.batch).or_default();

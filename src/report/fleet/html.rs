@@ -90,9 +90,11 @@ fn unchanged(report: &FleetReport) -> Markup {
         .filter(|vehicle| !vehicle.has_changed() && vehicle.history.study.flights.len() > 1);
     let each = html! {
         @for vehicle in shown.take(MOST_DRAWN) {
-            (paragraph(&vehicle.history.name))
-            @for plot in plots(vehicle) { (figure(&plot, "")) }
-            (remarks(vehicle))
+            details {
+                summary { (vehicle.history.name) }
+                @for plot in plots(vehicle) { (figure(&plot, "Bands: 95 % intervals.")) }
+                (remarks(vehicle))
+            }
         }
     };
     section("Histories of the others", &each)

@@ -2,7 +2,7 @@
 
 use crate::fleet::ReportedVehicle;
 use crate::report::chart::{Band, Line, Panel, Stroke, inline};
-use crate::study::{Changed, Track};
+use crate::study::Track;
 use maud::Markup;
 
 /// Standard errors of an interval that covers 95 %.
@@ -14,7 +14,7 @@ struct Along {
     values: Vec<Option<(f64, f64)>>,
 }
 
-/// The charts of a vehicle: what its rotors give, and each parameter that changed.
+/// The charts of a vehicle along its flights: what its rotors give, its balance, and each parameter that two flights have.
 pub(super) fn plots(vehicle: &ReportedVehicle) -> Vec<Markup> {
     let study = &vehicle.history.study;
     let mut charts = Vec::new();
@@ -26,18 +26,35 @@ pub(super) fn plots(vehicle: &ReportedVehicle) -> Vec<Markup> {
         let lines: Vec<Along> = vehicle.rotors.iter().enumerate().map(of).collect();
         charts.push(chart(vehicle, ("Thrust for a command, over the mean rotor's", "1"), &lines));
     }
-    let changed = |place: usize| {
-        let steps = study.history.iter().flat_map(|step| &step.change.changes);
-        steps.into_iter().any(|change| change.what == Changed::Parameter(place))
-    };
-    for (_, track) in study.tracks.iter().enumerate().filter(|(place, _)| changed(*place)) {
-        charts.push(of_track(vehicle, track));
-    }
+    charts.push(balance(vehicle));
+    let is_shown = |track: &&Track| track.values.iter().flatten().count() > 1;
+    charts.extend(study.tracks.iter().filter(is_shown).map(|track| of_track(vehicle, track)));
     charts
 }
 
+/// Where the thrust acts against the centre of mass.
+fn balance(vehicle: &ReportedVehicle) -> Markup {
+    let study = &vehicle.history.study;
+    let (arm, unit) = study.arm_m().map_or((1.0, "arms"), |arm_m| (arm_m, "m"));
+    let along = |axis: usize, label: &str| Along {
+        label: label.to_owned(),
+        values: (0..study.flights.len())
+            .map(|place| {
+                let flight = &study.balance.flights[place];
+                let std = study.balance.std(place, axis).hypot(flight.wander[axis]);
+                Some((arm * flight.lean[axis], arm * std))
+            })
+            .collect(),
+    };
+    chart(
+        vehicle,
+        ("Where the thrust acts from the centre of mass", unit),
+        &[along(0, "along x"), along(1, "along y")],
+    )
+}
+
 /// The chart of one parameter.
-pub(super) fn of_track(vehicle: &ReportedVehicle, track: &Track) -> Markup {
+fn of_track(vehicle: &ReportedVehicle, track: &Track) -> Markup {
     let line = Along { label: track.name.clone(), values: track.values.clone() };
     chart(vehicle, (&track.name, track.unit), &[line])
 }

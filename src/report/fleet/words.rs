@@ -73,10 +73,11 @@ pub(super) fn differs(outlier: &Outlier) -> String {
 pub(super) fn logs(report: &FleetReport) -> String {
     let of = |status: &str| report.logs.get(status).copied().unwrap_or(0);
     format!(
-        "{} logs: {} with a flight, {} without one that can be used, {} that could not be read.",
+        "{} logs: {} with a flight, {} without one that can be used, {} not asked for flights, {} that could not be read.",
         report.logs.values().sum::<usize>(),
         of("flown"),
         of("no_flight"),
+        of("inspected"),
         of("error")
     )
 }
