@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use super::series::TimeSeries;
+use crate::text;
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
 use serde_json::{Value, json};
@@ -39,10 +40,10 @@ pub fn to_mcap(all: &[TimeSeries], texts: &[(f64, String)], start_ns: u64) -> Re
     file.poses(all)?;
     let lines: Vec<(f64, Value)> = texts
         .iter()
-        .map(|(time_s, text)| {
+        .map(|(time_s, said)| {
             (
                 *time_s,
-                json!({ "timestamp": file.stamp(*time_s), "level": 2, "message": text, "name": "vehicle" }),
+                json!({ "timestamp": file.stamp(*time_s), "level": 2, "message": said, "name": "vehicle" }),
             )
         })
         .collect();
@@ -121,7 +122,7 @@ impl File {
         if messages.is_empty() {
             return Ok(());
         }
-        let schema = self.writer.add_schema(name, "jsonschema", serde_json::to_string(schema)?.as_bytes())?;
+        let schema = self.writer.add_schema(name, "jsonschema", text::json_line(schema)?.as_bytes())?;
         let channel = self.writer.add_channel(schema, topic, "json", &BTreeMap::new())?;
         for (time_s, message) in messages {
             let at = self.nanoseconds(*time_s);
@@ -132,7 +133,7 @@ impl File {
                 publish_time: at,
             };
             self.sequence = self.sequence.wrapping_add(1);
-            self.writer.write_to_known_channel(&header, serde_json::to_string(message)?.as_bytes())?;
+            self.writer.write_to_known_channel(&header, text::json_line(message)?.as_bytes())?;
         }
         Ok(())
     }

@@ -10,6 +10,7 @@ use super::task::hexadecimal;
 use crate::each_table;
 use crate::files::write_whole;
 use crate::table::{Row, TableError};
+use crate::text;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -97,7 +98,7 @@ pub struct PartList {
 #[derive(Debug, thiserror::Error)]
 pub enum PartsError {
     /// the system says so
-    #[error("{}: {error}", crate::text::path(path))]
+    #[error("{}: {error}", text::path(path))]
     File {
         /// which file or folder
         path: PathBuf,
@@ -105,7 +106,7 @@ pub enum PartsError {
         error: io::Error,
     },
     /// a file is damaged
-    #[error("{}: {error}", crate::text::path(path))]
+    #[error("{}: {error}", text::path(path))]
     Table {
         /// which file
         path: PathBuf,
@@ -115,7 +116,7 @@ pub enum PartsError {
     /// parts that other settings made
     #[error(
         "{}: expected rows by the same settings and program, got part {part} of others; give another --out",
-        crate::text::path(path)
+        text::path(path)
     )]
     OtherSettings {
         /// the folder
@@ -126,7 +127,7 @@ pub enum PartsError {
     /// nothing of a fleet is there
     #[error(
         "{}: expected a folder that `mavid fleet ... --out` wrote, got none of its parts",
-        crate::text::path(path)
+        text::path(path)
     )]
     Nothing {
         /// the folder
@@ -209,7 +210,7 @@ impl PartsFolder {
         each_table!(each);
         let list = PartList { part, form, settings: settings.to_owned(), logs };
         let path = self.root.join(LISTS).join(format!("{}.json", list.part));
-        let text = serde_json::to_string(&list)
+        let text = text::json_line(&list)
             .map_err(|error| PartsError::File { path: path.clone(), error: io::Error::other(error) })?;
         Self::write(&path, text.as_bytes())?;
         Ok(list)
@@ -235,7 +236,8 @@ impl PartsFolder {
             ($field:ident, $row:ty) => {
                 let folder = self.root.join(<$row>::TABLE);
                 for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten() {
-                    let name = entry.file_name().to_string_lossy().into_owned();
+                    // a part has a name of plain letters
+                    let Ok(name) = entry.file_name().into_string() else { continue };
                     if is_own(&name) && !is_finished(&name) {
                         let path = entry.path();
                         std::fs::remove_file(&path).map_err(|error| PartsError::File { path, error })?;

@@ -108,7 +108,7 @@ fn walk(folder: &Path, all: &mut Vec<Source>) -> std::io::Result<()> {
 }
 
 fn is_log(path: &Path) -> bool {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
     ending.is_some_and(|ending| LOG_ENDINGS.contains(&ending.as_str()))
 }
 

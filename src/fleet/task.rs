@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::vehicles::Vehicles;
 use crate::study::Depth;
+use crate::text;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -39,8 +40,8 @@ impl LogSettings {
     /// SHA-256 over all of it and the program's version, hexadecimal.
     #[must_use]
     pub fn digest(&self) -> String {
-        let text = serde_json::to_string(self).unwrap_or_default();
-        hexadecimal(&Sha256::digest(format!("{} {text}", program()).as_bytes()))
+        let written = text::json_line(self).unwrap_or_default();
+        hexadecimal(&Sha256::digest(format!("{} {written}", program()).as_bytes()))
     }
 }
 

@@ -20,7 +20,7 @@ pub fn studied(task: &LogTask, limits: &Limits) -> LogRows {
 }
 
 fn rows(task: &LogTask, limits: &Limits) -> Result<LogRows, String> {
-    let written = serde_json::to_string(task).map_err(|error| error.to_string())?;
+    let written = text::json_line(task).map_err(|error| error.to_string())?;
     let mut child = begin(limits).map_err(|error| format!("cannot start a process: {error}"))?;
     let (Some(mut stdin), Some(stdout), Some(stderr)) =
         (child.stdin.take(), child.stdout.take(), child.stderr.take())

@@ -142,7 +142,8 @@ impl Work<'_> {
         let since = modified.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
         let modified_ns = since.map_or(0, |since| u64::try_from(since.as_nanos()).unwrap_or(u64::MAX));
         let listed = |sha256| Listed { sha256, uri: source.uri.clone(), bytes, modified_ns };
-        let is_same = |same: &&&Listed| (same.bytes, same.modified_ns) == (bytes, modified_ns) && modified_ns > 0;
+        let is_same =
+            |same: &&&Listed| (same.bytes, same.modified_ns) == (bytes, modified_ns) && modified_ns > 0;
         if let Some(same) = known.get(source.uri.as_str()).filter(is_same) {
             return ((*same).clone(), None);
         }
