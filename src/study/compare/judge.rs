@@ -108,9 +108,12 @@ impl Judge<'_> {
             size: *size,
             unit: "-",
         };
-        let centre =
-            LeastChange { what: Changed::CentreOfMass(0), size: balance.least.centre * arm, unit: length };
-        balance.least.rotors.iter().enumerate().map(of_rotor).chain([centre]).collect()
+        let centre = [0, 1].map(|axis| LeastChange {
+            what: Changed::CentreOfMass(axis),
+            size: balance.least.centre * arm,
+            unit: length,
+        });
+        balance.least.rotors.iter().enumerate().map(of_rotor).chain(centre).collect()
     }
 }
 

@@ -5,6 +5,7 @@ mod motion;
 mod request;
 mod result;
 mod run;
+mod same_vehicle;
 
 pub use judge::Judge;
 pub(super) use motion::is_compared;
