@@ -46,6 +46,8 @@
 //! | [`trim`], [`change`] | the balance of a vehicle in flight, and what changed of it between flights |
 //! | [`simulate`], [`physics`] | flights that never happened; the equations of motion and of the effects |
 //! | [`sitl`] | a simulated vehicle that speaks MAVLink |
+//! | [`fleet`], [`table`] | a log as rows of tables, and many vehicles along their flights |
+//! | [`convert`] | the streams of a log for programs that plot |
 //! | [`study`], [`report`], [`export`] | a whole piece of work as one function, its report, and its model for other simulators |
 //!
 //! The stages from a trajectory to an exported model, on a simulated flight in which drag is concealed:
@@ -135,6 +137,7 @@ pub mod autopilot;
 pub mod change;
 pub mod compare;
 pub mod config;
+pub mod convert;
 pub mod diagnose;
 pub mod draft;
 pub mod estimate;
@@ -142,6 +145,7 @@ pub mod export;
 pub mod fence;
 pub mod fetch;
 pub mod files;
+pub mod fleet;
 pub mod fly;
 pub mod frames;
 pub mod inspect;
@@ -163,6 +167,7 @@ pub mod sitl;
 pub mod stand;
 pub mod stats;
 pub mod study;
+pub mod table;
 pub mod text;
 pub mod trajectory;
 pub mod trim;

@@ -21,7 +21,7 @@ fn what_is_missing_is_told_and_fails_only_where_it_is_required() {
     let failure = judge(Needed::Peers, why, "peers,share").unwrap_err();
     assert_eq!(
         failure,
-        "MAVID_REQUIRE: expected words out of peers, mavsdk, mujoco, shared, ipv6, browser, found `share`"
+        "MAVID_REQUIRE: expected words out of peers, mavsdk, mujoco, tables, shared, ipv6, browser, found `share`"
     );
 }
 

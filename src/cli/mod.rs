@@ -2,6 +2,8 @@
 
 mod address;
 mod compare;
+mod convert;
+mod fleet;
 mod flight;
 mod given;
 mod live;
@@ -14,6 +16,8 @@ mod verb;
 mod verbosity;
 
 pub use compare::CompareArgs;
+pub use convert::{ConvertArgs, ConvertForm};
+pub use fleet::{FleetArgs, FleetLogArgs, FleetReportArgs, FleetRunArgs, FleetVerb, FormName};
 pub use flight::{CheckName, FlyArgs, OriginName};
 pub use given::ShapeArgs;
 pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};

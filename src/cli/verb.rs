@@ -3,6 +3,8 @@
 use clap::{Parser, Subcommand};
 
 use super::compare::CompareArgs;
+use super::convert::ConvertArgs;
+use super::fleet::{FleetArgs, FleetLogArgs};
 use super::flight::FlyArgs;
 use super::live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 use super::model::{ExportArgs, SimulateArgs, VehicleArgs};
@@ -27,7 +29,7 @@ pub struct Cli {
     pub verb: Verb,
 }
 
-const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss, 4 done and something changed (compare).";
+const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss, 4 done and something changed (compare, fleet report).";
 
 /// The verbs.
 #[derive(Debug, Subcommand)]
@@ -62,6 +64,13 @@ pub enum Verb {
     Explain(ExplainArgs),
     /// Say what changed of a vehicle between flights: which rotor, the centre of mass, which parameter
     Compare(CompareArgs),
+    /// Write the streams of a log as CSV, MCAP or Parquet, with what an explanation leaves of them
+    Convert(ConvertArgs),
+    /// Make tables of the logs of many vehicles, and say which of them changed
+    Fleet(FleetArgs),
+    /// Study one log for `mavid fleet`, in a process of its own
+    #[command(hide = true)]
+    FleetLog(FleetLogArgs),
     /// Write a model for another simulator
     Export(ExportArgs),
     /// Explain a folder of cases and score the sealed verdicts against their answers

@@ -2,8 +2,8 @@
 
 use super::standard_error::StandardError;
 use super::{
-    CommandError, Outcome, compare, demo, explain, export, fly, identify, inspect, log, plan, prove, record,
-    redact, replay, simulate, sitl, validate, vehicle,
+    CommandError, Outcome, compare, convert, demo, explain, export, fleet, fly, identify, inspect, log, plan,
+    prove, record, redact, replay, simulate, sitl, validate, vehicle,
 };
 use crate::cli::{Cli, Verb};
 
@@ -25,6 +25,9 @@ pub fn run(cli: &Cli, stderr: &StandardError) -> Result<Outcome, CommandError> {
         Verb::Replay(args) => replay::run(cli.json, stderr, args),
         Verb::Explain(args) => explain::run(cli.json, stderr, args),
         Verb::Compare(args) => compare::run(cli.json, stderr, args),
+        Verb::Convert(args) => convert::run(cli.json, stderr, args),
+        Verb::Fleet(args) => fleet::run(cli.json, stderr, args),
+        Verb::FleetLog(args) => fleet::run_log(args),
         Verb::Export(args) => export::run(cli.json, args),
         Verb::Prove(args) => prove::run(cli.json, args),
         Verb::Redact(args) => redact::run(cli.json, args),

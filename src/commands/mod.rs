@@ -5,11 +5,13 @@
 
 mod after_flight;
 mod compare;
+mod convert;
 mod demo;
 mod dispatch;
 mod error;
 mod explain;
 mod export;
+mod fleet;
 mod fly;
 mod identify;
 mod inspect;

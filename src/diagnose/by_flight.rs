@@ -96,6 +96,32 @@ pub fn each_with_model_of_all(
     flights.par_iter().zip(drifts).map(one).map(Option::unwrap_or_default).collect()
 }
 
+/// The parameters of one flight, fitted alone to its own explanation with a drag beside it, whether it was named or not: the flights of
+/// a vehicle then have the same model, although none of them knows the others.
+#[must_use]
+pub fn of_one_flight(
+    signals: &Signals,
+    explanation: &Explanation,
+    vehicle: &Vehicle,
+    settings: &ExplainSettings,
+) -> Vec<FlightParameter> {
+    let Ok(trace) = Trace::new(signals, vehicle, settings.half_width_s) else { return Vec::new() };
+    let mut terms = of_the_vehicle(&[explanation]);
+    let drags = |term: &EffectTerm| term.signature.role.of_air && term.signature.role.lateral_slope.is_some();
+    if !terms.iter().any(drags) {
+        let recorded = Recorded::new(vehicle, std::slice::from_ref(&trace));
+        // the plainest form of a drag whose size grows with the speed alone
+        let plain = ALL.iter().find(|signature| signature.role.with_speed.is_some());
+        let forms = plain.map_or_else(Vec::new, |signature| (signature.forms)(&recorded));
+        terms.extend(forms.into_iter().map(|form| form.term).find(drags));
+    }
+    let base = with_terms(explanation, &terms, (vehicle, &trace));
+    let fitted = settled(signals, trace, base, explanation.search.latency).ok();
+    fitted.map_or_else(Vec::new, |(fitted, by_instruments)| {
+        parameters((&fitted, &by_instruments), explanation.turned_by_control, &terms)
+    })
+}
+
 /// A wind along the ground, about none, where a force of the air is there through which it acts.
 fn wind_beside(base: &Base) -> Option<EffectTerm> {
     let acts = base.present.iter().any(|term| term.signature.role.of_air);

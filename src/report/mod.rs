@@ -5,6 +5,7 @@
 mod chart;
 mod comparison;
 mod explanation;
+mod fleet;
 mod html;
 mod identification;
 mod inspection;
@@ -26,6 +27,7 @@ pub use explanation::{
     ExplanationDocument, explained_model, explanation_answer, explanation_html, explanation_markdown,
     explanation_text, next_flight_words,
 };
+pub use fleet::{FleetDocument, fleet_html, fleet_text};
 pub use identification::{
     IdentificationDocument, history_charts, identification_html, identification_text, identified_model,
 };

@@ -5,6 +5,7 @@
 //! [`Progress`].
 
 mod after_flight;
+mod alone;
 mod both_logs;
 mod compare;
 mod correlation;
@@ -26,8 +27,9 @@ mod vehicle;
 mod vehicle_given;
 
 pub use after_flight::{AfterFlight, FlightLogs, after_flight};
+pub use alone::{AloneFlight, AloneRequest, AloneStudy, Depth, Explained, OwnWords, Whose, alone};
 pub use compare::{
-    Change, Changed, CompareRequest, CompareStudy, Compared, ComparedFlight, LeastChange, compare,
+    Change, Changed, CompareRequest, CompareStudy, Compared, ComparedFlight, Judge, LeastChange, compare,
 };
 pub use correlation::Correlation;
 pub use effects::{effects_file, effects_of, effects_text, with_further, with_stated_lag};

@@ -2,6 +2,8 @@
 
 use crate::change::{Spread, together};
 use crate::diagnose::{FlightParameter, Owner};
+use crate::estimate::UNITS;
+use crate::physics::effects::ALL;
 
 /// A flight carries a name from so many standard errors on.
 const CARRIES: f64 = 3.0;
@@ -38,6 +40,29 @@ pub struct Track {
 }
 
 impl Track {
+    /// A parameter along the flights of a table that was stored: values and common parts of their errors, flight by flight. `None` where
+    /// no parameter here has that unit.
+    #[must_use]
+    pub fn stored(
+        (name, unit): (&str, &str),
+        (owner, effect): (Owner, Option<&str>),
+        values: Vec<Option<(f64, f64)>>,
+        common_std: Vec<f64>,
+    ) -> Option<Self> {
+        let known = effect.and_then(|id| ALL.iter().find(|effect| effect.id() == id));
+        let of_effects = || ALL.iter().flat_map(|effect| effect.parameters()).map(|parameter| parameter.unit);
+        let unit =
+            UNITS.into_iter().chain(["s", "m/s^2"]).chain(of_effects()).find(|other| *other == unit)?;
+        let spread = match (owner, effect) {
+            (Owner::Flight, _) => OWN,
+            (Owner::Vehicle, None) => INERTIA,
+            (Owner::Vehicle, Some(_)) => EFFECT,
+        };
+        let effect = known.map(|effect| effect.id());
+        let name = name.to_owned();
+        Some(Self { name, unit, owner, effect, wind_axis: None, nothing: 0.0, values, common_std, spread })
+    }
+
     fn new(parameter: &FlightParameter, flights: usize) -> Self {
         let spread = match (parameter.owner, parameter.effect) {
             (Owner::Flight, _) => OWN,

@@ -18,6 +18,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("text", &[]),
     // of any series: nothing of flights, and no import
     ("stats", &[]),
+    // rows of tables, whatever they hold
+    ("table", &["text"]),
     // autopilots as tables
     ("autopilot", &[]),
     // what a stage has to say beside its result
@@ -131,12 +133,34 @@ const LAYERS: &[(&str, &[&str])] = &[
             "change",
         ],
     ),
+    // many logs as tables, and the tables as histories
+    (
+        "fleet",
+        &[
+            "files",
+            "text",
+            "stats",
+            "table",
+            "note",
+            "autopilot",
+            "inspect",
+            "vehicle",
+            "draft",
+            "config",
+            "diagnose",
+            "trim",
+            "change",
+            "study",
+        ],
+    ),
+    // streams for programs that plot
+    ("convert", &["text", "table", "recording", "diagnose", "study", "fleet"]),
     // config: a model file is a vehicle file. Of the stages it names what a study holds, and fits nothing
     (
         "report",
         &[
             "note", "text", "vehicle", "physics", "signals", "estimate", "inspect", "config", "compare",
-            "plan", "diagnose", "change", "study",
+            "plan", "diagnose", "change", "study", "fleet",
         ],
     ),
     ("export", &["text", "vehicle", "physics"]),

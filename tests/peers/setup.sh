@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes the Python environment against which some tests compare, under target/peers: numpy, scipy and pymavlink, at the
 # versions of requirements.txt, RotorPy and MuJoCo without the plotting, learning and window packages that their dynamics
-# do not use, and MAVSDK. MuJoCo and MAVSDK are not to be had for every platform. Says so and succeeds where Python or the
+# do not use, MAVSDK, and readers of tables and MCAP. MuJoCo, MAVSDK and these are not to be had for every platform. Says so and succeeds where Python or the
 # packages cannot be had: those tests then skip themselves.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -10,8 +10,9 @@ requirements=tests/peers/requirements.txt
 rotorpy=tests/peers/rotorpy.txt
 mujoco=tests/peers/mujoco.txt
 mavsdk=tests/peers/mavsdk.txt
+tables=tests/peers/tables.txt
 
-if [ -f "$peers/requirements.txt" ] && cat "$requirements" "$rotorpy" "$mujoco" "$mavsdk" | cmp -s - "$peers/requirements.txt"; then
+if [ -f "$peers/requirements.txt" ] && cat "$requirements" "$rotorpy" "$mujoco" "$mavsdk" "$tables" | cmp -s - "$peers/requirements.txt"; then
     echo "peers: ready in $peers"
     exit 0
 fi
@@ -38,5 +39,8 @@ fi
 if ! pip --only-binary :all: --requirement "$mavsdk"; then
     echo "peers: without MAVSDK, which could not be installed"
 fi
-cat "$requirements" "$rotorpy" "$mujoco" "$mavsdk" >"$peers/requirements.txt"
+if ! pip --only-binary :all: --requirement "$tables"; then
+    echo "peers: without DuckDB, Polars, pandas, PyArrow and mcap, which could not be installed"
+fi
+cat "$requirements" "$rotorpy" "$mujoco" "$mavsdk" "$tables" >"$peers/requirements.txt"
 echo "peers: ready in $peers"

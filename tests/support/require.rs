@@ -14,6 +14,8 @@ pub enum Needed {
     Mavsdk,
     /// MuJoCo, which is not to be had for every platform
     Mujoco,
+    /// DuckDB, Polars, pandas, PyArrow and mcap, which are not to be had for every platform
+    Tables,
     /// the folder of shared recordings
     Shared,
     /// a loopback address of IPv6
@@ -23,8 +25,8 @@ pub enum Needed {
 }
 
 impl Needed {
-    pub const ALL: [Self; 6] =
-        [Self::Peers, Self::Mavsdk, Self::Mujoco, Self::Shared, Self::Ipv6, Self::Browser];
+    pub const ALL: [Self; 7] =
+        [Self::Peers, Self::Mavsdk, Self::Mujoco, Self::Tables, Self::Shared, Self::Ipv6, Self::Browser];
 
     /// As `MAVID_REQUIRE` names it.
     pub fn word(self) -> &'static str {
@@ -32,6 +34,7 @@ impl Needed {
             Self::Peers => "peers",
             Self::Mavsdk => "mavsdk",
             Self::Mujoco => "mujoco",
+            Self::Tables => "tables",
             Self::Shared => "shared",
             Self::Ipv6 => "ipv6",
             Self::Browser => "browser",

@@ -36,25 +36,35 @@ pub fn pair(folder: &Path, seed: u64, changed: bool) -> Result<Logs, String> {
 
 /// So many flights of one vehicle, the last of them with a weak rotor where one is given.
 pub fn several(folder: &Path, seed: u64, count: u64, rotor: Option<usize>) -> Result<Logs, String> {
+    let made = several_with(folder, seed, count, &|flight| rotor.filter(|_| flight + 1 == count))?;
+    Ok(Logs { weak: rotor, ..made })
+}
+
+/// So many flights of one vehicle; of each, `weak` says which rotor is weak in it.
+pub fn several_with(
+    folder: &Path,
+    seed: u64,
+    count: u64,
+    weak: &(dyn Fn(u64) -> Option<usize> + Sync),
+) -> Result<Logs, String> {
     let mut why = String::new();
     for draw in 0..DRAWS {
         let vehicle = OneVehicle::new(seed, draw, entries(seed));
-        let of = |flight: u64| {
-            vehicle.fly(flight, rotor.filter(|_| flight + 1 == count).map(|rotor| (rotor, LEFT)))
+        let of = |flight: u64| vehicle.fly(flight, weak(flight).map(|rotor| (rotor, LEFT)));
+        std::fs::create_dir_all(folder).expect("a folder for the vehicle");
+        // a flight is large in memory: it is put down at once
+        let put = |flight: u64| {
+            let path = folder.join(format!("flight_{}.tlog", flight + 1));
+            let log = vehicle.log(&of(flight)?);
+            std::fs::write(&path, log).expect("room for the flight");
+            Ok::<PathBuf, String>(path)
         };
-        let days: Result<Vec<_>, _> = (0..count).map(of).collect();
+        let days: Result<Vec<PathBuf>, String> = (0..count).into_par_iter().map(put).collect();
         match days {
-            Ok(days) => {
-                std::fs::create_dir_all(folder).expect("a folder for the vehicle");
+            Ok(flights) => {
                 let file = folder.join("vehicle.toml");
                 std::fs::write(&file, vehicle.case.case.craft.file("made")).expect("room for the vehicle");
-                let put = |(place, day): (usize, &_)| {
-                    let path = folder.join(format!("flight_{}.tlog", place + 1));
-                    std::fs::write(&path, vehicle.log(day)).expect("room for the flight");
-                    path
-                };
-                let flights = days.iter().enumerate().map(put).collect();
-                return Ok(Logs { vehicle, file, flights, weak: rotor });
+                return Ok(Logs { vehicle, file, flights, weak: None });
             }
             Err(lost) => why = lost,
         }

@@ -1,5 +1,7 @@
-//! Several flights of one vehicle, with an estimator in the loop: pairs that are compared, and eight that are put together.
+//! Several flights of one vehicle, with an estimator in the loop: pairs that are compared, eight that are put together, and
+//! histories of forty.
 
+mod histories;
 mod made;
 mod pairs;
 mod together;
@@ -14,6 +16,10 @@ pub fn run(arguments: &Arguments) {
     if let Some(folder) = arguments.text("--write").map(PathBuf::from) {
         made::write(&folder, seed, arguments.number("--count", 40_u64), arguments.number("--flights", 2_u64));
         return;
+    }
+    let histories = arguments.number("--history", 0_u64);
+    if histories > 0 {
+        return histories::run(seed, histories, arguments.number("--shuffles", mavid::fleet::SHUFFLES));
     }
     let compared = arguments.number("--compared", 40_u64);
     if compared > 0 {

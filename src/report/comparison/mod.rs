@@ -9,3 +9,4 @@ mod words;
 pub use html::comparison_html;
 pub use json::ComparisonDocument;
 pub use text::comparison_text;
+pub(super) use words::sentence;

@@ -45,7 +45,7 @@ fn flights(count: usize) -> String {
 }
 
 /// What one change is, as a clause.
-pub(super) fn sentence(study: &CompareStudy, change: &Change) -> String {
+pub(in crate::report) fn sentence(study: &CompareStudy, change: &Change) -> String {
     let moved = change.moved.map(|moved| {
         let of = |(value, std)| with_error(value, std);
         (of(moved.before), of(moved.after), of(moved.by))

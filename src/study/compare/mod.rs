@@ -1,11 +1,15 @@
 //! `compare`: one vehicle over its flights, and what changed of it.
 
+mod judge;
 mod motion;
 mod request;
 mod result;
 mod run;
 mod same_vehicle;
 
+pub use judge::Judge;
+pub(super) use motion::is_compared;
 pub use request::CompareRequest;
 pub use result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange};
 pub use run::compare;
+pub(super) use run::{UNKNOWN, power_w};

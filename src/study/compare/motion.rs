@@ -30,6 +30,6 @@ pub(super) fn tracks(signals: &[Signals], vehicle: &Vehicle) -> (Vec<Track>, Vec
 }
 
 /// Where the thrust acts, the balance tells better: offsets, and what one rotor gives.
-fn is_compared(parameter: &FlightParameter) -> bool {
+pub(in crate::study) fn is_compared(parameter: &FlightParameter) -> bool {
     parameter.unit != "m" && !parameter.name.contains('[')
 }

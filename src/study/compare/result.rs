@@ -97,6 +97,14 @@ pub struct LeastChange {
     pub unit: &'static str,
 }
 
+impl Compared {
+    /// Standard deviations of the strongest change; 0: none.
+    #[must_use]
+    pub fn strongest(&self) -> f64 {
+        self.changes.iter().map(|change| change.sigmas).fold(0.0, f64::max)
+    }
+}
+
 impl CompareStudy {
     /// Something changed: between the groups, or along the flights where there are none.
     #[must_use]

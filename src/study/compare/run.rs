@@ -1,12 +1,12 @@
 //! Opens, conditions, balances, fits and compares.
 
+use super::judge::Judge;
 use super::motion::tracks;
 use super::request::CompareRequest;
-use super::result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange};
+use super::result::{CompareStudy, ComparedFlight};
 use super::same_vehicle::{refuse_others, refuse_same_flight, settings_notes};
-use crate::change::{BalanceChange, Groups, Step, What, judge_balance, judge_parameter, steps};
+use crate::change::Groups;
 use crate::config::LoadedVehicle;
-use crate::diagnose::Owner;
 use crate::draft::Given;
 use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording};
@@ -14,12 +14,12 @@ use crate::signals::{ConditionSettings, Signals, ThrustPreference, best};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
-use crate::study::{InputFile, Progress, Stage, StudyError, Track, VehicleGiven};
-use crate::trim::{Balance, Leg, balance, legs, mean_arm_m};
+use crate::study::{InputFile, Progress, Stage, StudyError, VehicleGiven};
+use crate::trim::{Leg, balance, legs};
 use crate::vehicle::Vehicle;
 
 /// A vehicle of which nothing is known: its mass sets a scale that no result shows.
-const UNKNOWN: Given = Given { mass_kg: 1.0, size_m: None, frame: None };
+pub(in crate::study) const UNKNOWN: Given = Given { mass_kg: 1.0, size_m: None, frame: None };
 /// What is said then.
 const SHARES: &str = "neither mass nor lengths were given: thrusts are compared as shares, lengths in arms";
 
@@ -66,12 +66,12 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     } else {
         tracks(&flights.signals, &vehicle)
     };
-    let task =
-        Task { vehicle: &vehicle, balance: &balance, tracks: &tracks, is_known: request.vehicle.is_some() };
+    let judge =
+        Judge { vehicle: &vehicle, balance: &balance, tracks: &tracks, is_known: request.vehicle.is_some() };
     let count = flights.signals.len();
     let groups = (first < count).then(|| Groups::split(count, first));
-    let compared = groups.as_ref().map(|groups| task.compared(groups));
-    let history = task.history(count);
+    let compared = groups.as_ref().map(|groups| judge.compared(groups));
+    let history = judge.history(&(0..count).collect::<Vec<_>>(), 0.0);
     Ok(CompareStudy {
         flights: each_compared(&flights, reasons),
         is_known: request.vehicle.is_some(),
@@ -113,97 +113,8 @@ fn legs_of(flights: &Prepared, vehicle: &Vehicle) -> Result<Vec<Vec<Leg>>, Study
     flights.each().map(one).collect()
 }
 
-/// What all comparisons have in common.
-struct Task<'a> {
-    vehicle: &'a Vehicle,
-    balance: &'a Balance,
-    tracks: &'a [Track],
-    is_known: bool,
-}
-
-impl Task<'_> {
-    /// Where along all flights something changed.
-    fn history(&self, flights: usize) -> Vec<Step<Compared>> {
-        steps(flights, &|groups: &Groups| {
-            let compared = self.compared(groups);
-            let strongest = compared.changes.iter().map(|change| change.sigmas).fold(0.0, f64::max);
-            (strongest > 0.0).then_some((strongest, compared))
-        })
-    }
-
-    fn compared(&self, groups: &Groups) -> Compared {
-        let balance = judge_balance(self.balance, groups, self.vehicle);
-        let mut changes = self.of_balance(&balance);
-        let mut least = self.least_of_balance(&balance);
-        for (place, track) in
-            self.tracks.iter().enumerate().filter(|(_, track)| track.owner == Owner::Vehicle)
-        {
-            let Some(judged) = judge_parameter(&track.values, groups, &track.spread) else { continue };
-            let (what, unit) = (Changed::Parameter(place), track.unit);
-            least.push(LeastChange { what, size: judged.least, unit });
-            if judged.changed {
-                changes.push(Change {
-                    what,
-                    moved: Some(judged.moved),
-                    unit,
-                    sigmas: judged.moved.sigmas().abs(),
-                    carried_by: judged.carried_by,
-                    rivals: Vec::new(),
-                });
-            }
-        }
-        changes.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
-        Compared { balance, changes, least }
-    }
-
-    /// Length of an arm and its unit: one arm where lengths are not known.
-    fn arm(&self) -> (f64, &'static str) {
-        if self.is_known { (mean_arm_m(self.vehicle), "m") } else { (1.0, "arm") }
-    }
-
-    fn of_balance(&self, balance: &BalanceChange) -> Vec<Change> {
-        let Some(found) = &balance.found else { return Vec::new() };
-        let (arm, length) = self.arm();
-        let change = |what, moved, unit, sigmas| Change {
-            what,
-            moved,
-            unit,
-            sigmas,
-            carried_by: found.carried_by.clone(),
-            rivals: found.rivals.clone(),
-        };
-        let sigmas = found.strength.sqrt();
-        match found.what {
-            Some(What::Rotor(rotor)) => vec![change(Changed::Rotor(rotor), found.factor, "-", sigmas)],
-            Some(What::CentreOfMass) => [0, 1]
-                .map(|axis: usize| {
-                    let moved = balance.moved[axis].times(arm);
-                    change(Changed::CentreOfMass(axis), Some(moved), length, moved.sigmas().abs())
-                })
-                .to_vec(),
-            Some(What::YawTorque) => vec![change(Changed::YawTorque, Some(balance.moved[2]), "-", sigmas)],
-            None => vec![change(Changed::Balance, None, "-", sigmas)],
-        }
-    }
-
-    fn least_of_balance(&self, balance: &BalanceChange) -> Vec<LeastChange> {
-        let (arm, length) = self.arm();
-        let of_rotor = |(rotor, size): (usize, &f64)| LeastChange {
-            what: Changed::Rotor(rotor),
-            size: *size,
-            unit: "-",
-        };
-        let centre = [0, 1].map(|axis| LeastChange {
-            what: Changed::CentreOfMass(axis),
-            size: balance.least.centre * arm,
-            unit: length,
-        });
-        balance.least.rotors.iter().enumerate().map(of_rotor).chain(centre).collect()
-    }
-}
-
 /// Mean electrical power in the air, W.
-fn power_w(recording: &Recording, signals: &Signals) -> Option<f64> {
+pub(in crate::study) fn power_w(recording: &Recording, signals: &Signals) -> Option<f64> {
     let (_, voltage) = best(recording, Quantity::BatteryVoltage, |stream| stream.width == 1)?;
     let (_, current) = best(recording, Quantity::BatteryCurrent, |stream| stream.width == 1)?;
     let flies = |at: &f64| signals.quality.airborne_s.iter().any(|(from, to)| (from..=to).contains(&at));

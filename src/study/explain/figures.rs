@@ -203,8 +203,20 @@ impl ExplainStudy {
             .collect()
     }
 
+    /// What is left of the first flight along each axis that was compared.
+    #[must_use]
+    pub fn left_of_all_axes(&self) -> Vec<LeftAlongTime> {
+        let rows = ranges(&self.traces);
+        let is_compared = |axis: &usize| self.explanation.search.after.weighted.sigma[*axis] > 0.0;
+        let axes = (0..CHANNEL_NAMES.len()).filter(is_compared);
+        rows.first().map_or_else(Vec::new, |rows| axes.map(|axis| self.left_along(axis, rows)).collect())
+    }
+
     fn left_along_time(&self, rows: &Range<usize>) -> LeftAlongTime {
-        let axis = self.worst_axis();
+        self.left_along(self.worst_axis(), rows)
+    }
+
+    fn left_along(&self, axis: usize, rows: &Range<usize>) -> LeftAlongTime {
         LeftAlongTime {
             axis,
             time_s: self.explanation.search.before.rows.time_s[rows.clone()].to_vec(),

@@ -1,0 +1,12 @@
+//! `mavid fleet`: logs of many vehicles as tables, and the tables as a report.
+
+mod child;
+mod limits;
+mod report;
+mod run;
+mod verb;
+mod work;
+mod worker;
+
+pub use verb::run;
+pub use worker::run as run_log;

@@ -1,0 +1,42 @@
+//! What each rotor gives for its command along a history, by the balance in still air.
+
+use super::history::VehicleHistory;
+use crate::trim::mean_arm_m;
+use nalgebra::{Matrix3, Vector3};
+
+/// Thrust of a rotor for its command along the flights, over that of the mean of all rotors: value and standard error; one entry a flight.
+pub type RotorTrack = Vec<(f64, f64)>;
+
+/// Of each rotor of a vehicle, in the order of its description. The balance has three components: of more than four rotors, it is the
+/// smallest difference between them that makes it. Empty where the rotors' places do not tell.
+#[must_use]
+pub fn rotor_tracks(history: &VehicleHistory) -> Vec<RotorTrack> {
+    let study = &history.study;
+    let vehicle = &study.vehicle;
+    let arm_m = mean_arm_m(vehicle);
+    let pulls: Vec<Vector3<f64>> = vehicle
+        .rotors
+        .iter()
+        .map(|rotor| {
+            let at = (rotor.position_m - vehicle.body.center_of_mass_m) / arm_m;
+            Vector3::new(at.x, at.y, rotor.spin.yaw_sign())
+        })
+        .collect();
+    let count = pulls.len() as f64;
+    let mean = pulls.iter().sum::<Vector3<f64>>() / count;
+    let spread: Matrix3<f64> = pulls.iter().map(|pull| (pull - mean) * (pull - mean).transpose()).sum();
+    let Some(inverse) = spread.try_inverse() else { return Vec::new() };
+    let of = |pull: &Vector3<f64>| -> RotorTrack {
+        // share of the rotor = 1/n + row . (balance - its mean)
+        let row = inverse * (pull - mean);
+        let one = |(place, flight): (usize, &crate::trim::FlightBalance)| {
+            let lean = Vector3::from(flight.lean) - mean;
+            let std = Vector3::from_fn(|axis, _| study.balance.std(place, axis).hypot(flight.wander[axis]));
+            let share = 1.0 / count + row.dot(&lean);
+            // a rotor that gives less for its command is commanded more
+            (1.0 / (count * share), row.component_mul(&std).norm() / (count * share * share))
+        };
+        study.balance.flights.iter().enumerate().map(one).collect()
+    };
+    pulls.iter().map(of).collect()
+}

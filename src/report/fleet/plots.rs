@@ -1,0 +1,96 @@
+//! The history of a vehicle as charts.
+
+use crate::fleet::ReportedVehicle;
+use crate::report::chart::{Band, Line, Panel, Stroke, inline};
+use crate::study::Track;
+use maud::Markup;
+
+/// Standard errors of an interval that covers 95 %.
+const COVERING: f64 = 1.96;
+
+/// One line along the flights, with its intervals.
+struct Along {
+    label: String,
+    values: Vec<Option<(f64, f64)>>,
+}
+
+/// The charts of a vehicle along its flights: what its rotors give, its balance, and each parameter that two flights have.
+pub(super) fn plots(vehicle: &ReportedVehicle) -> Vec<Markup> {
+    let study = &vehicle.history.study;
+    let mut charts = Vec::new();
+    if !vehicle.rotors.is_empty() {
+        let of = |(place, track): (usize, &Vec<(f64, f64)>)| Along {
+            label: study.rotor(place).to_owned(),
+            values: track.iter().map(|value| Some(*value)).collect(),
+        };
+        let lines: Vec<Along> = vehicle.rotors.iter().enumerate().map(of).collect();
+        charts.push(chart(vehicle, ("Thrust for a command, over the mean rotor's", "1"), &lines));
+    }
+    charts.push(balance(vehicle));
+    let is_shown = |track: &&Track| track.values.iter().flatten().count() > 1;
+    charts.extend(study.tracks.iter().filter(is_shown).map(|track| of_track(vehicle, track)));
+    charts
+}
+
+/// Where the thrust acts against the centre of mass.
+fn balance(vehicle: &ReportedVehicle) -> Markup {
+    let study = &vehicle.history.study;
+    let (arm, unit) = study.arm_m().map_or((1.0, "arms"), |arm_m| (arm_m, "m"));
+    let along = |axis: usize, label: &str| Along {
+        label: label.to_owned(),
+        values: (0..study.flights.len())
+            .map(|place| {
+                let flight = &study.balance.flights[place];
+                let std = study.balance.std(place, axis).hypot(flight.wander[axis]);
+                Some((arm * flight.lean[axis], arm * std))
+            })
+            .collect(),
+    };
+    chart(
+        vehicle,
+        ("Where the thrust acts from the centre of mass", unit),
+        &[along(0, "along x"), along(1, "along y")],
+    )
+}
+
+/// The chart of one parameter.
+fn of_track(vehicle: &ReportedVehicle, track: &Track) -> Markup {
+    let line = Along { label: track.name.clone(), values: track.values.clone() };
+    chart(vehicle, (&track.name, track.unit), &[line])
+}
+
+fn chart(vehicle: &ReportedVehicle, (title, unit): (&str, &str), lines: &[Along]) -> Markup {
+    let study = &vehicle.history.study;
+    let (mut drawn, mut bands) = (Vec::new(), Vec::new());
+    for (colour, along) in lines.iter().enumerate() {
+        let known: Vec<(f64, f64, f64)> = (1_u32..)
+            .zip(&along.values)
+            .filter_map(|(flight, value)| value.map(|(value, std)| (f64::from(flight), value, std)))
+            .collect();
+        let x: Vec<f64> = known.iter().map(|(x, ..)| *x).collect();
+        let end = |sign: f64| known.iter().map(|(_, value, std)| value + sign * COVERING * std).collect();
+        bands.push(Band { x: x.clone(), low: end(-1.0), high: end(1.0), colour });
+        drawn.push(Line {
+            label: along.label.clone(),
+            x,
+            y: known.iter().map(|(_, value, _)| *value).collect(),
+            stroke: Stroke::Solid,
+            colour: Some(colour),
+        });
+    }
+    let steps = study.history.iter().map(|step| {
+        let at = step.from as f64 + 0.5;
+        [at, at]
+    });
+    inline(&Panel {
+        title: title.to_owned(),
+        x_label: "flight".to_owned(),
+        y_label: unit.to_owned(),
+        lines: drawn,
+        bands,
+        spans: steps.collect(),
+        spans_label: "changed".to_owned(),
+        cursor: None,
+        log: (false, false),
+    })
+}

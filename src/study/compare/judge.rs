@@ -1,0 +1,124 @@
+//! What changed between groups of flights whose balance and parameters are known.
+
+use super::result::{Change, Changed, Compared, LeastChange};
+use crate::change::{BalanceChange, Groups, Step, What, judge_balance, judge_parameter, steps};
+use crate::diagnose::Owner;
+use crate::study::Track;
+use crate::trim::{Balance, mean_arm_m};
+use crate::vehicle::Vehicle;
+
+/// What all comparisons have in common.
+#[derive(Debug, Clone, Copy)]
+pub struct Judge<'a> {
+    /// nominal, for the places of its rotors
+    pub vehicle: &'a Vehicle,
+    /// of all flights, in the order in which they were given
+    pub balance: &'a Balance,
+    /// each parameter along the flights
+    pub tracks: &'a [Track],
+    /// lengths of the vehicle are known; otherwise they are told in arms
+    pub is_known: bool,
+}
+
+impl Judge<'_> {
+    /// Where along the flights something changed. `order` has their places as they were flown, or shuffled; a change of fewer than
+    /// `least_sigmas` standard deviations is none.
+    #[must_use]
+    pub fn history(&self, order: &[usize], least_sigmas: f64) -> Vec<Step<Compared>> {
+        steps(order.len(), &|groups: &Groups| {
+            let compared = self.compared(&flown(groups, order));
+            let strongest = compared.strongest();
+            (strongest > 0.0 && strongest >= least_sigmas).then_some((strongest, compared))
+        })
+    }
+
+    /// The strongest change between the flights before and those after any place of an order: standard deviations, and the flights
+    /// before it; `None`: nothing changed anywhere.
+    #[must_use]
+    pub fn strongest(&self, order: &[usize]) -> Option<(f64, Vec<usize>)> {
+        let at = |from| {
+            let groups = flown(&Groups::split(order.len(), from), order);
+            (self.compared(&groups).strongest(), groups.before)
+        };
+        let all = (1..order.len()).map(at).filter(|(sigmas, _)| *sigmas > 0.0);
+        all.max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// What changed between two groups of flights.
+    #[must_use]
+    pub fn compared(&self, groups: &Groups) -> Compared {
+        let balance = judge_balance(self.balance, groups, self.vehicle);
+        let mut changes = self.of_balance(&balance);
+        let mut least = self.least_of_balance(&balance);
+        for (place, track) in
+            self.tracks.iter().enumerate().filter(|(_, track)| track.owner == Owner::Vehicle)
+        {
+            let Some(judged) = judge_parameter(&track.values, groups, &track.spread) else { continue };
+            let (what, unit) = (Changed::Parameter(place), track.unit);
+            least.push(LeastChange { what, size: judged.least, unit });
+            if judged.changed {
+                changes.push(Change {
+                    what,
+                    moved: Some(judged.moved),
+                    unit,
+                    sigmas: judged.moved.sigmas().abs(),
+                    carried_by: judged.carried_by,
+                    rivals: Vec::new(),
+                });
+            }
+        }
+        changes.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
+        Compared { balance, changes, least }
+    }
+
+    /// Length of an arm and its unit: one arm where lengths are not known.
+    fn arm(&self) -> (f64, &'static str) {
+        if self.is_known { (mean_arm_m(self.vehicle), "m") } else { (1.0, "arm") }
+    }
+
+    fn of_balance(&self, balance: &BalanceChange) -> Vec<Change> {
+        let Some(found) = &balance.found else { return Vec::new() };
+        let (arm, length) = self.arm();
+        let change = |what, moved, unit, sigmas| Change {
+            what,
+            moved,
+            unit,
+            sigmas,
+            carried_by: found.carried_by.clone(),
+            rivals: found.rivals.clone(),
+        };
+        let sigmas = found.strength.sqrt();
+        match found.what {
+            Some(What::Rotor(rotor)) => vec![change(Changed::Rotor(rotor), found.factor, "-", sigmas)],
+            Some(What::CentreOfMass) => [0, 1]
+                .map(|axis: usize| {
+                    let moved = balance.moved[axis].times(arm);
+                    change(Changed::CentreOfMass(axis), Some(moved), length, moved.sigmas().abs())
+                })
+                .to_vec(),
+            Some(What::YawTorque) => vec![change(Changed::YawTorque, Some(balance.moved[2]), "-", sigmas)],
+            None => vec![change(Changed::Balance, None, "-", sigmas)],
+        }
+    }
+
+    fn least_of_balance(&self, balance: &BalanceChange) -> Vec<LeastChange> {
+        let (arm, length) = self.arm();
+        let of_rotor = |(rotor, size): (usize, &f64)| LeastChange {
+            what: Changed::Rotor(rotor),
+            size: *size,
+            unit: "-",
+        };
+        let centre = [0, 1].map(|axis| LeastChange {
+            what: Changed::CentreOfMass(axis),
+            size: balance.least.centre * arm,
+            unit: length,
+        });
+        balance.least.rotors.iter().enumerate().map(of_rotor).chain(centre).collect()
+    }
+}
+
+/// Groups of places in an order as groups of flights.
+fn flown(groups: &Groups, order: &[usize]) -> Groups {
+    let of = |places: &[usize]| places.iter().map(|place| order[*place]).collect();
+    Groups { before: of(&groups.before), after: of(&groups.after) }
+}
