@@ -15,7 +15,7 @@ pub fn run(entry: &'static Ordinary, first: u64, count: u64) -> EffectRun {
         .into_par_iter()
         .filter_map(|seed| Some((seed, fly(seed, &[entry], Conditions::default())?)))
         .collect();
-    let (mut named, mut in_set) = (0, 0);
+    let (mut named, mut in_set, mut traces) = (0, 0, 0);
     let mut verdicts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut errors = Vec::new();
     let mut others: BTreeMap<&str, usize> = BTreeMap::new();
@@ -29,6 +29,8 @@ pub fn run(entry: &'static Ordinary, first: u64, count: u64) -> EffectRun {
             confused(name, &mut confusable);
         } else if explanation.named.iter().any(has_it_in_its_set) {
             in_set += 1;
+        } else if explanation.slight.iter().any(|trace| trace.effect.id == id) {
+            traces += 1;
         }
         let ids: Vec<&str> =
             explanation.named.iter().chain(&explanation.closest).map(|name| name.id).collect();
@@ -53,7 +55,7 @@ pub fn run(entry: &'static Ordinary, first: u64, count: u64) -> EffectRun {
     errors.sort_by(f64::total_cmp);
     let median = errors.get(errors.len() / 2).copied();
     println!(
-        "{id:20} {:7} {named:6} {in_set:4} {:7}  {verdicts:?} {:.1} % {others:?}",
+        "{id:20} {:7} {named:6} {in_set:4} {traces:6} {:7}  {verdicts:?} {:.1} % {others:?}",
         found.len(),
         others.values().sum::<usize>(),
         median.unwrap_or(f64::NAN)
@@ -66,6 +68,7 @@ pub fn run(entry: &'static Ordinary, first: u64, count: u64) -> EffectRun {
         flights: found.len(),
         named,
         in_set,
+        traces,
         others: owned(others),
         verdicts: owned(verdicts),
         size_error_percent: median.map(short),

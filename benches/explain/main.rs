@@ -2,7 +2,7 @@
 //! something is, and the smallest sizes that it would have named.
 //!
 //! `cargo bench --bench explain -- [--clean N] [--each N] [--limits N] [--pairs N] [--seed S] [--only EFFECT] [--fed-back]
-//! [--askew] [--out FILE]`: `--fed-back` has the controller fly on the noise that is logged, `--askew` leans every thrust
+//! [--askew] [--out FILE]`, with `SHOW=SEED` for the steps of one search and `RUST_LOG=mavid=info` for its events: `--fed-back` has the controller fly on the noise that is logged, `--askew` leans every thrust
 //! axis by 0.2 degrees, which is no finding. `--out` writes the results, with a picture of each effect, as JSON: the book's
 //! figures are made from `docs/measured.json`.
 #![allow(
@@ -31,8 +31,10 @@ use flights::Conditions;
 use measured::Measured;
 use ordinary::ORDINARY;
 use support::Arguments;
+use tracing_subscriber::EnvFilter;
 
 fn main() {
+    tracing_subscriber::fmt().with_env_filter(EnvFilter::from_default_env()).init();
     let arguments = Arguments::of_process();
     let (first, each) = (arguments.number("--seed", 1), arguments.number("--each", 6));
     let conditions = Conditions {
@@ -44,7 +46,9 @@ fn main() {
     let limits = limits::run(first, arguments.number("--limits", 24));
     let pairs = pairs::run(first, arguments.number("--pairs", 0));
     let only = arguments.text("--only");
-    println!("\neffect               flights  named  set  others  verdicts; median relative size error %");
+    println!(
+        "\neffect               flights  named  set  trace  others  verdicts; median relative size error %"
+    );
     let chosen = || ORDINARY.iter().filter(|entry| only.as_ref().is_none_or(|only| only == entry.id));
     let effects = chosen().map(|entry| effects::run(entry, first, each)).collect();
     let Some(out) = arguments.text("--out") else { return };

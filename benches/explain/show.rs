@@ -9,6 +9,14 @@ pub fn show_search(explanation: &Explanation) {
             "    took {} {:?} e {:.0}",
             step.taken.candidate.id, step.taken.evidence.theta, step.taken.evidence.energy
         );
+        for rival in step.rivals.iter().take(5) {
+            let e = &rival.evidence;
+            let values = &rival.candidate.parts[0].values;
+            println!(
+                "      before {:18} {values:?} theta {:?} z {:.1} e {:.0}",
+                rival.candidate.id, e.theta, e.z, e.energy
+            );
+        }
     }
     let mut last: Vec<_> = explanation.search.last.iter().collect();
     last.sort_by(|a, b| b.evidence.energy.total_cmp(&a.evidence.energy));

@@ -37,6 +37,9 @@ pub struct EffectRun {
     pub named: usize,
     /// not named, and in the confusable set of a named effect
     pub in_set: usize,
+    /// neither; stated as a trace: certain, and too small to matter
+    #[serde(default)]
+    pub traces: usize,
     /// names that are neither, with their number
     pub others: BTreeMap<String, usize>,
     pub verdicts: BTreeMap<String, usize>,

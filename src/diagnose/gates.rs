@@ -119,7 +119,7 @@ pub(super) fn passes(tested: &Tested, fitted: &Fitted, gates: &Gates, candidates
 const STORM_M_S: f64 = 20.0;
 
 /// Whether sign and size of each coefficient are physically possible, within two standard errors.
-fn possible(tested: &Tested, size: &VehicleSize) -> bool {
+pub(super) fn possible(tested: &Tested, size: &VehicleSize) -> bool {
     if tested.candidate.through.is_some() {
         // the wind's columns carry the drag's strength
         let theta = &tested.evidence.theta;

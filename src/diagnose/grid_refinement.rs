@@ -3,6 +3,7 @@
 use super::candidates::Candidate;
 use super::channels::Channels;
 use super::fit::Fitted;
+use super::gates::possible;
 use super::score::{at_once, columns_of_each};
 use super::signature::GridScale;
 use super::tested::Tested;
@@ -24,10 +25,11 @@ pub(super) fn between_grid(flights: &[Trace], fitted: &Fitted, tested: &[Tested]
 /// Share of the residual that a cord length of the grid has to explain. Chosen; not measured.
 const WORTH_REFINING: f64 = 0.01;
 
-/// Neighbours on either side that are tried first. Chosen; not measured.
-const NEIGHBOURS: i32 = 6;
+/// Neighbours on either side that are tried first: for cords they reach beyond the next length of the grid. Chosen; not measured.
+const NEIGHBOURS: i32 = 10;
 
-/// The candidate with the value, near its present one, that explains most energy.
+/// The candidate with the value, near its present one, that explains most energy. One with a possible amount is better than any
+/// without: near its resonance a load of a wrong cord length swings against the true one, and would have a negative mass.
 pub(super) fn refined(flights: &[Trace], fitted: &Fitted, tested: Tested) -> Tested {
     let scale = tested.candidate.signature().and_then(|signature| signature.refinement.grid);
     let Some(scale) = scale else { return tested };
@@ -40,8 +42,9 @@ pub(super) fn refined(flights: &[Trace], fitted: &Fitted, tested: Tested) -> Tes
         };
         candidates.into_iter().zip(columns).map(tested).collect()
     };
+    let worth = |tested: &Tested| (possible(tested, &fitted.base.size), tested.evidence.energy);
     let better = |a: Tested, b: Option<Tested>| match b {
-        Some(b) if b.evidence.energy > a.evidence.energy => b,
+        Some(b) if worth(&b) > worth(&a) => b,
         _ => a,
     };
     let (mut step, least) = match scale {

@@ -77,13 +77,19 @@ fn leave_out_unnamed(traces: &[Trace], found: &mut Search) -> Result<bool, Physi
         let unseen = bent
             && (!shows_in_forces(&found.after, present, first) || is_noise(present, traces, &found.after));
         first += present.free.len();
-        kept.push(!(beyond || refuted || unseen || is_ordinary(present, &all)));
+        let ordinary = is_ordinary(present, &all);
+        let keeps = !(beyond || refuted || unseen || ordinary);
+        if !keeps {
+            tracing::info!(effect = present.id(), beyond, refuted, unseen, ordinary, "effect gets no name");
+        }
+        kept.push(keeps);
         if strength.count > 0 && strength.z < STAYS && weakest.is_none_or(|(least, _)| strength.z < least) {
             weakest = Some((strength.z, place));
         }
     }
     // two that explain much of each other are both uncertain: one leaves, and the other is judged again
-    if let Some((_, place)) = weakest {
+    if let Some((z, place)) = weakest {
+        tracing::info!(effect = all.present[place].id(), z, "effect is not certain beside the others");
         kept[place] = false;
     }
     if kept.iter().all(|kept| *kept) {
@@ -114,7 +120,9 @@ fn is_ordinary(term: &EffectTerm, base: &Base) -> bool {
         || (naming.is_ordinary)(term, &base.present)
 }
 
-/// Significance of an effect that was accepted together with another, from the distance of its amounts from zero.
+/// Significance of an effect that was accepted together with another, from the distance of its amounts from zero. The parameters of
+/// its form are held at their estimates: without the effect they do not exist, and where they are free the size may be uncertain
+/// of an effect that is certain.
 pub(super) fn fitted_strength(fitted: &Fitted, present: &EffectTerm, first: usize) -> Strength {
     let amounts: Vec<(usize, usize)> = present
         .free
@@ -127,9 +135,45 @@ pub(super) fn fitted_strength(fitted: &Fitted, present: &EffectTerm, first: usiz
     let count = amounts.len();
     let away = amounts.iter().map(|&(_, slot)| present.from_nothing(slot)).collect::<Vec<_>>();
     let away = DVector::from_vec(away);
-    let covariance = DMatrix::from_fn(count, count, |i, j| fitted.covariance[(amounts[i].0, amounts[j].0)]);
+    let forms: Vec<usize> = (0..present.free.len())
+        .filter(|&index| !present.is_amount(present.free[index]))
+        .map(|index| first + index)
+        .filter(|&index| fitted.covariance[(index, index)] > 0.0)
+        .collect();
+    let columns: Vec<usize> = amounts.iter().map(|&(index, _)| index).collect();
+    let covariance = conditional(&fitted.covariance, &columns, &forms);
     // a covariance of two estimators need not be positive definite
     let apart = || (0..count).map(|i| away[i].powi(2) / covariance[(i, i)]).fold(0.0, f64::max);
     let wald = covariance.clone().cholesky().map_or_else(apart, |factor| away.dot(&factor.solve(&away)));
     Strength { z: normal_deviate(wald, count), gain: 0.0, energy: wald, count }
+}
+
+/// Covariance of these columns while others are held; that with the others free where it is no covariance, as one of two
+/// estimators need not be.
+fn conditional(covariance: &DMatrix<f64>, columns: &[usize], held: &[usize]) -> DMatrix<f64> {
+    let part = |a: &[usize], b: &[usize]| DMatrix::from_fn(a.len(), b.len(), |i, j| covariance[(a[i], b[j])]);
+    let (own, with_held) = (part(columns, columns), part(columns, held));
+    let given = part(held, held)
+        .cholesky()
+        .map(|factor| &own - &with_held * factor.solve(&with_held.transpose()))
+        .filter(|given| given.clone().cholesky().is_some());
+    if held.is_empty() { own } else { given.unwrap_or(own) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_covariance_with_another_column_held_is_the_inverse_of_the_information() {
+        let all = DMatrix::from_row_slice(3, 3, &[4.0, 1.9, 0.3, 1.9, 1.0, 0.1, 0.3, 0.1, 2.0]);
+        let given = conditional(&all, &[0, 2], &[1]);
+        let information = all.clone().try_inverse().unwrap_or_default();
+        let own = DMatrix::from_fn(2, 2, |i, j| information[(2 * i, 2 * j)]);
+        assert!((own.try_inverse().unwrap_or_default() - given).norm() < 1e-12);
+        // nothing held, and what is no covariance
+        assert_eq!(conditional(&all, &[0], &[])[(0, 0)], 4.0);
+        let odd = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 1.0]);
+        assert_eq!(conditional(&odd, &[0], &[1])[(0, 0)], 1.0);
+    }
 }

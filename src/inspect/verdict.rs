@@ -222,10 +222,13 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
         advice.push(refusal.to_string());
     }
     match evidence.actuator_hz() {
-        None => advice.push(format!(
-            "No actuator outputs: nothing can be identified. To have them, {}.",
-            how(evidence, "request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS")
-        )),
+        None => advice.push(match evidence.still(Quantity::ActuatorCommand) {
+            Some(hold) => format!("The actuator outputs of this log {hold}: the motors did not run, and nothing can be identified."),
+            None => format!(
+                "No actuator outputs: nothing can be identified. To have them, {}.",
+                how(evidence, "request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS")
+            ),
+        }),
         Some(hz) if hz < LEAST_ACTUATOR_HZ => {
             advice.push(format!(
                 "Actuators at {hz:.0} Hz: too slow. For more, {}.",
@@ -265,7 +268,9 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
     if evidence.rate_hz(Quantity::Velocity).is_none() {
         let how = match (evidence.damage, evidence.logging) {
             (Some(_), _) => "",
-            (None, Some(_)) => " The vehicle had no estimate of it.",
+            (None, Some(set)) => {
+                &format!(" The vehicle had no estimate of it, or did not log it: to have it, {set}.")
+            }
             (None, None) => " To have it, request LOCAL_POSITION_NED.",
         };
         advice.push(format!("No velocity: drag cannot be told.{how}"));

@@ -132,6 +132,14 @@ pub(super) fn foreign(head: &[u8]) -> Option<&'static Foreign> {
     KNOWN.iter().find(is).or_else(|| is_vehicle_file(head).then_some(&VEHICLE)).or_else(by_lines)
 }
 
+/// The kind of archive that begins with these bytes.
+pub(super) fn archive(head: &[u8]) -> Option<&'static Foreign> {
+    let is = |kind: &&Foreign| {
+        kind.advice == UNPACK && head.get(kind.at..).is_some_and(|bytes| bytes.starts_with(kind.signature))
+    };
+    KNOWN.iter().find(is)
+}
+
 /// What a file of no known signature is, by its first bytes, and what to do with it.
 pub(super) fn otherwise(head: &[u8]) -> (String, &'static str) {
     let is_frame =

@@ -2,7 +2,7 @@
 
 use super::error::LogError;
 use super::flights::{Cells, Flights, Hold, Plan, is_state};
-use super::foreign::foreign;
+use super::foreign::{archive, foreign};
 use super::format::{Certainty, Format, Sink};
 use super::input::Input;
 use super::loss::Loss;
@@ -137,6 +137,10 @@ pub fn format_of<'a>(log: impl Into<Input<'a>>) -> Result<&'static Format, LogEr
         return Err(unknown("a folder", "give one of the logs in it"));
     }
     let head = input.head()?;
+    // one that stores what it holds as it is would pass for it
+    if let Some(archive) = archive(&head) {
+        return Err(unknown(archive.what, archive.advice));
+    }
     let found = FORMATS.iter().filter_map(|format| Some(((format.sniff)(&head)?, *format)));
     match found.max_by_key(|(certainty, _)| *certainty) {
         Some((Certainty::Certain, format)) => Ok(format),

@@ -141,6 +141,9 @@ fn accuracy(effect: &dyn Effect, measured: &Measured) -> String {
     if run.in_set > 0 {
         text += &format!(", and was in the confusable set of the named effect in {} more", run.in_set);
     }
+    if run.traces > 0 {
+        text += &format!(", and was stated as a trace in {}", run.traces);
+    }
     text += ".";
     if let Some(error) = run.size_error_percent {
         text += &format!(" The median error of the size was {} %.", significant(error, 2));

@@ -50,6 +50,7 @@ fn right_names(measured: &Measured) -> String {
                 by_id(&run.id).map_or_else(String::new, usual),
                 format!("{} of {}", run.named, run.flights),
                 run.in_set.to_string(),
+                run.traces.to_string(),
                 others.collect::<Vec<_>>().join(", "),
                 run.size_error_percent
                     .map_or_else(String::new, |error| format!("{} %", significant(error, 2))),
@@ -60,12 +61,15 @@ fn right_names(measured: &Measured) -> String {
         .effects
         .iter()
         .fold((0, 0), |(flights, found), run| (flights + run.flights, found + run.named + run.in_set));
+    let traces: usize = measured.effects.iter().map(|run| run.traces).sum();
     let others: usize = measured.effects.iter().flat_map(|run| run.others.values()).sum();
     let sum = format!(
         "In {found} of {flights} flights the concealed effect was named or was in the confusable set of the named effect. \
+         In {traces} more it was stated as a trace: significant, but too small to matter in the noise of that flight. \
          Other names: {others}."
     );
-    let head = ["effect", "concealed", "named", "in the set", "others named", "median error of size"];
+    let head =
+        ["effect", "concealed", "named", "in the set", "as a trace", "others named", "median error of size"];
     format!("{}\n\n{}", table(&head, &rows), paragraph(&sum))
 }
 

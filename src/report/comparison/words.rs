@@ -71,7 +71,7 @@ pub(super) fn sentence(study: &CompareStudy, change: &Change) -> String {
     if rivals.is_empty() {
         told
     } else {
-        format!("{told}, or {} did: these flights cannot tell", rivals.join(" or "))
+        format!("{told}; a change of {} would look the same to these flights", rivals.join(" or of "))
     }
 }
 

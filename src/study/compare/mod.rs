@@ -4,6 +4,7 @@ mod motion;
 mod request;
 mod result;
 mod run;
+mod same_vehicle;
 
 pub use request::CompareRequest;
 pub use result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange};

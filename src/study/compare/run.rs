@@ -3,6 +3,7 @@
 use super::motion::tracks;
 use super::request::CompareRequest;
 use super::result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange};
+use super::same_vehicle::{refuse_others, refuse_same_flight, settings_notes};
 use crate::change::{BalanceChange, Groups, Step, What, judge_balance, judge_parameter, steps};
 use crate::config::LoadedVehicle;
 use crate::diagnose::Owner;
@@ -10,7 +11,6 @@ use crate::draft::Given;
 use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference, best};
-use crate::study::flight::Flight;
 use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
@@ -43,7 +43,8 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     }
     let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft } = known;
     refuse_twins(before.iter().chain(&after))?;
-    refuse_other_autopilots(before.iter().chain(&after).flatten())?;
+    refuse_others(before.iter().chain(&after).flatten())?;
+    refuse_same_flight(&before, &after)?;
     progress.stage(Stage::Conditioning);
     let settings = ConditionSettings {
         transient_s: Some(request.transient_s),
@@ -56,6 +57,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     flights.recordings.extend(later.recordings);
     flights.inputs.extend(later.inputs);
     flights.signals.extend(later.signals);
+    notes.extend(settings_notes(&flights.recordings));
     notes.extend(doubts(&flights));
     let balance = balance(&legs_of(&flights, &vehicle)?);
     progress.stage(Stage::Explaining);
@@ -82,25 +84,6 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         history,
         notes,
     })
-}
-
-/// Logs of different autopilots number the motors differently, and are hardly those of one vehicle.
-fn refuse_other_autopilots<'a>(mut flights: impl Iterator<Item = &'a Flight>) -> Result<(), StudyError> {
-    let Some(first) = flights.next() else { return Ok(()) };
-    let stack = |flight: &Flight| flight.recording.autopilot.stack().map(|stack| stack.name);
-    let differs = |flight: &&Flight| stack(flight).zip(stack(first)).is_some_and(|(own, other)| own != other);
-    match flights.find(differs) {
-        Some(other) => Err(StudyError::File {
-            file: other.input.path.clone(),
-            why: format!(
-                "expected flights of one vehicle, got a log of {} beside one of {} ({})",
-                stack(other).unwrap_or_default(),
-                stack(first).unwrap_or_default(),
-                first.input.path
-            ),
-        }),
-        None => Ok(()),
-    }
 }
 
 /// What is doubtful about the flights' data.
@@ -210,9 +193,12 @@ impl Task<'_> {
             size: *size,
             unit: "-",
         };
-        let centre =
-            LeastChange { what: Changed::CentreOfMass(0), size: balance.least.centre * arm, unit: length };
-        balance.least.rotors.iter().enumerate().map(of_rotor).chain([centre]).collect()
+        let centre = [0, 1].map(|axis| LeastChange {
+            what: Changed::CentreOfMass(axis),
+            size: balance.least.centre * arm,
+            unit: length,
+        });
+        balance.least.rotors.iter().enumerate().map(of_rotor).chain(centre).collect()
     }
 }
 
