@@ -227,7 +227,12 @@ fn described(agreement: &Agreement) -> String {
     )
 }
 
+/// What each value is on flights of their own: the model's, moved by what the linear steps of both differ. Where the autopilot's
+/// noise is fed back the linear step is biased, and the model has its torques from instruments: the bias is the same in both.
 fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
+    let (step, _) = identified.weighted.coefficients(&identified.rows);
+    let moved =
+        |index: usize, known: Option<usize>| own.coefficients[index] - known.map_or(0.0, |known| step[known]);
     const PLACES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
     let body = &own.base.vehicle.body;
     let std = |fitted: &Fitted, index: usize| fitted.covariance[(index, index)].max(0.0).sqrt();
@@ -253,7 +258,7 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
             unit,
             identified: value,
             identified_std: std(identified, index),
-            held_out: value + own.coefficients[index],
+            held_out: value + moved(index, Some(index)),
             held_out_std: std(own, index),
         });
     }
@@ -267,7 +272,7 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
                 unit: parameter.unit,
                 identified: present.values[free],
                 identified_std: known.map_or(0.0, |index| std(identified, index)),
-                held_out: present.values[free] + own.coefficients[index],
+                held_out: present.values[free] + moved(index, known),
                 held_out_std: std(own, index),
             });
             index += 1;
