@@ -188,7 +188,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         ],
     ),
     // the logs and parameters of a vehicle on the ground: the dialogues of `fetch`, held over a link
-    ("onboard", &["note", "autopilot", "wire", "fetch", "link", "fly"]),
+    ("onboard", &["note", "text", "autopilot", "wire", "fetch", "link", "fly"]),
 ];
 
 /// The binary's own modules: they may use anything, and nothing of the library may use them.
