@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
-use mavid::export::{Format, PLACES, export, places};
+use mavid::export::{Format, PLACES, ParameterStyle, aircraft_parameters, export, places};
 use mavid::physics::ActiveEffect;
 use mavid::physics::effects::{ALL, by_id};
 use mavid::vehicle::{ThrustLaw, Vehicle};
@@ -231,4 +231,49 @@ fn every_effect_stands_in_the_table_of_what_simulators_can_hold() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert_eq!(PLACES.len(), ALL.len());
+}
+
+#[test]
+fn an_aircraft_gets_what_was_identified_and_nothing_else() {
+    let vehicle = vehicle();
+    let effects = [
+        effect("linear_drag", &[0.3, 0.3, 0.2]),
+        effect("quadratic_drag", &[0.03, 0.001, 0.0]),
+        effect("thrust_curve", &[-0.2]),
+    ];
+    let identified = toml::from_str(
+        "mass = { value = 2.06, std = 0.0206 }\n[effects.linear_drag]\ndx = { value = 0.3, std = 0.01 }\n\
+         dy = { value = 0.3, std = 0.01 }\n[effects.quadratic_drag]\ncx = { value = 0.03, std = 0.001 }\n\
+         cy = { value = 0.001, std = 0.001 }\n[effects.thrust_curve]\ncurvature = { value = -0.2, std = 0.02 }\n",
+    )
+    .unwrap();
+    let written = aircraft_parameters(&vehicle, &effects, Some(&identified), ParameterStyle::Px4).unwrap();
+    let of = |name: &str| written.parameters.iter().find(|parameter| parameter.name == name).unwrap();
+    let mass = vehicle.body.mass_kg;
+    // d / m, and its error: of drag and of mass
+    let momentum = of("EKF2_MCOEF");
+    assert!((momentum.value - 0.3 / mass).abs() < 1e-12);
+    assert!((momentum.std.unwrap() - (0.01 / mass).hypot(0.01 * 0.3 / mass)).abs() < 1e-9);
+    // rho m / (2 c) where the drag is told from none, and off where it is not
+    assert!((of("EKF2_BCOEF_X").value - 0.5 * 1.225 * mass / 0.03).abs() < 1e-9);
+    assert_eq!((of("EKF2_BCOEF_Y").value, of("EKF2_DRAG_CTRL").value), (0.0, 1.0));
+    // the curve has the slope at hover that was found: by a finite difference of the model's own thrust
+    let hover_n = mass * vehicle.gravity_m_s2 / 4.0;
+    let command = vehicle.propulsion.command_from_thrust(hover_n);
+    let bent = |u: f64| {
+        let thrust_n = vehicle.propulsion.thrust_from_command_n(u);
+        let speed = (thrust_n / hover_n).sqrt();
+        thrust_n + -0.2 * 2.0 * hover_n * speed * (speed - 1.0)
+    };
+    let factor = of("THR_MDL_FAC").value;
+    let curve = |u: f64| (1.0 - factor) * u + factor * u * u;
+    let elasticity = |law: &dyn Fn(f64) -> f64| {
+        command * (law(command + 1e-6) - law(command - 1e-6)) / (2e-6 * law(command))
+    };
+    assert!((elasticity(&bent) - elasticity(&curve)).abs() < 1e-6, "{factor}");
+    let hover = of("MPC_THR_HOVER");
+    assert!((hover.value - curve(command)).abs() < 1e-9 && hover.std.unwrap() > 0.01 * hover.value);
+    // without standard errors nothing follows
+    let none = aircraft_parameters(&vehicle, &effects, None, ParameterStyle::ArduPilot);
+    assert!(none.unwrap_err().to_string().contains("standard errors"));
 }

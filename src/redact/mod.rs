@@ -4,10 +4,10 @@ mod dataflash;
 mod error;
 mod names;
 mod pass;
-mod redact;
+mod redaction;
 mod tlog;
 mod ulog;
 
 pub use error::RedactError;
 pub use pass::Tally;
-pub use redact::{Redacted, redact};
+pub use redaction::{Redacted, redact};

@@ -105,7 +105,7 @@ mod tests {
         let content = html! { (table(words, &[words], &[vec![text(words), number(words)]])) (note(words)) };
         let file = page(words, words, &[words.to_owned()], &section(words, &content));
         assert!(!file.contains("<b>") && !file.contains('\u{1b}'), "{file}");
-        assert_eq!(file.matches("&lt;b&gt;\\u{1b}[31m&amp;").count(), 10, "{file}");
+        assert_eq!(file.matches("&lt;b&gt;\\u{1b}[31m&amp;").count(), 11, "{file}");
         assert!(file.starts_with("<!DOCTYPE html>\n<html lang=\"en\">") && file.ends_with("</html>\n"));
         assert_eq!(table("c", &["h"], &[]).into_string(), "");
     }

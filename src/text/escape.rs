@@ -25,10 +25,10 @@ pub fn clean(text: &str) -> String {
     escaped(text, |_| false).into_owned()
 }
 
-/// As [`clean`], line by line: breaks between lines stay.
+/// As [`clean`], line by line: breaks between lines and tabs stay.
 #[must_use]
 pub fn clean_lines(text: &str) -> Cow<'_, str> {
-    escaped(text, |letter| letter == '\n')
+    escaped(text, |letter| matches!(letter, '\n' | '\t'))
 }
 
 fn escaped(text: &str, stays: impl Fn(char) -> bool) -> Cow<'_, str> {

@@ -286,3 +286,52 @@ fn logging_is_not_set_where_the_vehicle_does_not_answer_for_it() {
         assert!(!state.exists() || std::fs::read_dir(&state).unwrap().next().is_none(), "something was set");
     }
 }
+
+#[test]
+fn parameters_of_a_file_are_set_read_back_and_undone() {
+    let folder = folder("loaded");
+    std::fs::create_dir_all(&folder).unwrap();
+    let sitl = Sitl::start("px4", &[]);
+    let load = |arguments: &[&str]| {
+        let Output { status, stdout, stderr } = Command::new(MAVID)
+            .args(["--json", "vehicle", "load", "--connect", &sitl.1])
+            .args(arguments)
+            .env("MAVID_STATE_DIR", &folder)
+            .output()
+            .unwrap();
+        let document: Value = serde_json::from_slice(&stdout).unwrap_or_default();
+        (status.code(), document, String::from_utf8_lossy(&stderr).into_owned())
+    };
+    let file = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let wanted = file("wanted.params", "# hover\n1\t1\tMPC_THR_HOVER\t0.4321\t9\nTHR_MDL_FAC,0.5\n");
+    // shown, and nothing set without a word
+    let (status, seen, said) = load(&[&wanted]);
+    assert_eq!((status, &seen["set"]), (Some(0), &false.into()), "{said}");
+    let before = seen["parameters"][0]["found"].clone();
+    let (status, set, said) = load(&[&wanted, "--yes"]);
+    assert_eq!(
+        (status, &set["set"], &set["parameters"][0]["found"]),
+        (Some(0), &true.into(), &before),
+        "{said}"
+    );
+    let (_, again, _) = load(&[&wanted]);
+    assert_eq!(again["parameters"][0]["found"], again["parameters"][0]["wanted"]);
+    // one that the vehicle does not have: all or nothing
+    let foreign = file("foreign.param", "THR_MDL_FAC,0.7\nMOT_THST_EXPO,0.7\n");
+    let (status, _, said) = load(&[&foreign, "--yes"]);
+    assert_eq!(status, Some(2));
+    assert!(said.contains("does not have MOT_THST_EXPO: nothing is changed"), "{said}");
+    let (status, known, _) = load(&[&foreign, "--yes", "--known-only"]);
+    assert_eq!((status, &known["set"]), (Some(0), &true.into()));
+    let (status, undone, said) = load(&["--undo"]);
+    assert_eq!(status, Some(0), "{said}");
+    assert_eq!(undone["restored"].as_array().unwrap().len(), 2);
+    // what was found first, not what was set in between
+    let (_, last, _) = load(&[&wanted]);
+    assert_eq!(last["parameters"][0]["found"], before);
+    assert_eq!(last["parameters"][1]["found"], 1.0);
+}

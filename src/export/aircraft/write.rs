@@ -9,7 +9,7 @@ use crate::export::error::ExportError;
 use crate::export::notes::line_comments;
 use crate::export::source::Source;
 use crate::physics::ActiveEffect;
-use crate::text::{line_comment, significant, with_error};
+use crate::text::{compact, line_comment, significant, with_error};
 use crate::vehicle::Vehicle;
 use std::fmt::Write;
 use toml::Table;
@@ -61,7 +61,7 @@ fn file(name: &str, parameters: &[AircraftParameter], notes: &[String], style: P
     ));
     for parameter in parameters {
         let AircraftParameter { name, value, std, unit, is_integer, why } = parameter;
-        let said = std.map_or_else(|| significant(*value, 4), |std| with_error(*value, std));
+        let said = std.map_or_else(|| compact(*value), |std| with_error(*value, std));
         let unit = if *unit == "-" { String::new() } else { format!(" {unit}") };
         text.push_str(&line_comment("#", &format!("{name} {said}{unit}: {why}")));
         let value = if *is_integer { format!("{value:.0}") } else { significant(*value, 6) };
