@@ -134,7 +134,7 @@ pub fn run(
         let text = match phase.borrow().phase {
             Phase::Before => format!("mavid: ended by {name} before it began"),
             Phase::Between => {
-                format!("mavid: ended by {name}; the same command goes on where it was left")
+                format!("mavid: ended by {name}; run the same command again to continue")
             }
             Phase::Flying => continue,
             Phase::Fetching | Phase::Ending if since.get_or_insert_with(Instant::now).elapsed() < GRACE => {

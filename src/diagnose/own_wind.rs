@@ -6,7 +6,7 @@
 use super::base::Base;
 use super::explain::ExplainSettings;
 use super::fit::{Newton, fit};
-use super::signatures::ALL;
+use super::signatures::{ALL, CALM_M_S};
 use super::trace::Trace;
 use crate::recording::Stream;
 use crate::signals::Signals;
@@ -16,8 +16,6 @@ use std::sync::Arc;
 
 /// A wind and its drag are believed from so many standard errors on. Chosen; not measured.
 const CERTAIN: f64 = 5.0;
-/// Share of the velocity's scatter under which a wind says nothing: velocity estimates err by as much, m/s.
-const CALM_M_S: f64 = 0.3;
 /// Start of the drag's fit, 1/s of the mass.
 const DRAG_1_S: f64 = 0.1;
 

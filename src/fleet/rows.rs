@@ -12,7 +12,7 @@ table_rows! {
         bytes: i64, "B", "its size";
         status: String, "", "`flown`: at least one flight is in the tables; `no_flight`: it was read and holds none that can be used; `inspected`: it was not asked for flights; `error`: it could not be read within its bounds";
         error: Option<String>, "", "why it has no flight, or could not be read";
-        vehicle: Option<String>, "", "vehicle it is of";
+        vehicle: Option<String>, "", "its vehicle";
         vehicle_type: Option<String>, "", "type of that vehicle: vehicles of one type are compared";
         format: Option<String>, "", "format, told by its content";
         autopilot: Option<String>, "", "autopilot that flew";
@@ -31,7 +31,7 @@ table_rows! {
     FlightRow, "flights", "one flight of a log" {
         log: String, "", "SHA-256 of the log's bytes";
         flight: i64, "1", "place in the log, from 0";
-        vehicle: String, "", "vehicle it is of";
+        vehicle: String, "", "its vehicle";
         vehicle_type: String, "", "type of that vehicle";
         start_utc_us: Option<i64>, "us", "beginning of the log, microseconds since 1970 UTC";
         from_s: f64, "s", "first time in the air, on the vehicle's clock";
@@ -47,7 +47,7 @@ table_rows! {
     ParameterRow, "parameters", "one parameter as one flight shows it" {
         log: String, "", "SHA-256 of the log's bytes";
         flight: i64, "1", "place in the log";
-        vehicle: String, "", "vehicle it is of";
+        vehicle: String, "", "its vehicle";
         name: String, "", "`mass`, `ixx`, `latency`, `vibration`, `power`, or `effect.parameter`";
         unit: String, "", "unit of value and error";
         value: f64, "in `unit`", "value";
@@ -62,7 +62,7 @@ table_rows! {
     EffectRow, "effects", "one effect that a flight shows and the model lacks" {
         log: String, "", "SHA-256 of the log's bytes";
         flight: i64, "1", "place in the log";
-        vehicle: String, "", "vehicle it is of";
+        vehicle: String, "", "its vehicle";
         effect: String, "", "identifier of the effect";
         sentence: String, "", "what it means for this vehicle";
         z: f64, "1", "evidence, as a normal deviate";
@@ -75,7 +75,7 @@ table_rows! {
     ResidualRow, "residuals", "what is left of the equation of one axis of a flight" {
         log: String, "", "SHA-256 of the log's bytes";
         flight: i64, "1", "place in the log";
-        vehicle: String, "", "vehicle it is of";
+        vehicle: String, "", "its vehicle";
         axis: String, "", "force or torque along which body axis";
         unit: String, "", "N or N m";
         before: f64, "in `unit`", "root mean square by the rigid body alone";
@@ -87,7 +87,7 @@ table_rows! {
     LegRow, "legs", "two seconds of a flight: what its balance is found from" {
         log: String, "", "SHA-256 of the log's bytes";
         flight: i64, "1", "place in the log";
-        vehicle: String, "", "vehicle it is of";
+        vehicle: String, "", "its vehicle";
         time_s: f64, "s", "middle of the leg on the vehicle's clock";
         lean: Vec<f64>, "1", "where the commanded thrust acts along body x and y over the mean arm, and its torque about z over that of all rotors turning one way";
         felt: Vec<f64>, "1", "what the air pushes along body x and y, over the weight";
@@ -103,7 +103,7 @@ table_rows! {
     WarningRow, "warnings", "what is to be known of a log or a flight" {
         log: String, "", "SHA-256 of the log's bytes";
         flight: Option<i64>, "1", "place in the log; empty: of the whole log";
-        vehicle: Option<String>, "", "vehicle it is of";
+        vehicle: Option<String>, "", "its vehicle";
         severity: String, "", "`loss`, `warning`, `remark`, or `text` of the vehicle";
         text: String, "", "the sentence";
     }

@@ -81,9 +81,9 @@ fn answer(question: &str) -> Result<String, CommandError> {
     let mut line = String::new();
     let read = io::stdin().lock().read_line(&mut line);
     match read {
-        Ok(0) => Err(CommandError::Ended(
-            "ended at a question; the same command goes on where it was left".to_owned(),
-        )),
+        Ok(0) => {
+            Err(CommandError::Ended("ended at a question; run the same command again to continue".to_owned()))
+        }
         Ok(_) => Ok(line.trim().to_owned()),
         Err(error) => Err(CommandError::Failure(format!("cannot read standard input: {error}"))),
     }

@@ -67,7 +67,7 @@ fn made(context: &Context<'_>, step: &Step) -> Result<ExplainStudy, CommandError
     context.tell(step);
     let study = explain::make(context.stderr, &step.explain()?).map_err(|error| match error {
         CommandError::Input(why) => CommandError::Input(format!(
-            "{why}; a flight that is not to be used: move its folder out of {}, then the same command goes on",
+            "{why}; to leave a flight out, move its folder out of {} and run the same command again",
             text::path(context.folder.path())
         )),
         other => other,

@@ -59,9 +59,7 @@ pub fn exports(context: &Context<'_>) -> Vec<String> {
         }
     }
     if !files.is_empty() {
-        output::message(
-            "what a simulator cannot hold of the model, its command says where it is given alone",
-        );
+        output::message("run an export command alone to see what its simulator cannot represent");
     }
     files
 }

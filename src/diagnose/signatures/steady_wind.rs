@@ -13,7 +13,7 @@ use super::linear_drag;
 
 /// Wind below which the air is called calm, m/s: force 0 of the Beaufort scale ends at 0.3 m/s. Velocity estimates err by as
 /// much.
-const CALM_M_S: f64 = 0.3;
+pub const CALM_M_S: f64 = 0.3;
 
 /// Wind that does not change.
 pub static SIGNATURE: Signature = Signature {
