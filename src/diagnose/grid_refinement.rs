@@ -2,6 +2,7 @@
 
 use super::candidates::Candidate;
 use super::channels::Channels;
+use super::evidence::Evidence;
 use super::fit::Fitted;
 use super::gates::possible;
 use super::score::{at_once, columns_of_each};
@@ -25,6 +26,9 @@ pub(super) fn between_grid(flights: &[Trace], fitted: &Fitted, tested: &[Tested]
 /// Share of the residual that a cord length of the grid has to explain. Chosen; not measured.
 const WORTH_REFINING: f64 = 0.01;
 
+/// Standard errors from which on an amount has a sign. Chosen; not measured.
+const OF_A_SIGN: f64 = 3.0;
+
 /// Neighbours on either side that are tried first: for cords they reach beyond the next length of the grid. Chosen; not measured.
 const NEIGHBOURS: i32 = 10;
 
@@ -42,7 +46,10 @@ pub(super) fn refined(flights: &[Trace], fitted: &Fitted, tested: Tested) -> Tes
         };
         candidates.into_iter().zip(columns).map(tested).collect()
     };
-    let worth = |tested: &Tested| (possible(tested, &fitted.base.size), tested.evidence.energy);
+    let worth = |tested: &Tested| {
+        let Evidence { z, energy, .. } = tested.evidence;
+        (z.abs() > OF_A_SIGN && possible(tested, &fitted.base.size), energy)
+    };
     let better = |a: Tested, b: Option<Tested>| match b {
         Some(b) if worth(&b) > worth(&a) => b,
         _ => a,

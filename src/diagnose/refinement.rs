@@ -141,39 +141,61 @@ pub(super) fn fitted_strength(fitted: &Fitted, present: &EffectTerm, first: usiz
         .filter(|&index| fitted.covariance[(index, index)] > 0.0)
         .collect();
     let columns: Vec<usize> = amounts.iter().map(|&(index, _)| index).collect();
-    let covariance = conditional(&fitted.covariance, &columns, &forms);
+    let covariance = with_held(fitted, &columns, &forms);
     // a covariance of two estimators need not be positive definite
     let apart = || (0..count).map(|i| away[i].powi(2) / covariance[(i, i)]).fold(0.0, f64::max);
     let wald = covariance.clone().cholesky().map_or_else(apart, |factor| away.dot(&factor.solve(&away)));
     Strength { z: normal_deviate(wald, count), gain: 0.0, energy: wald, count }
 }
 
-/// Covariance of these columns while others are held; that with the others free where it is no covariance, as one of two
-/// estimators need not be.
-fn conditional(covariance: &DMatrix<f64>, columns: &[usize], held: &[usize]) -> DMatrix<f64> {
-    let part = |a: &[usize], b: &[usize]| DMatrix::from_fn(a.len(), b.len(), |i, j| covariance[(a[i], b[j])]);
-    let (own, with_held) = (part(columns, columns), part(columns, held));
-    let given = part(held, held)
-        .cholesky()
-        .map(|factor| &own - &with_held * factor.solve(&with_held.transpose()))
-        .filter(|given| given.clone().cholesky().is_some());
-    if held.is_empty() { own } else { given.unwrap_or(own) }
+/// Covariance of these columns while others are held; that with the others free where it is no covariance, as one of two estimators
+/// need not be.
+fn with_held(fitted: &Fitted, columns: &[usize], held: &[usize]) -> DMatrix<f64> {
+    let own = part(&fitted.covariance, columns, columns);
+    let Some(normal) = fitted.weighted.normal.as_ref().filter(|_| !held.is_empty()) else { return own };
+    let factor = normal.l();
+    reduced(&(&factor * factor.transpose()), &fitted.covariance, columns, held)
+        .filter(|reduced| reduced.clone().cholesky().is_some())
+        .unwrap_or(own)
+}
+
+/// Sandwich of the regression without the held columns, from the information A and the sandwich V of the whole: its meat is A V A.
+fn reduced(
+    information: &DMatrix<f64>,
+    covariance: &DMatrix<f64>,
+    columns: &[usize],
+    held: &[usize],
+) -> Option<DMatrix<f64>> {
+    let kept: Vec<usize> = (0..information.nrows()).filter(|index| !held.contains(index)).collect();
+    let meat = part(&(information * covariance * information), &kept, &kept);
+    let bread = part(information, &kept, &kept).cholesky()?.inverse();
+    let all = &bread * meat * &bread;
+    let places: Vec<usize> =
+        columns.iter().filter_map(|column| kept.iter().position(|kept| kept == column)).collect();
+    Some(part(&all, &places, &places))
+}
+
+fn part(of: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
+    DMatrix::from_fn(rows.len(), columns.len(), |i, j| of[(rows[i], columns[j])])
 }
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
 
     #[test]
-    fn a_covariance_with_another_column_held_is_the_inverse_of_the_information() {
-        let all = DMatrix::from_row_slice(3, 3, &[4.0, 1.9, 0.3, 1.9, 1.0, 0.1, 0.3, 0.1, 2.0]);
-        let given = conditional(&all, &[0, 2], &[1]);
-        let information = all.clone().try_inverse().unwrap_or_default();
-        let own = DMatrix::from_fn(2, 2, |i, j| information[(2 * i, 2 * j)]);
-        assert!((own.try_inverse().unwrap_or_default() - given).norm() < 1e-12);
-        // nothing held, and what is no covariance
-        assert_eq!(conditional(&all, &[0], &[])[(0, 0)], 4.0);
-        let odd = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 1.0]);
-        assert_eq!(conditional(&odd, &[0], &[1])[(0, 0)], 1.0);
+    fn with_a_column_held_it_is_the_sandwich_of_the_smaller_regression() {
+        // rows of a regression and a covariance of its noise that is not white
+        let x =
+            DMatrix::from_row_slice(4, 3, &[1.0, 0.4, 0.2, 0.3, 1.0, -0.5, 0.9, 0.8, 1.0, -0.2, 0.5, 0.7]);
+        let noise = DMatrix::from_fn(4, 4, |i, j| 0.6_f64.powi(i32::from(i.abs_diff(j) as u8)));
+        let sandwich = |x: &DMatrix<f64>| {
+            let bread = (x.transpose() * x).try_inverse().unwrap();
+            &bread * (x.transpose() * &noise * x) * &bread
+        };
+        let found = reduced(&(x.transpose() * &x), &sandwich(&x), &[0, 2], &[1]).unwrap();
+        let smaller = DMatrix::from_fn(4, 2, |i, j| x[(i, 2 * j)]);
+        assert!((found - sandwich(&smaller)).norm() < 1e-12);
     }
 }

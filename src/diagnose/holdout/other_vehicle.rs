@@ -250,23 +250,24 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
             _ => continue,
         };
         // one of them says nothing of it: torques were not compared
-        if std(identified, index) <= 0.0 || std(own, index) <= 0.0 {
+        let known = identified.rows.nuisances.iter().position(|known| known.nuisance == column.nuisance);
+        let Some(known) = known.filter(|&known| std(identified, known) > 0.0 && std(own, index) > 0.0) else {
             continue;
-        }
+        };
         out.push(Agreement {
             name: name.to_owned(),
             unit,
             identified: value,
-            identified_std: std(identified, index),
-            held_out: value + moved(index, Some(index)),
+            identified_std: std(identified, known),
+            held_out: value + moved(index, Some(known)),
             held_out_std: std(own, index),
         });
     }
     let mut index = own.rows.nuisances.len();
-    for present in &own.base.present {
+    for (place, present) in own.base.present.iter().enumerate() {
         for &free in &present.free {
             let Some(parameter) = present.parameter(free) else { continue };
-            let known = column_of(present, free, identified);
+            let known = column_of((place, present), free, identified);
             out.push(Agreement {
                 name: format!("{}.{}", present.id(), parameter.name),
                 unit: parameter.unit,
@@ -281,11 +282,13 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
     out
 }
 
-/// Place of an effect's parameter among the coefficients of a fit that estimates it.
-fn column_of(present: &EffectTerm, slot: usize, fitted: &Fitted) -> Option<usize> {
-    let mut free =
-        fitted.base.present.iter().flat_map(|term| term.free.iter().map(move |slot| (term.id(), *slot)));
-    free.position(|place| place == (present.id(), slot)).map(|place| fitted.rows.nuisances.len() + place)
+/// Place of a parameter among the coefficients of a fit that estimates it; the effect stands at the same place in both models.
+fn column_of((place, present): (usize, &EffectTerm), slot: usize, fitted: &Fitted) -> Option<usize> {
+    let terms = &fitted.base.present;
+    let own = terms.get(place).filter(|term| term.id() == present.id())?;
+    let before: usize = terms[..place].iter().map(|term| term.free.len()).sum();
+    let index = own.free.iter().position(|free| *free == slot)?;
+    Some(fitted.rows.nuisances.len() + before + index)
 }
 
 /// Two flights' values weighted by their variances.

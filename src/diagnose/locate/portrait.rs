@@ -56,7 +56,13 @@ fn of_term(traces: &[Trace], fitted: &Fitted, (term, column): (&EffectTerm, usiz
     let wanted = picture.over.state(channel, rotor);
     let varies = view.states.iter().any(|(state, _)| *state == wanted);
     let state = if varies { wanted } else { Followed::Time };
-    let recorded: Vec<f64> = view.residual[channel].iter().zip(&part).map(|(left, of)| left + of).collect();
+    let step = step_of(fitted, (term, column), channel);
+    let recorded: Vec<f64> = view.residual[channel]
+        .iter()
+        .zip(&part)
+        .zip(&step)
+        .map(|((left, of), step)| left + of + step)
+        .collect();
     Some(Portrait {
         id: term.id(),
         channel,
@@ -64,6 +70,21 @@ fn of_term(traces: &[Trace], fitted: &Fitted, (term, column): (&EffectTerm, usiz
         recorded: binned(&view, state, &recorded, channel)?,
         model: binned(&view, state, &part, channel)?,
     })
+}
+
+/// What the residual itself would change of the effect, row by row. What is left has it projected off; without it the picture would
+/// agree with the model whatever was recorded.
+fn step_of(fitted: &Fitted, (term, first): (&EffectTerm, usize), channel: usize) -> Vec<f64> {
+    let (coefficients, _) = fitted.weighted.coefficients(&fitted.rows);
+    let mut sum = vec![0.0; fitted.rows.len()];
+    for (place, slot) in term.free.iter().enumerate() {
+        let Some(column) = fitted.rows.effects.get(first + place) else { continue };
+        if term.signature.amounts.contains(slot) {
+            let by = coefficients[fitted.rows.nuisances.len() + first + place];
+            sum.iter_mut().zip(&column[channel]).for_each(|(sum, value)| *sum += by * value);
+        }
+    }
+    sum
 }
 
 /// What an effect does to a channel, row by row: the columns of its amounts times their distance from nothing.

@@ -1,9 +1,10 @@
 //! Drag as the autopilots' estimators of wind take it.
 //!
 //! EKF2 of PX4 (`fuseDrag`) and EKF3 of ArduPilot (`FuseDragForces`) expect along the body's x and y axes the acceleration
-//! `-v_i M sqrt(rho / rho_0) - rho / 2 |v| v_i / B_i`: M is EKF2_MCOEF or EK3_DRAG_MCOEF (1/s), B_i is EKF2_BCOEF_X/Y or
-//! EK3_DRAG_BCOEF_X/Y (kg/m^2), and a coefficient of 0 switches its part off. With the model's linear drag d and quadratic
-//! drag c, `M = d / m` and `B = rho_0 m / (2 c)` in air of the density rho_0.
+//! `-v_i M sqrt(rho / rho_0) - rho / 2 s v_i / B_i`: M is EKF2_MCOEF or EK3_DRAG_MCOEF (1/s), B_i is EKF2_BCOEF_X/Y or
+//! EK3_DRAG_BCOEF_X/Y (kg/m^2), and a coefficient of 0 switches its part off. The speed s is the whole airspeed in PX4, which
+//! takes between both axes an elliptic mean of B, and `|v_i|` in ArduPilot. With the model's linear drag d and quadratic drag c,
+//! `M = d / m` and `B = rho_0 m / (2 c)` in air of the density rho_0.
 
 use super::determined::Determined;
 use super::parameter::{AircraftParameter, ParameterStyle};
@@ -14,7 +15,10 @@ use crate::text::with_error;
 const DENSITY_KG_M3: f64 = 1.225;
 /// Largest coefficient of momentum drag that both autopilots document, 1/s.
 const MOST_MOMENTUM: f64 = 1.0;
-/// A bluff body is told from none where its drag is so many standard errors from none. Chosen: the usual 95 %.
+/// Smallest coefficients that both take for more than none: of momentum drag, 1/s, and of a bluff body, kg/m^2.
+const LEAST_MOMENTUM: f64 = 0.001;
+const LEAST_BALLISTIC: f64 = 1.0;
+/// A drag is told from none where it is so many standard errors from none. Chosen: the usual 95 %.
 const TOLD: f64 = 2.0;
 
 /// Names of the parameters, and the largest ballistic coefficient that the autopilot documents, kg/m^2.
@@ -42,6 +46,15 @@ const fn names(style: ParameterStyle) -> Names {
     }
 }
 
+/// A coefficient of the estimator.
+enum Coefficient {
+    Found(AircraftParameter),
+    /// the model has no such drag that is told from none: 0 says so
+    Absent,
+    /// there is one, and the parameter cannot hold it
+    Beyond,
+}
+
 /// The estimator's drag, if one was identified.
 pub(super) fn drag(
     source: &mut Source<'_>,
@@ -49,85 +62,116 @@ pub(super) fn drag(
     style: ParameterStyle,
 ) -> Vec<AircraftParameter> {
     let names = names(style);
-    let momentum = momentum(source, determined, names.momentum);
-    let bluff = bluff(source, determined, &names);
-    if momentum.is_none() && bluff.iter().all(Option::is_none) {
+    let all = [
+        (names.momentum, momentum(source, determined, names.momentum)),
+        (names.ballistic[0], bluff(source, determined, &names, 0)),
+        (names.ballistic[1], bluff(source, determined, &names, 1)),
+    ];
+    if all.iter().any(|(_, found)| matches!(found, Coefficient::Beyond)) {
+        source.note("the drag of the estimator is left out as a whole: with a part of it alone the wind would come out wrong");
+        return Vec::new();
+    }
+    if all.iter().all(|(_, found)| matches!(found, Coefficient::Absent)) {
         source.note(format!(
-            "{} and {}/{} do not follow from this model: no drag with a standard error is in it",
+            "{} and {}/{} do not follow from this model: no drag that is told from none is in it",
             names.momentum, names.ballistic[0], names.ballistic[1]
         ));
         return Vec::new();
     }
-    let off = |name: &str, what: &str| {
-        AircraftParameter::switch(name, 0.0, false, format!("no {what} was found, and 0 switches it off"))
-    };
-    let mut parameters: Vec<AircraftParameter> = names
+    tell_form(source, style);
+    let control = names
         .control
-        .map(|name| AircraftParameter::switch(name, 1.0, true, "the estimator takes drag to find the wind"))
-        .into_iter()
-        .collect();
-    parameters.push(momentum.unwrap_or_else(|| off(names.momentum, "drag in proportion to the airspeed")));
-    for (name, found) in names.ballistic.into_iter().zip(bluff) {
-        parameters
-            .push(found.unwrap_or_else(|| off(name, "drag with the square of the airspeed along this axis")));
-    }
-    parameters
+        .map(|name| AircraftParameter::switch(name, 1.0, true, "the estimator takes drag to find the wind"));
+    let each = all.into_iter().map(|(name, found)| match found {
+        Coefficient::Found(parameter) => parameter,
+        _ => AircraftParameter::switch(name, 0.0, false, "no such drag was found, and 0 switches it off"),
+    });
+    control.into_iter().chain(each).collect()
 }
 
 /// From the drag in proportion to the airspeed.
-fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) -> Option<AircraftParameter> {
+fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) -> Coefficient {
     let std = |axis| determined.std("linear_drag", axis);
-    let (std_x, std_y) = (std("dx")?, std("dy")?);
+    let (Some(std_x), Some(std_y)) = (std("dx"), std("dy")) else { return Coefficient::Absent };
     let (dx, dy) = (source.take("linear_drag", "dx"), source.take("linear_drag", "dy"));
     let (mass_kg, mass_std) = mass(source, determined);
-    let mean = f64::midpoint(dx, dy);
-    if (dx - dy).abs() > 2.0 * std_x.hypot(std_y) {
+    // what x and y have in common is not known: as if it were all
+    let (mean, mean_std) = (f64::midpoint(dx, dy), f64::midpoint(std_x, std_y));
+    let value = mean / mass_kg;
+    if mean < TOLD * mean_std || value < LEAST_MOMENTUM {
+        return Coefficient::Absent;
+    }
+    if (dx - dy).abs() > TOLD * std_x.hypot(std_y) {
         source.note(format!(
             "{name} is the same along x and y: from the mean of {} and {} N per m/s",
             with_error(dx, std_x),
             with_error(dy, std_y)
         ));
     }
-    let value = mean / mass_kg;
     if value > MOST_MOMENTUM {
+        source.refuse("linear_drag");
         source.note(format!(
-            "{name} is left out: it would be {value:.3} 1/s, more than the {MOST_MOMENTUM} that the autopilot documents"
+            "{name} would be {value:.3} 1/s, more than the {MOST_MOMENTUM} that the autopilot documents"
         ));
-        return None;
+        return Coefficient::Beyond;
     }
-    // what x and y have in common is not known: as if it were all
-    let std = (f64::midpoint(std_x, std_y) / mass_kg).hypot(value * mass_std);
+    let std = (mean_std / mass_kg).hypot(value * mass_std);
     let why = format!(
         "drag at hover of {} N per m/s over the mass of {mass_kg:.4} kg, taken as in air of {DENSITY_KG_M3} kg/m^3; wind was \
          estimated with it where there was one",
-        with_error(mean, f64::midpoint(std_x, std_y))
+        with_error(mean, mean_std)
     );
-    Some(AircraftParameter::number(name, (value, std), "1/s", why))
+    Coefficient::Found(AircraftParameter::number(name, (value, std), "1/s", why))
 }
 
-/// From the drag with the square of the airspeed, along x and y.
-fn bluff(
-    source: &mut Source<'_>,
-    determined: &Determined<'_>,
-    names: &Names,
-) -> [Option<AircraftParameter>; 2] {
+/// From the drag with the square of the airspeed, along x or y.
+fn bluff(source: &mut Source<'_>, determined: &Determined<'_>, names: &Names, along: usize) -> Coefficient {
+    let (axis, name) = (["cx", "cy"][along], names.ballistic[along]);
     let (mass_kg, mass_std) = mass(source, determined);
-    [("cx", names.ballistic[0]), ("cy", names.ballistic[1])].map(|(axis, name)| {
-        let std = determined.std("quadratic_drag", axis)?;
-        let drag = source.take("quadratic_drag", axis);
-        if drag < TOLD * std {
-            return None;
+    let Some(std) = determined.std("quadratic_drag", axis) else { return Coefficient::Absent };
+    let drag = source.take("quadratic_drag", axis);
+    let value = 0.5 * DENSITY_KG_M3 * mass_kg / drag;
+    // so slight that the autopilot has no number for it
+    if drag < TOLD * std || value > names.most_ballistic {
+        return Coefficient::Absent;
+    }
+    if value <= LEAST_BALLISTIC {
+        source.refuse("quadratic_drag");
+        source.note(format!(
+            "{name} would be {value:.3} kg/m^2, and the autopilot takes {LEAST_BALLISTIC} and less for none"
+        ));
+        return Coefficient::Beyond;
+    }
+    let why = format!(
+        "drag of {} N per (m/s)^2 at the mass of {mass_kg:.4} kg, taken as in air of {DENSITY_KG_M3} kg/m^3",
+        with_error(drag, std)
+    );
+    Coefficient::Found(AircraftParameter::number(
+        name,
+        (value, value * (std / drag).hypot(mass_std)),
+        "kg/m^2",
+        why,
+    ))
+}
+
+/// Tells where the autopilot's law of the quadratic drag is not the model's.
+fn tell_form(source: &mut Source<'_>, style: ParameterStyle) {
+    let Some(by_face) =
+        source.value("quadratic_drag", "by_face").or_else(|| source.has("quadratic_drag").then_some(0.0))
+    else {
+        return;
+    };
+    let (own, words) = match style {
+        ParameterStyle::Px4 => {
+            (0.0, "the whole airspeed, with an elliptic mean of the coefficients between the axes")
         }
-        let value = 0.5 * DENSITY_KG_M3 * mass_kg / drag;
-        if value > names.most_ballistic {
-            return None;
-        }
-        let why = format!(
-            "drag of {} N per (m/s)^2 at the mass of {mass_kg:.4} kg, taken as in air of {DENSITY_KG_M3} kg/m^3",
-            with_error(drag, std)
-        );
-        Some(AircraftParameter::number(name, (value, value * (std / drag).hypot(mass_std)), "kg/m^2", why))
-    })
+        ParameterStyle::ArduPilot => (1.0, "the airspeed along that axis alone"),
+    };
+    if (by_face - own).abs() > 0.5 || style == ParameterStyle::Px4 {
+        source.note(format!(
+            "the estimator's quadratic drag along an axis goes with {words}: it is the model's in flight along an axis, and differs across"
+        ));
+    }
 }
 
 /// kg, and its relative standard error; none where it was given.

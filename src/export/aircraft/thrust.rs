@@ -76,7 +76,7 @@ pub(super) fn thrust(
     let factor_std = curve.as_ref().and_then(|curve| curve.std).unwrap_or(0.0);
     parameters.extend(curve);
     parameters.extend(hover(source, determined, (factor, factor_std, command), &names));
-    parameters.extend(battery(source, determined, factor, style));
+    parameters.extend(battery(source, determined, (factor, command), style));
     parameters
 }
 
@@ -158,7 +158,7 @@ fn hover(
 fn battery(
     source: &mut Source<'_>,
     determined: &Determined<'_>,
-    factor: f64,
+    (factor, command): (f64, f64),
     style: ParameterStyle,
 ) -> Option<AircraftParameter> {
     let std = determined.std("battery_sag", "exponent")?;
@@ -171,11 +171,11 @@ fn battery(
         ));
         return None;
     }
-    // (1 - f) r + f r^2 about the full voltage goes with the power 1 + f
-    if (exponent - (1.0 + factor)).abs() > 2.0 * std {
+    // (1 - f) r u + f (r u)^2 with the voltage's ratio r goes about the command of hover with the power that it has in u
+    let power = 1.0 + factor * command / ((1.0 - factor) + factor * command);
+    if (exponent - power).abs() > 2.0 * std {
         source.note(format!(
-            "battery_sag: {said}; ArduPilot's compensation would take the power {:.2}: MOT_BAT_VOLT_MAX is left out",
-            1.0 + factor
+            "battery_sag: {said}; ArduPilot's compensation would take the power {power:.2} at hover: MOT_BAT_VOLT_MAX is left out"
         ));
         return None;
     }
