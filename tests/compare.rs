@@ -86,7 +86,7 @@ fn a_rotor_that_became_weak_is_found_and_an_unchanged_vehicle_is_not_called_chan
     // and what would have shown is told
     let least = said["smallest_changes"].as_array().unwrap();
     assert!(
-        least.len() == 5 && least.iter().all(|least| least["size"].as_f64().unwrap() < 0.05),
+        least.len() == 6 && least.iter().all(|least| least["size"].as_f64().unwrap() < 0.05),
         "{least:?}"
     );
 }
