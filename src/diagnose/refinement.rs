@@ -189,7 +189,7 @@ mod tests {
         // rows of a regression and a covariance of its noise that is not white
         let x =
             DMatrix::from_row_slice(4, 3, &[1.0, 0.4, 0.2, 0.3, 1.0, -0.5, 0.9, 0.8, 1.0, -0.2, 0.5, 0.7]);
-        let noise = DMatrix::from_fn(4, 4, |i, j| 0.6_f64.powi(i32::from(i.abs_diff(j) as u8)));
+        let noise = DMatrix::from_fn(4, 4, |i, j| 0.6_f64.powi(i32::try_from(i.abs_diff(j)).unwrap()));
         let sandwich = |x: &DMatrix<f64>| {
             let bread = (x.transpose() * x).try_inverse().unwrap();
             &bread * (x.transpose() * &noise * x) * &bread
