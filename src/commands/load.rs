@@ -4,7 +4,7 @@ use mavid::onboard::{self, Loading, ParameterFileError, Session, Wanted, read_pa
 use mavid::text;
 use serde::Serialize;
 
-use super::log::{agreed, link_options, notes_of_loaded, open, put_back_page};
+use super::log::{agreed, all_put_back, link_options, notes_of_loaded, open, put_back_page};
 use super::{CommandError, Outcome, network, output};
 use crate::cli::LoadArgs;
 
@@ -145,13 +145,5 @@ async fn undo(json: bool, session: &mut Session) -> Result<Outcome, CommandError
     } else {
         output::text(&put_back_page(&put_back))?;
     }
-    if put_back.failed.is_empty() {
-        return Ok(Outcome::Done);
-    }
-    let names: Vec<&str> = put_back.failed.iter().map(|(noted, _)| noted.name.as_str()).collect();
-    Err(CommandError::Failure(format!(
-        "{} not put back: the values stand in {}, and the same command tries again",
-        names.join(", "),
-        text::path(&notes.path())
-    )))
+    all_put_back(&put_back, &text::path(&notes.path()))
 }

@@ -1,7 +1,8 @@
 //! Parameters of a file beside those of a vehicle, and their setting.
 
-use super::{Flow, OnboardError, Session};
-use crate::fetch::{Known, Noted, Notes, ReadParameters, SetParameters};
+use super::setting::{read, set};
+use super::{OnboardError, Session};
+use crate::fetch::{Known, Noted, Notes};
 
 /// One parameter of a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +36,8 @@ pub struct Loading {
 /// # Errors
 /// A value with a fraction is wanted of a whole number, or those of [`Session::talk`].
 pub async fn compare(session: &mut Session, file: &[(String, f64)]) -> Result<Loading, OnboardError> {
-    let known = read(session, file.iter().map(|(name, _)| name.as_str())).await?;
+    let names: Vec<&str> = file.iter().map(|(name, _)| name.as_str()).collect();
+    let known = read(session, &names).await?;
     let mut wanted = Vec::new();
     for (name, value) in file {
         if known.is_whole(name) && value.fract() != 0.0 {
@@ -54,37 +56,20 @@ pub async fn compare(session: &mut Session, file: &[(String, f64)]) -> Result<Lo
 /// The notes cannot be written, the vehicle does not take a value or says another one afterwards, it is armed, or those of
 /// [`Session::talk`].
 pub async fn load(session: &mut Session, loading: &Loading, notes: &Notes) -> Result<(), OnboardError> {
-    let differing: Vec<&Wanted> = loading.wanted.iter().filter(|wanted| wanted.differs()).collect();
     let at = Some(session.moment().await?);
-    let noted = differing.iter().filter_map(|wanted| {
+    let noted = |wanted: &Wanted| {
         Some(Noted { name: wanted.name.clone(), found: wanted.found?, set: wanted.wanted, at })
-    });
-    notes.add(&noted.collect::<Vec<_>>())?;
-    let values: Vec<(&str, f64)> =
-        differing.iter().map(|wanted| (wanted.name.as_str(), wanted.wanted)).collect();
-    let mut setting = SetParameters::new(session.vehicle, &loading.known, &values)?;
-    session.talk_disarmed(&mut setting).await?;
-    let failures: Vec<_> = setting.failures().map(|(_, why)| why).collect();
-    if !failures.is_empty() {
-        return Err(OnboardError::NotSet(failures));
-    }
-    let now = read(session, values.iter().map(|(name, _)| *name)).await?;
-    let other = |(name, value): &&(&str, f64)| now.value(name) != Some(*value);
-    match values.iter().find(other) {
+    };
+    let changes: Vec<Noted> =
+        loading.wanted.iter().filter(|wanted| wanted.differs()).filter_map(noted).collect();
+    set(session, &loading.known, &changes, notes).await?;
+    let names: Vec<&str> = changes.iter().map(|change| change.name.as_str()).collect();
+    let now = read(session, &names).await?;
+    match changes.iter().find(|change| now.value(&change.name) != Some(change.set)) {
         None => Ok(()),
-        Some((name, value)) => Err(OnboardError::Refused(format!(
-            "{name}: expected {value} when read back, the vehicle says {}",
+        Some(Noted { name, set, .. }) => Err(OnboardError::Refused(format!(
+            "{name}: expected {set} when read back, the vehicle says {}",
             now.value(name).map_or_else(|| "nothing".to_owned(), |value| value.to_string())
         ))),
     }
-}
-
-async fn read<'a>(
-    session: &mut Session,
-    names: impl Iterator<Item = &'a str>,
-) -> Result<Known, OnboardError> {
-    let names: Vec<&str> = names.collect();
-    let mut reading = ReadParameters::new(session.vehicle, &names)?;
-    session.talk(&mut reading, |_| Ok(Flow::On)).await?;
-    Ok(reading.known())
 }

@@ -1,8 +1,9 @@
 //! What the autopilot will log, what is changed of it, and how that is put back.
 
-use super::{Flow, OnboardError, Session};
+use super::setting::{read, set};
+use super::{OnboardError, Session};
 use crate::autopilot::{LogAwaited, LogChange, LogPlan};
-use crate::fetch::{Known, Moment, Noted, Notes, ReadParameters, SetParameters};
+use crate::fetch::{Known, Moment, Noted, Notes, SetParameters};
 
 /// What a vehicle will log, with its parameters.
 #[derive(Debug, Default)]
@@ -79,12 +80,6 @@ fn has_restarted(noted: &Noted, now: &Moment) -> Option<bool> {
     noted.at.and_then(|at| at.restarted_until(now))
 }
 
-async fn read(session: &mut Session, names: &[&str]) -> Result<Known, OnboardError> {
-    let mut reading = ReadParameters::new(session.vehicle, names)?;
-    session.talk(&mut reading, |_| Ok(Flow::On)).await?;
-    Ok(reading.known())
-}
-
 /// Notes what was found, then changes it.
 ///
 /// # Errors
@@ -102,12 +97,7 @@ pub async fn change(
         set: change.wanted,
         at,
     };
-    notes.add(&changes.iter().map(noted).collect::<Vec<_>>())?;
-    let wanted: Vec<(&str, f64)> = changes.iter().map(|change| (change.parameter, change.wanted)).collect();
-    let mut setting = SetParameters::new(session.vehicle, &state.known, &wanted)?;
-    session.talk_disarmed(&mut setting).await?;
-    let failures: Vec<_> = setting.failures().map(|(_, why)| why).collect();
-    if failures.is_empty() { Ok(()) } else { Err(OnboardError::NotSet(failures)) }
+    set(session, &state.known, &changes.iter().map(noted).collect::<Vec<_>>(), notes).await
 }
 
 /// Puts back what an earlier run changed, as far as nobody else changed it since. What cannot be put back stays noted.

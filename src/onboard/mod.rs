@@ -18,6 +18,7 @@ mod logging;
 mod parameter_file;
 mod parameters;
 mod session;
+mod setting;
 
 pub use download::{Download, Listed, Progress, fetch, list};
 pub use error::OnboardError;

@@ -40,7 +40,7 @@ fn caption(effect: &dyn Effect) -> String {
     )
 }
 
-/// `dx` 0.3 m N/(m/s), ...: the sizes that are concealed.
+/// `dx` = 0.3 N/(m/s) per kg, ...: the sizes that are concealed.
 pub fn usual(effect: &dyn Effect) -> String {
     let Some(entry) = ordinary(effect.id()) else { return String::new() };
     let all = || effect.parameters().iter().chain(effect.finer_parameters());
@@ -49,11 +49,11 @@ pub fn usual(effect: &dyn Effect) -> String {
     let value = |(name, size): &(&str, Size)| {
         let (number, by) = match size {
             Size::Of(value) => (*value, ""),
-            Size::PerMass(per) => (*per, " m"),
-            Size::PerInertia(per) => (*per, " I"),
+            Size::PerMass(per) => (*per, " per kg"),
+            Size::PerInertia(per) => (*per, " per kg m^2"),
         };
-        let unit = if unit(name) == "-" { String::new() } else { format!(" {}", spoken(unit(name))) };
-        format!("`{name}` = {}{by}{unit}", compact(number))
+        let unit = if unit(name) == "-" { String::new() } else { format!(" {}", unit(name)) };
+        format!("`{name}` = {}{unit}{by}", compact(number))
     };
     let of_size = entry.sizes.iter().filter(|(_, size)| !matches!(size, Size::Of(value) if *value == 0.0));
     listed(&of_size.map(value).collect::<Vec<_>>())
@@ -132,7 +132,7 @@ fn accuracy(effect: &dyn Effect, measured: &Measured) -> String {
     let id = effect.id();
     let Some(run) = run(id, measured) else { return "Not measured.".to_owned() };
     let mut text = format!(
-        "With {} (m: mass in kg, I: mean of Ixx and Iyy in kg m^2), the effect was named in {} of {} [simulated \
+        "With {} (kg of mass, kg m^2 of the mean of Ixx and Iyy), the effect was named in {} of {} [simulated \
          flights](../figures-diagnosis.md#right-names)",
         usual(effect),
         run.named,

@@ -261,6 +261,11 @@ fn restored(
     } else {
         output::text(&put_back_page(put_back))?;
     }
+    all_put_back(put_back, &place)
+}
+
+/// Fails where something was not put back: the values stand in the notes at `place`.
+pub fn all_put_back(put_back: &PutBack, place: &str) -> Result<Outcome, CommandError> {
     if put_back.failed.is_empty() {
         return Ok(Outcome::Done);
     }
