@@ -29,10 +29,20 @@ pub fn sides(numbers: &[f64]) -> Result<[f64; 3], String> {
     match numbers {
         [x, y, z] if numbers.iter().all(|side| (SIDES_M.0..=SIDES_M.1).contains(side)) => Ok([*x, *y, *z]),
         _ => Err(format!(
-            "length, width and height as X,Y,Z, each of {} to {} m, such as 4,4,3",
-            SIDES_M.0, SIDES_M.1
+            "length, width and height as X,Y,Z, each of {} to {} m, such as 4,4,3, got {}",
+            SIDES_M.0,
+            SIDES_M.1,
+            came(numbers)
         )),
     }
+}
+
+/// Numbers as they are typed.
+fn came(numbers: &[f64]) -> String {
+    if numbers.is_empty() {
+        return "no three numbers".to_owned();
+    }
+    numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
 }
 
 fn typed(text: &str) -> Result<[f64; 3], String> {
@@ -50,8 +60,9 @@ pub fn limits_in([x_m, y_m, z_m]: [f64; 3], vehicle: &Vehicle) -> Result<Limits,
     if x_m < side_m || y_m < side_m || z_m < height_m {
         return Err(format!(
             "a room of at least {side_m:.1},{side_m:.1},{height_m:.1} m for this vehicle (its rotors reach {:.2} m to each \
-             side, and its lowest flight is at {floor_m:.2} m)",
-            reach.side_m
+             side, and its lowest flight is at {floor_m:.2} m), got {}",
+            reach.side_m,
+            came(&[x_m, y_m, z_m])
         ));
     }
     let lowest = (z_m - reach.up_m - 2.0 * LEAST_HEIGHT_M).clamp(floor_m, LOW_M.max(floor_m));
