@@ -235,3 +235,17 @@ fn links_are_found_and_faults_are_seen() {
         assert_eq!(fault(&readme, target).as_deref(), wrong, "{target}");
     }
 }
+
+/// The limits that the guide states and flew are those of the file that it gives.
+#[test]
+fn the_parameter_file_of_the_guide_holds_what_the_guide_says() {
+    let file = mavid::onboard::read_parameter_file(&root().join("fixtures/ardupilot-guided.parm")).unwrap();
+    let guide = read(&root().join("docs/src/flying.md"));
+    let stated: Vec<(String, f64)> = guide
+        .split("--param ")
+        .skip(1)
+        .filter_map(|rest| rest.split_whitespace().next()?.split_once('='))
+        .map(|(name, value)| (name.to_owned(), value.trim_end_matches('`').parse().unwrap()))
+        .collect();
+    assert_eq!(file, stated);
+}
