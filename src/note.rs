@@ -1,5 +1,6 @@
 //! What a stage has to say beside its result: remarks, warnings and losses, each with what it is about.
 
+use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// How much a note matters; the order is from little to much.
@@ -20,6 +21,10 @@ pub enum About {
     File(String),
     /// a link, by its address
     Link(String),
+    /// a case of `prove`, by its folder's name
+    Case(String),
+    /// key and times by which a link signs
+    Signing,
     /// what the vehicle file states
     Vehicle,
     /// recorded streams of the motion
@@ -30,6 +35,8 @@ pub enum About {
     Estimate,
     /// the comparison with flights that were not used
     HoldOut,
+    /// the errors of models on a flight
+    Errors,
 }
 
 /// A sentence beside a result.
@@ -39,7 +46,7 @@ pub struct Note {
     pub severity: Severity,
     /// what it is about
     pub about: About,
-    /// without the name of the file or link that it may be about
+    /// without the name of the file, link or case that it may be about
     pub text: String,
 }
 
@@ -62,19 +69,32 @@ impl Note {
         Self { severity: Severity::Loss, about, text: text.into() }
     }
 
+    /// The same about a file.
+    #[must_use]
+    pub fn of_file(&self, name: &str) -> Self {
+        Self { about: About::File(name.to_owned()), ..self.clone() }
+    }
+
     /// It is a warning.
     #[must_use]
     pub fn is_warning(&self) -> bool {
         self.severity == Severity::Warning
     }
 
-    /// The text after the name of the file or link that it is about, without its severity.
+    /// The text after the name of the file, link or case that it is about, without its severity.
     #[must_use]
     pub fn sentence(&self) -> String {
         match &self.about {
-            About::File(name) | About::Link(name) => format!("{name}: {}", self.text),
+            About::File(name) | About::Link(name) | About::Case(name) => format!("{name}: {}", self.text),
             _ => self.text.clone(),
         }
+    }
+}
+
+/// As it stands in documents: its sentence.
+impl Serialize for Note {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.sentence())
     }
 }
 

@@ -160,7 +160,7 @@ fn an_output_that_left_the_mixer_is_told_with_its_times_and_nothing_hidden_is_se
             assert!((off.stopped_s.unwrap() - off.left_s - lasted_s).abs() < 0.25, "{name}: {off}");
             assert_eq!(Some(off.held), fault["command_held_us"].as_f64(), "{name}");
         }
-        assert!(inspection.advice[0].contains("left the mixer"), "{:?}", inspection.advice);
+        assert!(inspection.advice[0].contains("does not follow the controllers"), "{:?}", inspection.advice);
     }
     let request = mavid::study::ExplainRequest {
         logs: vec![folder.join("flight_01.bin")],
@@ -171,7 +171,8 @@ fn an_output_that_left_the_mixer_is_told_with_its_times_and_nothing_hidden_is_se
     let refused = mavid::study::explain(&request, &Silent).unwrap_err();
     let StudyError::File { why, .. } = refused else { panic!("{refused}") };
     assert!(
-        why.contains("output 2 left the mixer") && why.contains("no hidden effect is searched for"),
+        why.contains("output 2 does not follow the controllers")
+            && why.contains("no hidden effect is searched for"),
         "{why}"
     );
 }

@@ -223,7 +223,7 @@ fn the_moment_of_a_mass_change_is_found_again() {
     let holdout = flown(both, (change(15.0), None), trajectory(6), (4, 34.0));
     let shown = shown(&found, &vehicles.nominal, &holdout);
     assert!(shown.improvement_percent.unwrap().range.unwrap().0 > 5.0);
-    let note = shown.notes.iter().find(|note| note.contains("mass change")).unwrap();
+    let note = shown.notes.iter().find(|note| note.text.contains("mass change")).unwrap().to_string();
     assert!(note.contains("at 14.") || note.contains("at 15."), "{note}");
     // after it, in the last part of the same flight, its size and the mass cannot be distinguished
     let split = split_last_periods(&flight).unwrap();

@@ -27,13 +27,13 @@ fn every_effect_has_an_entry_and_every_entry_an_effect() {
     let missing: Vec<_> = known.difference(&entered).collect();
     assert!(
         missing.is_empty(),
-        "no flight shows {missing:?}: add to ORDINARY in tests/support/ordinary.rs an entry with the parameters of an \
-         ordinary vehicle and what a flight must have to show them"
+        "no flight shows {missing:?}: state a usual size in its signature, or add to STATED in tests/support/ordinary.rs an \
+         entry with the parameters of an ordinary vehicle and what a flight must have to show them"
     );
     let unknown: Vec<_> = entered.difference(&known).collect();
     assert!(
         unknown.is_empty(),
-        "{unknown:?}: not in physics::effects::ALL, take the entry out of tests/support/ordinary.rs"
+        "{unknown:?}: not in physics::effects::ALL, take the entry out of STATED in tests/support/ordinary.rs"
     );
     assert_eq!(entered.len(), ORDINARY.len(), "an effect with two entries");
 }

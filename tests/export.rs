@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
-use mavid::export::{Format, PLACES, ParameterStyle, aircraft_parameters, export, places};
+use mavid::autopilot::Autopilot;
+use mavid::export::{Format, PLACES, aircraft_parameters, export, places};
 use mavid::physics::ActiveEffect;
 use mavid::physics::effects::{ALL, by_id};
 use mavid::vehicle::{ThrustLaw, Vehicle};
@@ -209,11 +210,11 @@ fn what_a_simulator_cannot_be_is_said() {
 
 /// What the table says of each effect and simulator is what the exporters do.
 #[test]
-fn every_effect_stands_in_the_table_of_what_simulators_can_hold() {
+fn the_table_says_of_every_effect_which_simulators_can_hold_it() {
     let mut wrong = Vec::new();
     for effect in ALL {
         let id = effect.id();
-        let Some(places) = places(id) else { panic!("{id}: expected an entry in export/places.rs") };
+        let places = places(id);
         let near = |bounds: (f64, f64)| 0.01_f64.clamp(bounds.0, bounds.1);
         let size = vehicle().size();
         let values: Vec<f64> = effect.parameters().iter().map(|p| near(p.bounds.at(&size))).collect();
@@ -230,7 +231,10 @@ fn every_effect_stands_in_the_table_of_what_simulators_can_hold() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert_eq!(PLACES.len(), ALL.len());
+    for (place, (id, formats)) in PLACES.iter().enumerate() {
+        assert!(by_id(id).is_some() && !formats.is_empty(), "{id}: no effect, or no simulator");
+        assert!(PLACES[..place].iter().all(|(other, _)| other != id), "{id}: twice");
+    }
 }
 
 #[test]
@@ -247,7 +251,7 @@ fn an_aircraft_gets_what_was_identified_and_nothing_else() {
          cy = { value = 0.001, std = 0.001 }\n[effects.thrust_curve]\ncurvature = { value = -0.2, std = 0.02 }\n",
     )
     .unwrap();
-    let written = aircraft_parameters(&vehicle, &effects, Some(&identified), ParameterStyle::Px4).unwrap();
+    let written = aircraft_parameters(&vehicle, &effects, Some(&identified), Autopilot::Px4).unwrap();
     let of = |name: &str| written.parameters.iter().find(|parameter| parameter.name == name).unwrap();
     let mass = vehicle.body.mass_kg;
     // d / m, and its error: of drag and of mass
@@ -274,6 +278,6 @@ fn an_aircraft_gets_what_was_identified_and_nothing_else() {
     let hover = of("MPC_THR_HOVER");
     assert!((hover.value - curve(command)).abs() < 1e-9 && hover.std.unwrap() > 0.01 * hover.value);
     // without standard errors nothing follows
-    let none = aircraft_parameters(&vehicle, &effects, None, ParameterStyle::ArduPilot);
+    let none = aircraft_parameters(&vehicle, &effects, None, Autopilot::ArduPilot);
     assert!(none.unwrap_err().to_string().contains("standard errors"));
 }

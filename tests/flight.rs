@@ -790,7 +790,7 @@ fn a_pilot_who_takes_over_while_a_radio_drains_keeps_the_vehicle() {
             "{}",
             flying.story()
         );
-        assert!(flying.story().contains("heard again, in"), "{}", flying.story());
+        assert!(flying.story().contains("the link is back; the vehicle is in mode"), "{}", flying.story());
     }
 }
 

@@ -127,7 +127,7 @@ fn the_times_of_a_key_are_for_their_owner_alone() {
         std::fs::set_permissions(&key, std::fs::Permissions::from_mode(mode)).unwrap();
         let signing = Signing::open(&key).unwrap();
         assert_eq!(std::fs::metadata(&times).unwrap().mode() & 0o777, 0o600);
-        let warned = signing.warnings().join("; ");
+        let warned = signing.warnings().iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
         assert_eq!(warned.contains("read by others (mode 644, expected 600)"), mode == 0o644, "{warned}");
         // of the times that the first of these left open
         assert_eq!(

@@ -117,7 +117,7 @@ fn what_a_thrust_stand_measured_is_no_guess() {
     let propulsion = &vehicle.propulsion;
     assert!((propulsion.thrust_coefficient.unwrap() / 1.9e-5 - 1.0).abs() < 0.01);
     assert!((propulsion.torque_per_thrust_m - 0.012).abs() < 1e-4);
-    for measured in [Guessed::ThrustMax, Guessed::ThrustCurve, Guessed::TorqueRatio] {
+    for measured in [Guessed::ThrustMax, Guessed::Expo, Guessed::TorqueRatio] {
         assert!(vehicle.guesses.iter().all(|guess| guess.of != measured), "{measured:?}");
     }
     assert!(vehicle.guesses.iter().any(|guess| guess.of == Guessed::Inertia));

@@ -17,7 +17,7 @@ fn shared_vehicles_load_and_survive_writing() {
     assert!(paths.len() >= 14, "{paths:?}");
     for path in paths {
         let loaded = read_vehicle(&path).unwrap();
-        assert_eq!(loaded.warnings, Vec::<String>::new(), "{}", path.display());
+        assert_eq!(loaded.warnings, [], "{}", path.display());
         assert!([4, 6].contains(&loaded.vehicle.rotors.len()), "{}", path.display());
         let again = parse_vehicle(&vehicle_to_toml(&loaded.vehicle).unwrap(), "again").unwrap();
         assert_eq!(again.vehicle.body, loaded.vehicle.body);
@@ -52,7 +52,7 @@ fn every_shipped_vehicle_loads_and_can_hover() {
         }
         count += 1;
         let loaded = read_vehicle(&path).unwrap();
-        assert_eq!(loaded.warnings, Vec::<String>::new(), "{}", path.display());
+        assert_eq!(loaded.warnings, [], "{}", path.display());
         let vehicle = loaded.vehicle;
         let share_n = vehicle.body.mass_kg * vehicle.gravity_m_s2 / vehicle.rotors.len() as f64;
         let hover = vehicle.propulsion.command_from_thrust(share_n);
@@ -100,7 +100,7 @@ fn model_files_of_the_first_version_are_read() {
     for (name, effects) in [("first_identify.toml", 0), ("first_explain.toml", 1)] {
         let path = folder.join(name);
         let loaded = read_vehicle(&path).unwrap();
-        assert_eq!(loaded.warnings, Vec::<String>::new(), "{name}");
+        assert_eq!(loaded.warnings, [], "{name}");
         assert_eq!(loaded.model.effects.len(), effects, "{name}");
         assert!(loaded.model.identified.is_some() && loaded.model.provenance.is_some(), "{name}");
         // written anew they have the format

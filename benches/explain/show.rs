@@ -40,6 +40,6 @@ pub fn show_search(explanation: &Explanation) {
         "    sigma {:?} torque {:?} {:?}",
         explanation.search.after.weighted.sigma,
         explanation.search.after.rows.torque_rms,
-        explanation.search.after.base.present
+        explanation.search.after.base.effects
     );
 }

@@ -23,6 +23,10 @@ impl Effect for SideForce {
         PARAMETERS
     }
 
+    fn sided(&self) -> &'static [usize] {
+        &[0]
+    }
+
     fn hooks(&self) -> &'static [Hook] {
         &[Hook::Wrench]
     }

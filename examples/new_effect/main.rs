@@ -1,8 +1,8 @@
 //! An effect that the library does not know: one file for its equation, one for its signature, and two lines here.
 //! A flight with it is simulated, and `explain` finds it: `cargo run --release --example new_effect`.
 //!
-//! Inside of the library the two files stand in `src/physics/effects` and `src/diagnose/signatures`, and the two lines
-//! in the lists of these folders.
+//! Inside of the library the two files stand in `src/physics/effects` and `src/diagnose/signatures`, each declared there with
+//! `mod`, and the two lines in the lists of these folders: `CONTRIBUTING.md`.
 
 #![allow(clippy::print_stdout, reason = "an example prints its result")]
 
@@ -10,6 +10,7 @@ mod effect;
 mod signature;
 
 use std::error::Error;
+use std::fmt::Write;
 
 use mavid::diagnose::signature::Signature;
 use mavid::diagnose::signatures::ALL;
@@ -22,6 +23,15 @@ use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random
 const CONCEALED: f64 = 0.25;
 
 fn main() -> Result<(), Box<dyn Error>> {
+    print!("{}", found()?);
+    Ok(())
+}
+
+/// The verdict on a flight with the effect, its name and its size.
+///
+/// # Errors
+/// The flight cannot be flown or explained, or the effect is not found in it.
+pub fn found() -> Result<String, Box<dyn Error>> {
     let pair = random_vehicle(11);
     let mut truth = Truth::clean(pair.truth);
     truth.effects.push(ActiveEffect::new(&effect::SideForce, &[CONCEALED])?);
@@ -34,13 +44,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let settings = ExplainSettings { signatures: signatures.leak(), ..ExplainSettings::default() };
     let explanation = explain(&[signals], &pair.nominal, &settings)?;
 
-    println!("{}", explanation.verdict.name());
+    let mut text = format!("{}\n", explanation.verdict.name());
     for named in &explanation.named {
-        println!("{}: {}.", named.id, clause(named, &pair.nominal));
+        writeln!(text, "{}: {}.", named.id, clause(named, &pair.nominal))?;
     }
     let found = explanation.named.iter().find(|named| named.id == signature::SIGNATURE.id());
     let found = found.ok_or("the side force was not found")?;
     let (value, std) = found.get("k").map(|k| (k.value, k.std)).ok_or("it has no size")?;
-    println!("concealed {CONCEALED} N/(m/s), found {value:.3} +- {std:.3}");
-    Ok(())
+    writeln!(text, "concealed {CONCEALED} N/(m/s), found {value:.3} +- {std:.3}")?;
+    Ok(text)
 }

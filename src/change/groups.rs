@@ -27,6 +27,15 @@ impl Groups {
     }
 }
 
+/// Standard errors on each side of a normal value's interval of 95 %.
+const COVERING: f64 = 1.96;
+
+/// The interval of 95 % of a value with its standard error.
+#[must_use]
+pub fn interval_95((value, std): (f64, f64)) -> [f64; 2] {
+    [-COVERING, COVERING].map(|by| value + by * std)
+}
+
 /// A value before and after, and the difference, each with its standard error; one unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moved {

@@ -6,11 +6,11 @@ mod explanation;
 mod groups;
 mod history;
 mod parameter;
-mod together;
+mod pooled;
 
 pub use balance_change::{BalanceChange, BalanceFound, Least, NAMED, judge_balance};
 pub use explanation::What;
-pub use groups::{Groups, Moved};
+pub use groups::{Groups, Moved, interval_95};
 pub use history::{Step, steps};
 pub use parameter::{ParameterChange, Spread, judge_parameter};
-pub use together::together;
+pub use pooled::pooled_mean;

@@ -2,6 +2,7 @@
 
 use super::balance_change::NAMED;
 use super::groups::{Groups, Moved};
+use super::pooled::PRIOR;
 
 /// How a parameter of one vehicle differs from flight to flight beside its stated error.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,8 +28,6 @@ pub struct ParameterChange {
 
 /// Later flights say the same from so many standard errors on.
 const SAYS: f64 = 2.0;
-/// Flights that the stated spread counts as.
-const PRIOR: f64 = 4.0;
 
 /// Judges whether a parameter moved. `values` are those of all flights with standard errors, `None` where a flight does not determine it.
 /// `None` where one of the groups has no value.

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use mavid::export::{
-    AircraftParameter, AircraftParameters, Exported, Format, ParameterStyle, aircraft_parameters, export,
-};
+use mavid::autopilot::Autopilot;
+use mavid::export::{AircraftParameter, AircraftParameters, Exported, Format, aircraft_parameters, export};
+use mavid::note::Note;
 use mavid::study::effects_of;
 use mavid::text;
 use serde::Serialize;
@@ -42,7 +42,7 @@ impl From<AircraftParameter> for ParameterLine {
 /// What the format stands for.
 enum Target {
     Simulator(Format),
-    Aircraft(ParameterStyle),
+    Aircraft(Autopilot),
 }
 
 impl From<ExportFormat> for Target {
@@ -53,8 +53,8 @@ impl From<ExportFormat> for Target {
             ExportFormat::Sdf => Self::Simulator(Format::Sdf),
             ExportFormat::Mjcf => Self::Simulator(Format::Mjcf),
             ExportFormat::Rotorpy => Self::Simulator(Format::Rotorpy),
-            ExportFormat::Px4Params => Self::Aircraft(ParameterStyle::Px4),
-            ExportFormat::ArdupilotParams => Self::Aircraft(ParameterStyle::ArduPilot),
+            ExportFormat::Px4Params => Self::Aircraft(Autopilot::Px4),
+            ExportFormat::ArdupilotParams => Self::Aircraft(Autopilot::ArduPilot),
         }
     }
 }
@@ -84,7 +84,7 @@ pub struct Made {
     /// what messages call the model
     origin: PathBuf,
     /// what is doubtful about it
-    warnings: Vec<String>,
+    warnings: Vec<Note>,
 }
 
 /// Exports, and writes the file that is asked for.
@@ -99,10 +99,10 @@ pub fn make(args: &ExportArgs) -> Result<Made, CommandError> {
                 export(&loaded.vehicle, &active, format).map_err(|error| refuse(&error))?;
             (text, left_out, Vec::new())
         }
-        Target::Aircraft(style) => {
+        Target::Aircraft(autopilot) => {
             let identified = loaded.model.identified.as_ref();
             let AircraftParameters { parameters, left_out, text } =
-                aircraft_parameters(&loaded.vehicle, &active, identified, style)
+                aircraft_parameters(&loaded.vehicle, &active, identified, autopilot)
                     .map_err(|error| refuse(&error))?;
             (text, left_out, parameters.into_iter().map(ParameterLine::from).collect())
         }

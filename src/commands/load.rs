@@ -1,5 +1,6 @@
 //! `mavid vehicle load`: parameters of a file onto a vehicle, and back.
 
+use crate::commands::agreement::SET;
 use mavid::onboard::{self, Loading, ParameterFileError, Session, Wanted, read_parameter_file};
 use mavid::text;
 use serde::Serialize;
@@ -7,9 +8,6 @@ use serde::Serialize;
 use super::log::{agreed, all_put_back, link_options, notes_of_loaded, open, put_back_page};
 use super::{CommandError, Outcome, network, output};
 use crate::cli::LoadArgs;
-
-/// The word that agrees at a terminal.
-const YES: &str = "set";
 
 #[derive(Debug, Default, Serialize)]
 struct Document {
@@ -66,7 +64,7 @@ async fn load(
         output::text(&table(session, &loading))?;
     }
     let differing = loading.wanted.iter().filter(|wanted| wanted.differs()).count();
-    let set = differing > 0 && (args.yes || !json && agreed(YES, "set these")?);
+    let set = differing > 0 && (args.yes || !json && agreed(SET, "set these")?);
     if set {
         onboard::load(session, &loading, &notes).await?;
     }

@@ -4,6 +4,7 @@
 //! that draws on standard error takes the handle of it as well.
 
 mod after_flight;
+mod agreement;
 mod compare;
 mod convert;
 mod demo;

@@ -75,10 +75,9 @@ impl CommandError {
 }
 
 /// What is hardly meant in a file.
-pub fn warnings(of: &Path, warnings: &[String]) {
-    for warning in warnings {
-        self::warning(&format!("{}: {warning}", text::path(&of)));
-    }
+pub fn warnings(of: &Path, warnings: &[Note]) {
+    let of = text::path(&of);
+    warnings.iter().for_each(|warning| note(&warning.of_file(&of)));
 }
 
 /// What is to be known beside a result.
@@ -88,9 +87,7 @@ pub fn note(note: &Note) {
 
 /// What is odd about the files of a signing key.
 pub fn signing_warnings(signing: Option<&Signing>) {
-    for warning in signing.iter().flat_map(|signing| signing.warnings()) {
-        self::warning(warning);
-    }
+    signing.iter().flat_map(|signing| signing.warnings()).for_each(note);
 }
 
 /// A file of the user's choice; where it cannot be written whole, what was there before stays.

@@ -3,6 +3,7 @@
 //! It only listens, unless `--heartbeat` asks it to speak as a ground station and to request messages.
 //! Exit status 3 where the file misses frames or nothing came.
 
+use mavid::wire::heartbeat::{AUTOPILOT_AT, HEARTBEAT, NO_AUTOPILOT};
 use std::time::Duration;
 
 use mavid::fly::{self, Order, Period, Target};
@@ -19,10 +20,6 @@ use super::standard_error::StandardError;
 use super::{CommandError, Outcome, live, network, output};
 use crate::cli::RecordArgs;
 
-const HEARTBEAT: u32 = 0;
-/// HEARTBEAT.autopilot of what is no vehicle.
-const NO_AUTOPILOT: u8 = 8;
-const AUTOPILOT_AT: usize = 5;
 /// Longest recording, where the user gives no duration.
 const YEAR: Duration = Duration::from_secs(365 * 86_400);
 /// How long the last frames may take to leave.

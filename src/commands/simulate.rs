@@ -18,9 +18,9 @@ use crate::cli::SimulateArgs;
 
 /// Host's time at the start of every simulated log, 2023-11-14 UTC: the same flight gives the same bytes.
 const START_US: u64 = 1_700_000_000_000_000;
-/// Hover before the trajectory, s. Chosen; not measured.
+/// Hover before the trajectory, s. A convention of simulated flights, so that every log begins with a hover.
 const HOVER_S: f64 = 4.0;
-/// Change-over from hover to the trajectory, s. Chosen; not measured.
+/// Change-over from hover to the trajectory, s. A convention of simulated flights: no jump of the setpoint.
 const RAMP_S: f64 = 2.0;
 
 /// What was flown.

@@ -8,7 +8,8 @@ use super::closed_loop::{SIGNALS, TenSignals};
 /// A simulated place is off the recorded one by no more than this many times the recorded flight's own extent. Measured on
 /// 19 hold-out flights of `noisy` and `cases`, each with two models: at most 0.2 where the loop holds, from 16 on where it does not.
 const PLACE: f64 = 1.0;
-/// Place is judged as if the flight had at least this extent, m: a hover has next to none. Chosen; not measured.
+/// Place is judged as if the flight had at least this extent, m: a hover has next to none. Otherwise a hover that
+/// drifts by a decimetre would be called diverging.
 const LEAST_EXTENT_M: f64 = 2.0;
 /// A simulated torque swings by no more than this many times the recorded one. Measured on the same flights: at most 2.1 where
 /// the loop holds, from 42 on about some axis where it does not.

@@ -5,9 +5,9 @@ use nalgebra::Vector3;
 use super::ConfigError;
 use crate::text;
 
-/// Smallest size (SI) above zero that is read: smaller ones are no vehicle's, and their products would vanish. Chosen.
+/// Smallest size (SI) above zero that is read: smaller ones are no vehicle's, and their products would vanish.
 const SMALLEST: f64 = 1e-18;
-/// Largest size (SI) that is read: larger ones are no vehicle's, and their products would overflow. Chosen.
+/// Largest size (SI) that is read: larger ones are no vehicle's, and their products would overflow.
 const LARGEST: f64 = 1e12;
 
 /// Characters of a value that a refusal repeats.

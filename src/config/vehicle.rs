@@ -13,6 +13,7 @@ use super::propulsion::propulsion;
 use super::read::{parse_toml_on, read_text};
 use super::rigid_body::rigid_body;
 use super::vehicle_file::{AnchorKey, FORMAT, GuessTable, LimitsTable, RotorTable, SpinKey, VehicleFile};
+use crate::note::{About, Note};
 use crate::text;
 use crate::units;
 use crate::vehicle::{Anchor, Guess, Guessed, Limits, Rotor, Spin, Vehicle};
@@ -31,8 +32,8 @@ const FORMAT_CHARS: usize = 40;
 pub struct LoadedVehicle {
     /// checked, SI
     pub vehicle: Vehicle,
-    /// sentences about what is possible but hardly meant
-    pub warnings: Vec<String>,
+    /// what is possible but hardly meant
+    pub warnings: Vec<Note>,
     /// the tables that only `model.toml` has
     pub model: ModelTables,
 }
@@ -88,7 +89,8 @@ pub fn parse_vehicle(text: &str, origin: &str) -> Result<LoadedVehicle, ConfigEr
         guesses: guesses(&check, file.guesses, &mut faults),
     };
     faults.refuse(origin)?;
-    let warnings = doubts.into_iter().chain(vehicle.implausible()).collect();
+    let doubts = doubts.into_iter().chain(vehicle.implausible());
+    let warnings = doubts.map(|doubt| Note::warning(About::Vehicle, doubt)).collect();
     let model =
         ModelTables { identified: file.identified, provenance: file.provenance, effects: file.effects };
     Ok(LoadedVehicle { vehicle, warnings, model })

@@ -41,7 +41,7 @@ fn units_become_si() {
     let limits = "[limits]\nroll_max_deg = 5.73\nyaw_rate_max_deg_s = 180\nz_min_m = 0.7\nz_max_m = 1.5\n";
     let loaded = parse(&[BODY, SPEED, ROTORS, limits, "[identify]\nanchor = \"mass\"\n"]).unwrap();
     let vehicle = loaded.vehicle;
-    assert_eq!(loaded.warnings, Vec::<String>::new());
+    assert_eq!(loaded.warnings, []);
     assert!((vehicle.propulsion.torque_per_thrust_m - 0.02).abs() < 1e-15);
     assert!((vehicle.limits.roll_max_rad.unwrap() - 0.100_007_366).abs() < 1e-8);
     assert!((vehicle.limits.yaw_rate_max_rad_s.unwrap() - std::f64::consts::PI).abs() < 1e-12);
@@ -139,7 +139,7 @@ fn names_command_nothing_and_have_an_end() {
     let loaded = parse(&[&evil, SPEED, &rotors]).unwrap();
     assert_eq!(loaded.vehicle.name, "x\\u{1b}[31m\\nall is well");
     assert_eq!(loaded.vehicle.rotors[0].name, "front\\u{9b}left");
-    assert!(loaded.warnings.len() == 2 && loaded.warnings[0].starts_with("rotor[0].name: expected"));
+    assert!(loaded.warnings.len() == 2 && loaded.warnings[0].text.starts_with("rotor[0].name: expected"));
     let long = BODY.replace("quad", &"q".repeat(1000));
     assert!(refusal(&[&long, SPEED, ROTORS]).contains("`name`: expected at most 200 characters, got 1000"));
     let many: String = (0..40)
@@ -156,7 +156,7 @@ fn what_is_hardly_meant_is_warned_of() {
     assert_eq!(loaded.warnings.len(), 2, "{:?}", loaded.warnings);
     let weak = SPEED.replace("1e-5", "1e-6");
     let loaded = parse(&[BODY, &weak, ROTORS]).unwrap();
-    assert!(loaded.warnings[0].contains("4.000 N, does not lift the weight, 14.715 N"));
+    assert!(loaded.warnings[0].text.contains("4.000 N, does not lift the weight, 14.715 N"));
 }
 
 /// Each of the lines that a refusal of several errors has, without the file's name.

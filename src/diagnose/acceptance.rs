@@ -31,12 +31,12 @@ pub(super) fn accepted(
 /// Fits again with the accepted candidate.
 fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitted, PhysicsError> {
     let mut base = after.base.clone();
-    base.present.extend(started(taken, &base.size).into_iter().map(released));
-    if let Some(load) = base.present.last_mut().filter(|term| term.signature.role.hangs_below) {
+    base.effects.extend(started(taken, &base.size).into_iter().map(released));
+    if let Some(load) = base.effects.last_mut().filter(|term| term.signature.role.hangs_below) {
         base.vehicle.body.mass_kg = lift_load(load, base.vehicle.body.mass_kg);
     }
     // a latency that the rotors' inertia had shortened is found again beside it
-    let shortened = taken.candidate.signature().is_some_and(|signature| signature.role.shortens_latency);
+    let shortened = taken.candidate.signature().is_some_and(|signature| signature.role.spin_up.is_some());
     let newton = match shortened {
         true if is_delay(base.latency, &base.vehicle) => Newton::Delay,
         true => Newton::Free,
@@ -73,7 +73,7 @@ fn started(tested: &Tested, size: &VehicleSize) -> Vec<EffectTerm> {
 
 /// Whether the fit moves a parameter of the candidate to its bound: the cause is then another one.
 fn at_bound(fitted: &Fitted, taken: &Tested) -> bool {
-    let just_taken = &fitted.base.present[fitted.base.present.len() - taken.candidate.parts.len()..];
+    let just_taken = &fitted.base.effects[fitted.base.effects.len() - taken.candidate.parts.len()..];
     just_taken.iter().any(|present| {
         let mut common = 0..present.effect().parameters().len();
         common.any(|slot| {

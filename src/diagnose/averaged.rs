@@ -4,11 +4,12 @@
 use super::trace::Trace;
 use std::ops::Range;
 
-/// Time over which torques are averaged, s: at least sixteen samples of commands that are just fast enough for forces. Chosen; not
-/// measured.
+/// Time over which torques are averaged, s: at least sixteen samples of commands that are just fast enough for
+/// forces.
 const AVERAGED_S: f64 = 2.0;
 
-/// Least number of such times in a flight, or torques are not compared at all. Chosen; not measured.
+/// Least number of such times in a flight, or torques are not compared at all. With fewer a mean torque is that of a
+/// few gusts.
 const LEAST_TIMES: f64 = 10.0;
 
 impl Trace {

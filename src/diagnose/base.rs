@@ -7,7 +7,8 @@ use crate::physics::{ActiveEffect, ActuationLatency, Model, PhysicsError, RotorL
 use crate::vehicle::{Anchor, Guessed, Vehicle, VehicleSize};
 use nalgebra::Matrix3;
 
-/// Largest share of the total mass that a slung load may have at the start of a fit. Chosen; not measured.
+/// Largest share of the total mass that a slung load may have at the start of a fit. Beyond it the load flies the
+/// vehicle.
 const MOST_OF_MASS: f64 = 0.5;
 
 /// Separates a slung load from the mass `all_kg` (kg) that a rigid body had until now. Returns the vehicle's own mass,
@@ -27,7 +28,7 @@ pub struct Base {
     /// between command and rotor
     pub latency: ActuationLatency,
     /// effects in addition to the rigid body
-    pub present: Vec<EffectTerm>,
+    pub effects: Vec<EffectTerm>,
     /// kg: the vehicle has this mass, and the scale of its thrust is estimated; `None`: the stated thrust is trusted, and the
     /// mass is estimated
     pub weighed_kg: Option<f64>,
@@ -46,7 +47,7 @@ impl Base {
             vehicle: vehicle.clone(),
             size: vehicle.size(),
             latency: ActuationLatency::default(),
-            present: Vec::new(),
+            effects: Vec::new(),
             weighed_kg: None,
         }
     }
@@ -72,7 +73,7 @@ impl Base {
             self.vehicle.body.inertia_kg_m2 *= factor;
         }
         self.vehicle.propulsion = self.vehicle.propulsion.scaled(factor);
-        for present in &mut self.present {
+        for present in &mut self.effects {
             for slot in 0..present.values.len() {
                 if present.parameter(slot).is_some_and(|parameter| follows_force(parameter.unit)) {
                     present.values[slot] *= factor;
@@ -85,7 +86,13 @@ impl Base {
     /// Whether an estimated effect satisfies `what`.
     #[must_use]
     pub fn estimates(&self, what: impl Fn(&EffectTerm) -> bool) -> bool {
-        self.present.iter().any(|term| !term.free.is_empty() && what(term))
+        self.effects.iter().any(|term| !term.free.is_empty() && what(term))
+    }
+
+    /// Whether the curvature of the thrust law is estimated.
+    #[must_use]
+    pub fn estimates_bend(&self) -> bool {
+        self.estimates(|term| term.signature.role.bends_thrust.is_some())
     }
 
     /// Whether an estimated effect replaces this nuisance, which models small sizes of the same effect.
@@ -100,7 +107,7 @@ impl Base {
     /// [`PhysicsError`] where the vehicle is not physical or lacks what an effect needs.
     pub fn model(&self, more: &[EffectTerm]) -> Result<Model, PhysicsError> {
         let effects = self
-            .present
+            .effects
             .iter()
             .chain(more)
             .map(|present| ActiveEffect::new(present.effect(), &present.values))

@@ -67,7 +67,7 @@ pub fn by_flight(
     let one = |(signals, explanation): (&Signals, &&Explanation)| {
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let base = with_terms(explanation, &terms, (vehicle, &trace));
-        let (fitted, by_instruments) = settled(signals, trace, base, explanation.search.latency).ok()?;
+        let (fitted, by_instruments) = flight_fit(signals, trace, base, explanation.search.latency).ok()?;
         Some(parameters((&fitted, &by_instruments), explanation.turned_by_control, &terms))
     };
     let each: Vec<_> = flights.par_iter().zip(explanations).map(one).collect();
@@ -88,9 +88,9 @@ pub fn each_with_model_of_all(
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let mut base = with_terms(explanation, &terms, (vehicle, &trace));
         if *drifts {
-            base.present.extend(wind_beside(&base));
+            base.effects.extend(wind_beside(&base));
         }
-        let (fitted, by_instruments) = settled(signals, trace, base, explanation.search.latency).ok()?;
+        let (fitted, by_instruments) = flight_fit(signals, trace, base, explanation.search.latency).ok()?;
         Some(parameters((&fitted, &by_instruments), explanation.turned_by_control, &terms))
     };
     flights.par_iter().zip(drifts).map(one).map(Option::unwrap_or_default).collect()
@@ -116,7 +116,7 @@ pub fn of_one_flight(
         terms.extend(forms.into_iter().map(|form| form.term).find(drags));
     }
     let base = with_terms(explanation, &terms, (vehicle, &trace));
-    let fitted = settled(signals, trace, base, explanation.search.latency).ok();
+    let fitted = flight_fit(signals, trace, base, explanation.search.latency).ok();
     fitted.map_or_else(Vec::new, |(fitted, by_instruments)| {
         parameters((&fitted, &by_instruments), explanation.turned_by_control, &terms)
     })
@@ -124,8 +124,8 @@ pub fn of_one_flight(
 
 /// A wind along the ground, about none, where a force of the air is there through which it acts.
 fn wind_beside(base: &Base) -> Option<EffectTerm> {
-    let acts = base.present.iter().any(|term| term.signature.role.of_air);
-    let is_there = base.present.iter().any(|term| term.signature.role.wind.is_some());
+    let acts = base.effects.iter().any(|term| term.signature.role.of_air);
+    let is_there = base.effects.iter().any(|term| term.signature.role.wind.is_some());
     let carried = ALL.iter().find_map(|signature| signature.role.wind)?().into_iter().next()?;
     (acts && !is_there).then_some(carried.term)
 }
@@ -141,7 +141,7 @@ pub fn rigid_by_flight(
     let one = |signals: &Signals| {
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let base = explanation.search.before.base.clone();
-        let (fitted, by_instruments) = settled(signals, trace, base, explanation.search.latency).ok()?;
+        let (fitted, by_instruments) = flight_fit(signals, trace, base, explanation.search.latency).ok()?;
         Some(parameters((&fitted, &by_instruments), explanation.turned_by_control, &[]))
     };
     flights.par_iter().map(one).map(Option::unwrap_or_default).collect()
@@ -171,7 +171,7 @@ fn set_values(base: &mut Base, values: &[(&str, f64)]) {
             body.inertia_kg_m2[(axis, axis)] = moment;
         }
     }
-    for present in &mut base.present {
+    for present in &mut base.effects {
         for slot in present.free.clone() {
             let name = present.parameter(slot).map(|parameter| named(present, parameter.name));
             if let Some(value) = name.and_then(|name| of(&name)) {
@@ -196,7 +196,7 @@ fn of_the_vehicle(explanations: &[&Explanation]) -> Vec<EffectTerm> {
     let mut terms: Vec<EffectTerm> = Vec::new();
     for explanation in explanations.iter().filter(|one| one.verdict != Verdict::Unexplained) {
         let named = |term: &&EffectTerm| explanation.named.iter().any(|named| named.id == term.id());
-        for term in explanation.search.after.base.present.iter().filter(named) {
+        for term in explanation.search.after.base.effects.iter().filter(named) {
             let is_known = terms.iter().any(|known| is_same(known, term));
             if is_comparable(term) && owner(term) == Owner::Vehicle && !is_known {
                 terms.push(term.clone());
@@ -218,9 +218,9 @@ fn with_terms(explanation: &Explanation, terms: &[EffectTerm], (vehicle, trace):
     let mut base = own.base.clone();
     let recorded = Recorded::new(vehicle, std::slice::from_ref(trace));
     for term in terms {
-        let is_there = base.present.iter().any(|present| is_same(present, term));
+        let is_there = base.effects.iter().any(|present| is_same(present, term));
         if !is_there && recorded.lacks(term.signature.needs).is_none() {
-            base.present.push(term.clone());
+            base.effects.push(term.clone());
         }
     }
     base
@@ -228,7 +228,7 @@ fn with_terms(explanation: &Explanation, terms: &[EffectTerm], (vehicle, trace):
 
 /// One flight fitted to a model, its sizes and errors as an explanation has them, but for what all flights have in common; and which
 /// coefficients the instruments have told.
-fn settled(
+fn flight_fit(
     signals: &Signals,
     trace: Trace,
     base: Base,
@@ -275,7 +275,7 @@ fn parameters(
         }
     }
     let mut column = fitted.rows.nuisances.len();
-    for present in &fitted.base.present {
+    for present in &fitted.base.effects {
         for &slot in &present.free {
             let is_known = terms.iter().any(|term| is_same(term, present)) || owner(present) == Owner::Flight;
             if let Some(parameter) = present.parameter(slot).filter(|_| present.is_amount(slot) && is_known) {

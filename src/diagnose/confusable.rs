@@ -13,10 +13,12 @@ use super::trace::Trace;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Effects whose distance is below this many standard deviations are not distinguished. Chosen; not measured.
+/// Effects whose distance is below this many standard deviations are not distinguished. Set by judgement: an effect
+/// is named from four standard errors on, and one more is asked of a distinction; the pairs in the figures are by
+/// this value (`cargo bench --bench explain -- --pairs 12 --seed 2026112501`).
 pub(super) const APART: f64 = 5.0;
 /// An effect of which another leaves more than this share of its norm is not similar to it, however weak it is:
-/// sqrt(3)/2, a cosine of one half. Chosen; not measured.
+/// sqrt(3)/2, a cosine of one half. Only the list of confusable effects depends on it.
 const UNLIKE: f64 = 0.866;
 
 /// Distance, in standard deviations, between the effect at `place` and the most similar contribution of another
@@ -79,8 +81,8 @@ impl Signal {
         place: usize,
         sigma: Option<&[f64; CHANNELS]>,
     ) -> Option<Self> {
-        let effect = base.present.get(place)?;
-        let before: usize = base.present[..place].iter().map(|p| p.free.len()).sum();
+        let effect = base.effects.get(place)?;
+        let before: usize = base.effects[..place].iter().map(|p| p.free.len()).sum();
         let mut rows = rows.clone();
         let columns: Vec<_> = rows.effects.drain(before..before + effect.free.len()).collect();
         let weighted = sigma.map_or_else(|| Weighted::new(&rows), |sigma| Weighted::at(&rows, sigma));
@@ -117,7 +119,7 @@ impl Signal {
                 // the last part acts through this one, as far as it is there
                 Some(unit) if index + 1 == candidate.parts.len() => {
                     let mut with_unit = base.clone();
-                    with_unit.present.push(unit.clone());
+                    with_unit.effects.push(unit.clone());
                     rows.columns_through(flights, &with_unit, part)
                 }
                 // and what is named already is not its own rival

@@ -3,15 +3,15 @@
 use super::channels::CHANNELS;
 use super::columns::Columns;
 use super::evidence::Weighted;
+use crate::estimate::SCORE_LAGS;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// Number of neighbouring rows whose kernels overlap: the kernel is 0.4 s wide and rows are 0.05 s apart.
-const OVERLAP: usize = 8;
-/// Longest residual correlation that is allowed for, rows (6 s). Chosen; not measured.
+pub(super) const OVERLAP: usize = 8;
+/// Longest residual correlation that is allowed for, rows (6 s). Longer ones are drift, which a flight of a minute
+/// cannot measure.
 const MOST_LAGS: usize = 120;
-/// Least width of the Bartlett window of the scores, rows (1 s). Chosen; not measured.
-const SCORE_LAGS: usize = 20;
 
 /// Lags whose sums run side by side: one alone waits for every addition.
 const SIDE_BY_SIDE: usize = 4;

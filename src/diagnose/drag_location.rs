@@ -8,9 +8,10 @@ use super::price::Price;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 
-/// A share at the hubs that is nearer than this to 0 or 1 counts as 0 or 1. Chosen; not measured.
+/// A share at the hubs that is nearer than this to 0 or 1 counts as 0 or 1. Only the form of one drag depends on it.
 const NEAR: f64 = 0.05;
-/// A share at the hubs within this many standard errors of 0 or 1 counts as 0 or 1. Chosen; not measured.
+/// A share at the hubs within this many standard errors of 0 or 1 counts as 0 or 1. The usual three; only the form of
+/// one drag depends on it.
 const NEAR_STD: f64 = 3.0;
 
 /// Moves drags that seem to act partly at the hubs to one point if damping explains the flight as well. Returns whether
@@ -23,13 +24,13 @@ pub(super) fn one_place(flights: &[Trace], after: &mut Fitted, price: Price) -> 
     let mut best: Option<(f64, Fitted)> = None;
     for at_hubs in [0.0, 1.0] {
         let mut base = after.base.clone();
-        let drag = &mut base.present[place];
+        let drag = &mut base.effects[place];
         drag.values[slot] = at_hubs;
         drag.free.retain(|free| *free != slot);
-        if let Some(damping) = base.present[place].signature.role.damped_by.map(|damping| damping()) {
-            match base.present.iter_mut().find(|term| term.is(damping.signature)) {
+        if let Some(damping) = base.effects[place].signature.role.damped_by.map(|damping| damping()) {
+            match base.effects.iter_mut().find(|term| term.is(damping.signature)) {
                 Some(known) => known.free = damping.free,
-                None => base.present.push(damping),
+                None => base.effects.push(damping),
             }
         }
         let fitted = fit(flights, base, Newton::Held)?;
@@ -50,7 +51,7 @@ pub(super) fn one_place(flights: &[Trace], after: &mut Fitted, price: Price) -> 
 /// The first drag whose share at the hubs is neither 0 nor 1: its place among the effects and the slot of the share.
 fn divided(fitted: &Fitted) -> Option<(usize, usize)> {
     let mut index = fitted.rows.nuisances.len();
-    for (place, present) in fitted.base.present.iter().enumerate() {
+    for (place, present) in fitted.base.effects.iter().enumerate() {
         for &slot in &present.free {
             let near = (NEAR_STD * fitted.covariance[(index, index)].max(0.0).sqrt()).max(NEAR);
             index += 1;

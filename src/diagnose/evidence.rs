@@ -12,7 +12,7 @@ use crate::stats::{chance_by_stretches, normal_deviate};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::Range;
 
-/// Least number of rows for the cluster test over twelve blocks. Chosen: ten rows a block.
+/// Least number of rows for the cluster test over twelve blocks. Set by judgement: ten rows a block.
 pub(super) const LEAST_ROWS: usize = 120;
 /// Least usable time of flight for a search of effects, s: so many rows, twenty a second.
 pub const LEAST_FLIGHT_S: f64 = LEAST_ROWS as f64 * 0.05;

@@ -15,12 +15,9 @@ use super::signature::{Carried, EffectTerm, Signature};
 use super::signatures::{WANTED, Wanted};
 use super::trace::Trace;
 use crate::physics::Parameter;
-use crate::signals::Signals;
+use crate::signals::{Signals, WEAK_HALF_WIDTH_S};
 use crate::vehicle::Vehicle;
 use rayon::prelude::*;
-
-/// Half width of the weak form's test function, s: that of [`ExplainSettings`](super::ExplainSettings).
-const HALF_WIDTH_S: f64 = 0.2;
 
 /// How well a quantity is determined.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,7 +85,7 @@ const STANDS_OUT: f64 = 4.0;
 /// [`ExplainError`] where streams are missing or too little was flown.
 pub fn expected_errors(flights: &[Signals], vehicle: &Vehicle) -> Result<Vec<ExpectedError>, ExplainError> {
     let traces: Result<Vec<Trace>, _> =
-        flights.iter().map(|signals| Trace::new(signals, vehicle, HALF_WIDTH_S)).collect();
+        flights.iter().map(|signals| Trace::new(signals, vehicle, WEAK_HALF_WIDTH_S)).collect();
     let traces = traces?;
     let rows: usize = traces.iter().map(Trace::rows).sum();
     if rows < LEAST_ROWS {
@@ -197,7 +194,7 @@ impl Flights<'_> {
     /// The base with a term that is not estimated.
     fn with(&self, term: &EffectTerm) -> Base {
         let mut base = self.fitted.base.clone();
-        base.present.push(EffectTerm { free: Vec::new(), ..term.clone() });
+        base.effects.push(EffectTerm { free: Vec::new(), ..term.clone() });
         base
     }
 

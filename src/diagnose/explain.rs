@@ -15,13 +15,13 @@ use super::named::{Confusable, Named, NamedParameter, Strength};
 use super::refinement::{fitted_strength, refine};
 use super::search::search;
 use super::signature::Signature;
-use super::signatures::{ALL, GUST};
+use super::signatures::ALL;
 use super::slight::{FoundEffect, Slight, named_and_slight};
 use super::tested::{Search, Step, Tested};
 use super::trace::Trace;
 use super::trace_error::TraceError;
 use crate::physics::PhysicsError;
-use crate::signals::Signals;
+use crate::signals::{Signals, WEAK_HALF_WIDTH_S};
 use crate::vehicle::Vehicle;
 use std::ops::Range;
 
@@ -38,7 +38,7 @@ pub struct ExplainSettings {
 
 impl Default for ExplainSettings {
     fn default() -> Self {
-        Self { half_width_s: 0.2, gates: Gates::default(), signatures: ALL }
+        Self { half_width_s: WEAK_HALF_WIDTH_S, gates: Gates::default(), signatures: ALL }
     }
 }
 
@@ -63,14 +63,17 @@ pub enum ExplainError {
     },
 }
 
-/// p-value below which power is left at the harmonics. Chosen; with all conditions together, 300 of 300 clean flights
-/// came out as `nothing_missing`: `cargo bench --bench explain -- --clean 300 --seed 7001`.
+/// p-value below which power is left at the harmonics. With all conditions together, 300 of 300 clean flights came
+/// out as `nothing_missing`: `cargo bench --bench explain -- --clean 300 --each 12 --pairs 12 --seed 2026112501`.
 const LACK_P: f64 = 1e-6;
-/// Least force that is left at the harmonics, as a share of the weight. Chosen; not measured by itself.
+/// Least force that is left at the harmonics, as a share of the weight. Set by judgement; measured only together with
+/// all conditions of a finding (see `Gates`).
 const LACK_FORCE_G: f64 = 0.002;
-/// Least torque that is left at the harmonics, as a share of the rms of the torque. Chosen; not measured by itself.
+/// Least torque that is left at the harmonics, as a share of the rms of the torque. Set by judgement; measured only
+/// together with all conditions of a finding (see `Gates`).
 const LACK_TORQUE: f64 = 0.1;
-/// Least share of the energy of the accepted effect that a rival must explain. Chosen; not measured.
+/// Least share of the energy of the accepted effect that a rival must explain. Set by judgement; measured only
+/// together with all conditions of a finding (see `Gates`).
 const RIVAL: f64 = 0.93;
 
 /// Explains one or more flights of a vehicle: names the physical effects that the rigid body lacks.
@@ -230,7 +233,7 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
 
 /// The name of a gust. The search does not test gusts; their size and correlation time come from the residual.
 fn gust_name(gust: &GustFound) -> Option<Named> {
-    let effect = GUST.effect;
+    let effect = ALL.iter().find(|signature| signature.joint.irregular.is_some())?.effect;
     let values = [(gust.sigma_m_s, gust.sigma_std_m_s), (gust.correlation_s, gust.correlation_std_s)];
     let parameters = effect.parameters().iter().zip(values);
     let parameters = parameters
@@ -267,7 +270,7 @@ fn names(traces: &[Trace], found: &Search) -> (Vec<Named>, Vec<Slight>) {
     let fitted = &found.after;
     let mut index = fitted.rows.nuisances.len();
     let mut found_effects = Vec::new();
-    for (place, present) in fitted.base.present.iter().enumerate() {
+    for (place, present) in fitted.base.effects.iter().enumerate() {
         let mut parameters = Vec::new();
         let first = index;
         for slot in 0..present.values.len() {

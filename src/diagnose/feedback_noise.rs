@@ -3,7 +3,8 @@
 
 use super::trace::Trace;
 
-/// Noise of the gyroscopes above which the controller's answer matters, rad/s. Chosen; not measured.
+/// Noise of the gyroscopes above which the controller's answer matters, rad/s. Without vibration an autopilot's
+/// gyroscope has far less.
 const NOISY_RAD_S: f64 = 0.03;
 /// Standard error of a latency by least squares where this noise is fed back and no instrument confirms it, s. On flights with an
 /// estimator in the loop it was wrong by 2 to 40 ms.

@@ -3,7 +3,7 @@
 use super::base::{Base, follows_force};
 use super::channels::Nuisance;
 use super::fit::Fitted;
-use super::signatures::BENT_THRUST;
+use super::signature::EffectTerm;
 
 /// Relative standard error of the mass that the thrust law adds: of 20 flights of both autopilots' simulators 16 were within 0.2 %,
 /// four within 0.4 %.
@@ -23,7 +23,8 @@ const ELSEWHERE: f64 = 1.35;
 /// weighed: a law with another curvature about hover is elsewhere there by once to 1.7 times as much, at hover at
 /// 60 to 40 % of full thrust.
 fn of_scale(base: &Base) -> f64 {
-    let bent = base.present.iter().filter(|term| term.is(&BENT_THRUST)).map(|term| term.values[0].abs());
+    let bend = |term: &EffectTerm| Some(term.values[term.signature.role.bends_thrust?].abs());
+    let bent = base.effects.iter().filter_map(bend);
     if base.weighed_kg.is_some() { 0.0 } else { ELSEWHERE * bent.sum::<f64>() }
 }
 
@@ -32,7 +33,7 @@ pub(super) fn add_floors(fitted: &mut Fitted) {
     let body = &fitted.base.vehicle.body;
     let scale = of_scale(&fitted.base);
     let mut index = fitted.rows.nuisances.len();
-    for term in &fitted.base.present {
+    for term in &fitted.base.effects {
         for &slot in &term.free {
             if term.is_amount(slot) && fitted.covariance[(index, index)] > 0.0 {
                 let on_scale = term.parameter(slot).is_some_and(|of| follows_force(of.unit));

@@ -1,5 +1,7 @@
 //! The states on which a residual may depend.
 
+use crate::vehicle::AXIS_NAMES;
+
 /// A state on which a residual may depend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Followed {
@@ -35,8 +37,7 @@ impl Followed {
     /// As in JSON; rotors count from 1.
     #[must_use]
     pub fn name(self) -> String {
-        const AXES: [&str; 3] = ["x", "y", "z"];
-        let axis = |axis: usize| AXES.get(axis).copied().unwrap_or("?");
+        let axis = |axis: usize| AXIS_NAMES.get(axis).copied().unwrap_or("?");
         match self {
             Self::Altitude => "world_z".into(),
             Self::WorldX => "world_x".into(),

@@ -23,13 +23,15 @@ pub(super) fn between_grid(flights: &[Trace], fitted: &Fitted, tested: &[Tested]
     (most.evidence.gain > WORTH_REFINING).then(|| refined(flights, fitted, most.clone()))
 }
 
-/// Share of the residual that a cord length of the grid has to explain. Chosen; not measured.
+/// Share of the residual that a cord length of the grid has to explain. Only time depends on it: what explains less
+/// has no chance of a name.
 const WORTH_REFINING: f64 = 0.01;
 
-/// Standard errors from which on an amount has a sign. Chosen; not measured.
+/// Standard errors from which on an amount has a sign. The usual three.
 const OF_A_SIGN: f64 = 3.0;
 
-/// Neighbours on either side that are tried first: for cords they reach beyond the next length of the grid. Chosen; not measured.
+/// Neighbours on either side that are tried first: for cords they reach beyond the next length of the grid. A number
+/// of steps: only the time of a search and its last digits depend on it.
 const NEIGHBOURS: i32 = 10;
 
 /// The candidate with the value, near its present one, that explains most energy. One with a possible amount is better than any

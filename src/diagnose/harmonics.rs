@@ -8,15 +8,16 @@ use super::channels::{AXES, CHANNELS};
 use super::trace::Trace;
 use crate::stats::{f_tail, joint_chance, median_step, power_at};
 
-/// Highest frequency of the test, Hz: the kernel of 0.4 s passes little above. Chosen; not measured.
+/// Highest frequency of the test, Hz: the kernel of 0.4 s passes little above.
 const HIGHEST_HZ: f64 = 2.0;
 /// Least number of periods. With fewer, a bin between two harmonics is the neighbour of both.
 const LEAST_PERIODS: usize = 3;
 /// Number of periods up to which the second neighbours of two harmonics are the same bin.
 const LEAST_PERIODS_OF_TWO: usize = 4;
-/// Least autocorrelation at one period for a flight that counts as periodic. Chosen; not measured.
+/// Least autocorrelation at one period for a flight that counts as periodic. With less the harmonics would be those
+/// of nothing; a flight that counts as aperiodic is tested by spectra.
 const PERIODIC: f64 = 0.35;
-/// Shortest period that is searched for, s. Chosen; not measured.
+/// Shortest period that is searched for, s. Shorter ones are vibration.
 const SHORTEST_S: f64 = 3.0;
 
 /// One harmonic of one channel.

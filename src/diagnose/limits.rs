@@ -16,7 +16,8 @@ use super::tested::Tested;
 
 /// Standard errors by which an effect of its usual size must differ from zero: the z of [`Gates`](super::Gates).
 const CERTAIN: f64 = 4.0;
-/// Standard errors at which an effect is accepted whatever its usual size is. Chosen; not measured.
+/// Standard errors at which an effect is accepted whatever its usual size is. Twice what a name needs: then no prior
+/// can say otherwise.
 const PLAIN: f64 = 8.0;
 
 /// The smallest coefficient that this flight would have shown, for every candidate that was not named.
@@ -119,5 +120,5 @@ pub(super) fn too_little_excitation(after: &Fitted, limits: &[DetectionLimit]) -
         let swings = signature_of(limit.id).is_some_and(|signature| signature.role.hangs_below);
         !swings && limit.usual.is_some_and(|usual| limit.certain < usual)
     };
-    !after.base.present.iter().any(moves) && !limits.iter().any(shown)
+    !after.base.effects.iter().any(moves) && !limits.iter().any(shown)
 }

@@ -11,14 +11,14 @@ use super::signature::EffectTerm;
 use crate::stats::normal_deviate;
 use nalgebra::{DMatrix, DVector};
 
-/// Standard errors below which the accelerometer alone shows no effect. Chosen; not measured.
+/// Standard errors below which the accelerometer alone shows no effect. The usual 95 %.
 const NOTHING: f64 = 2.0;
 
-/// Standard errors from which on the forces alone show an effect. Chosen; not measured.
+/// Standard errors from which on the forces alone show an effect. The usual three.
 const SHOWN: f64 = 3.0;
 
-/// Largest factor by which the other columns may raise the variance of an amount: a force that is fixed in the body is the same as
-/// the accelerometer's bias, and the accelerometer alone says nothing of it. Chosen; not measured.
+/// Largest factor by which the other columns may raise the variance of an amount: a force that is fixed in the body
+/// is the same as the accelerometer's bias, and the accelerometer alone says nothing of it.
 const INFLATION: f64 = 30.0;
 
 /// What the accelerometer and the torques alone say of a model's columns.

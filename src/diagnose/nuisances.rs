@@ -5,25 +5,23 @@ use super::channels::{Channels, Nuisance, NuisanceColumn, SECOND, channels, forc
 use super::feedback_noise::{UNCONFIRMED_S, is_fed_back};
 use super::rotors::RotorMotion;
 use super::trace::Trace;
+use crate::estimate::JITTER_STD;
 use crate::signals::central_difference;
 use nalgebra::Vector3;
 
 /// Standard deviation of the prior of the latency of force against torque, s. Filters of accelerometer and gyroscopes
-/// differ by milliseconds. Chosen; not measured.
+/// differ by milliseconds.
 const FORCE_LATENCY_STD_S: f64 = 0.004;
-/// Standard deviation of the prior of the latency of the estimated vertical velocity, s: estimators correct it by a barometer
-/// and a receiver that are late by tenths of a second. Chosen; not measured.
+/// Standard deviation of the prior of the latency of the estimated vertical velocity, s: estimators correct it by a
+/// barometer and a receiver that are late by tenths of a second.
 const KINEMATIC_LATENCY_STD_S: f64 = 0.05;
-/// Standard deviation of the prior of the latency of the velocity beyond that of the attitude, s: what their stamps and the
-/// comparison with the inertial unit leave open. Chosen; not measured.
+/// Standard deviation of the prior of the latency of the velocity beyond that of the attitude, s: what their stamps
+/// and the comparison with the inertial unit leave open.
 const LATERAL_LATENCY_STD_S: f64 = 0.01;
-/// Standard deviation of the prior of the share of the jitter that acts: 1/sqrt(12), uniform between 0 and 1.
-const JITTER_STD: f64 = 0.288_675;
 /// Standard deviation of the prior of the attitude's level, rad: attitude estimates are level to about half a degree.
-/// Chosen; not measured.
 const LEVEL_STD_RAD: f64 = 0.01;
-/// Standard deviation of the prior of the accelerometer's bias if velocity does not determine it, m/s^2. Chosen; not
-/// measured.
+/// Standard deviation of the prior of the accelerometer's bias if velocity does not determine it, m/s^2. It is the 20
+/// mg of data sheets (ICM-42688-P, table 2).
 const BIAS_STD_M_S2: f64 = 0.2;
 
 pub(super) fn nuisances(
@@ -83,7 +81,7 @@ fn latencies(trace: &Trace, base: &Base, thrust_n: &[f64]) -> Vec<NuisanceColumn
     // in yaw the rotors' inertia leads by as much as a latency lags: where the one is estimated, roll and pitch tell the
     // other, and its error goes into the inertia's
     let of_yaw = channels(trace, nothing(trace), [none(), none(), late_z.clone()]);
-    let spins_up = base.estimates(|term| term.signature.role.shortens_latency);
+    let spins_up = base.estimates(|term| term.signature.role.spin_up.is_some());
     let late_torque = match (trace.torques, spins_up) {
         (false, _) => nothing(trace),
         (true, true) => [late_x, late_y, none()],

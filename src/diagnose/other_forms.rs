@@ -13,13 +13,13 @@ use crate::physics::PhysicsError;
 /// [`PhysicsError`] where the estimate leaves what is physical.
 pub(super) fn other_form(flights: &[Trace], fitted: &mut Fitted, price: Price) -> Result<bool, PhysicsError> {
     let mut taken = false;
-    for place in 0..fitted.base.present.len() {
-        let term = &fitted.base.present[place];
+    for place in 0..fitted.base.effects.len() {
+        let term = &fitted.base.effects[place];
         for form in (term.signature.refinement.other_forms)(term) {
             let mut base = fitted.base.clone();
             let values = form.values.iter().enumerate();
             let possible = values.map(|(slot, value)| form.possible(slot, *value, &base.size)).collect();
-            base.present[place] = EffectTerm { values: possible, ..form };
+            base.effects[place] = EffectTerm { values: possible, ..form };
             let other = fit(flights, base, Newton::Held)?;
             if price.cost(&other) < price.cost(fitted) {
                 *fitted = other;

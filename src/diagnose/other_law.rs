@@ -14,18 +14,18 @@ use nalgebra::{DMatrix, DVector};
 /// Adds to the covariance of a fit's effects what the drag laws among the candidates that were not taken may bring into them.
 pub(super) fn add_other_laws(flights: &[Trace], last: &[Tested], fitted: &mut Fitted) {
     let drags = |term: &EffectTerm| term.signature.role.lateral_slope.is_some();
-    if !fitted.base.present.iter().any(drags) {
+    if !fitted.base.effects.iter().any(drags) {
         return;
     }
     // a drag along z is told from an inflow by the search
     let with_air = |term: &EffectTerm| drags(term) || term.signature.role.wind.is_some();
-    let present = &fitted.base.present;
+    let present = &fitted.base.effects;
     let go_along: Vec<bool> = present.iter().flat_map(|term| vec![with_air(term); term.free.len()]).collect();
     let count = fitted.covariance.nrows();
     let mut most: DMatrix<f64> = DMatrix::zeros(count, count);
     for tested in last {
         let [part] = tested.candidate.parts.as_slice() else { continue };
-        let is_other = drags(part) && fitted.base.present.iter().all(|present| !present.is(part.signature));
+        let is_other = drags(part) && fitted.base.effects.iter().all(|present| !present.is(part.signature));
         if tested.candidate.through.is_some() || !is_other {
             continue;
         }

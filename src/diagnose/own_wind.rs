@@ -14,7 +14,8 @@ use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// A wind and its drag are believed from so many standard errors on. Chosen; not measured.
+/// A wind and its drag are believed from so many standard errors on. Set by judgement: a wind that is believed moves
+/// the frame of the whole flight, so that more is asked than of a name.
 const CERTAIN: f64 = 5.0;
 /// Start of the drag's fit, 1/s of the mass.
 const DRAG_1_S: f64 = 0.1;
@@ -32,11 +33,11 @@ pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings
     for &slot in &drag.free {
         drag.values[slot] = DRAG_1_S * vehicle.body.mass_kg;
     }
-    base.present = vec![drag, carried.term];
+    base.effects = vec![drag, carried.term];
     let fitted = fit(&[trace], base, Newton::Free).ok()?;
     let mut column = fitted.rows.nuisances.len();
     let mut certain = Vec::new();
-    for present in &fitted.base.present {
+    for present in &fitted.base.effects {
         let of = present.free.iter().map(|&slot| {
             let std = fitted.covariance[(column, column)].max(0.0).sqrt();
             column += 1;
@@ -44,11 +45,11 @@ pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings
         });
         certain.push(of.collect::<Vec<bool>>());
     }
-    let wind = &fitted.base.present.get(1)?.values;
+    let wind = &fitted.base.effects.get(1)?.values;
     let wind = Vector3::new(wind[0], wind[1], 0.0);
     let is_shown = certain[0].iter().all(|yes| *yes) && certain[1].iter().any(|yes| *yes);
     let is_dragged =
-        fitted.base.present[0].free.iter().all(|&slot| fitted.base.present[0].values[slot] > 0.0);
+        fitted.base.effects[0].free.iter().all(|&slot| fitted.base.effects[0].values[slot] > 0.0);
     (is_shown && is_dragged && wind.norm() > CALM_M_S).then_some(wind)
 }
 

@@ -7,8 +7,9 @@ use crate::estimate::{Nominal, THETA, Theta, inertia_of, is_physical, nearest_ph
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
 
-/// Standard errors by which an inertia may be moved to the nearest one that a body can have. Chosen; not measured.
-const WITHIN_ERROR: f64 = 3.0;
+/// Standard errors by which an inertia may be moved to the nearest one that a body can have. The usual three: beyond,
+/// the nearest possible inertia contradicts the flight.
+pub(super) const WITHIN_ERROR: f64 = 3.0;
 
 /// Moves an inertia that no body can have to the nearest possible one in the metric of its covariance, if that lies within its
 /// error. Otherwise the flight does not determine it: the stated one stays, with an error as large as itself.

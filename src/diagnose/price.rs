@@ -3,8 +3,8 @@
 use super::fit::Fitted;
 use super::tested::Tested;
 
-/// Energy that a column must explain to justify a parameter, in squared standard deviations of independent rows.
-/// Chosen; not measured.
+/// Energy that a column must explain to justify a parameter, in squared standard deviations of independent rows. Set
+/// by judgement; measured only together with all conditions of a name (see `Gates`).
 const COLUMN_PRICE: f64 = 12.0;
 
 /// Scale of what is not a residual, for models of the same rows.

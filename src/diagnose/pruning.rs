@@ -7,8 +7,8 @@ use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 
-/// A latency that moves by less than this when it is estimated with the effects has not changed, s. Chosen; not
-/// measured.
+/// A latency that moves by less than this when it is estimated with the effects has not changed, s. A tenth of the
+/// period of a fast log.
 pub(super) const UNCHANGED_S: f64 = 0.001;
 
 /// Removes effects that later ones have made superfluous, and estimates the latency with the remaining ones. Returns
@@ -20,7 +20,7 @@ pub(super) fn prune(
     let mut index = after.rows.nuisances.len();
     let mut kept: Vec<EffectTerm> = Vec::new();
     let mut dropped = false;
-    for present in &after.base.present {
+    for present in &after.base.effects {
         let mut pruned = present.clone();
         let mut strength = 0.0;
         for (place, &slot) in present.free.iter().enumerate() {
@@ -40,9 +40,9 @@ pub(super) fn prune(
             kept.push(pruned);
         }
     }
-    dropped |= kept.len() < after.base.present.len();
+    dropped |= kept.len() < after.base.effects.len();
     let before_s = after.base.latency.total_s();
-    let base = Base { present: kept, ..after.base.clone() };
+    let base = Base { effects: kept, ..after.base.clone() };
     let newton = if is_delay(base.latency, &base.vehicle) { Newton::Delay } else { Newton::Free };
     let (fitted, finding) = with_latency(flights, base, newton)?;
     *after = fitted;
@@ -52,6 +52,6 @@ pub(super) fn prune(
 /// An accepted effect stays in the model if it is this many standard deviations from zero: the z of
 /// [`Gates`](super::Gates).
 const KEPT: f64 = 4.0;
-/// A parameter of an accepted effect is set to zero if it is nearer to zero than this many standard deviations. Chosen;
-/// not measured.
+/// A parameter of an accepted effect is set to zero if it is nearer to zero than this many standard deviations. Set
+/// by judgement; measured only together with all conditions of a name (see `Gates`).
 const PRUNED: f64 = 2.5;

@@ -20,12 +20,13 @@ use crate::signals::{Signals, ThrustSource};
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 
-/// Standard deviation of a lag that the torques have told, s, beside its own. Chosen; not measured.
+/// Standard deviation of a lag that the torques have told, s, beside its own. It is the period of a usual log, by
+/// which force and torque may differ.
 const LAG_STD_S: f64 = 0.01;
 /// Standard deviation of a lag where none was found, s.
 const NO_LAG_STD_S: f64 = 0.005;
-/// The scale of thrust over mass stays within this factor of what the weak form found, or the fit is not believed.
-/// Chosen; not measured.
+/// The scale of thrust over mass stays within this factor of what the weak form found, or the fit is not believed. A
+/// larger change is a failed fit.
 const MOST_SCALE: f64 = 1.5;
 
 /// A share that grows with the rotors' speed is told apart beyond this many standard errors.
@@ -83,14 +84,14 @@ impl Flights<'_> {
     fn estimated(&self, fitted: &Fitted) -> Result<(Base, Vec<Term>, PooledEstimate), Kept> {
         let mut base = fitted.base.clone();
         let mut open = base.clone();
-        for present in &mut open.present {
+        for present in &mut open.effects {
             open_form(present);
         }
         let terms = terms(&open).ok_or(Kept::OtherKind)?;
         if terms.iter().all(|term| term.free.is_empty()) {
             return Err(Kept::NoForce);
         }
-        if open.present.iter().any(|present| present.signature.role.with_speed.is_some()) {
+        if open.effects.iter().any(|present| present.signature.role.with_speed.is_some()) {
             let pooled = self.pooled_over_flights(fitted, &open, &terms, fit_mode)?;
             choose_forms(&mut base, &terms, &pooled);
         }
@@ -121,7 +122,7 @@ type Estimate = fn(Problem, &[usize]) -> Result<Fit, FitError>;
 /// Each effect in the form that its share tells.
 fn choose_forms(base: &mut Base, opened: &[Term], pooled: &PooledEstimate) {
     let mut next = 1;
-    for (present, term) in base.present.iter_mut().zip(opened) {
+    for (present, term) in base.effects.iter_mut().zip(opened) {
         for &slot in &term.free {
             if present.signature.role.with_speed.is_some_and(|(own, _)| own == slot) {
                 choose_form(present, slot, (pooled.values[next], pooled.std(next)));
@@ -129,8 +130,8 @@ fn choose_forms(base: &mut Base, opened: &[Term], pooled: &PooledEstimate) {
             next += 1;
         }
     }
-    let damped = base.present.clone();
-    for present in &mut base.present {
+    let damped = base.effects.clone();
+    for present in &mut base.effects {
         let role = &present.signature.role;
         let of_body = role.with_speed.is_some_and(|(slot, _)| present.values.get(slot) == Some(&0.0));
         let damping = role.damped_by.map(|damping| damping()).filter(|_| of_body);
@@ -186,7 +187,7 @@ fn terms(base: &Base) -> Option<Vec<Term>> {
         let steps = free.iter().map(|&slot| term.step_of(slot, &base.size)).collect();
         Some(Term::new(effect, term.values.clone(), free, steps))
     };
-    base.present.iter().map(one).collect()
+    base.effects.iter().map(one).collect()
 }
 
 /// Whether a value of an effect of the air changes the force, and not the torque alone: in forward flight and climb, or in a
@@ -261,7 +262,7 @@ struct Size {
 
 /// Index of an effect's free value among the coefficients of a fit.
 fn column(fitted: &Fitted, place: usize, slot: usize) -> Option<usize> {
-    let present = &fitted.base.present;
+    let present = &fitted.base.effects;
     let before: usize = present[..place].iter().map(|term| term.free.len()).sum();
     let own = present[place].free.iter().position(|free| *free == slot)?;
     Some(fitted.rows.nuisances.len() + before + own)
@@ -274,7 +275,7 @@ fn differs(fitted: &Fitted, sizes: &[Size], covariance: &DMatrix<f64>) -> bool {
     sizes.iter().any(|&Size { place, slot, at, value }| {
         let Some(index) = column(fitted, place, slot) else { return false };
         let (more, less) = (covariance[(at, at)], fitted.covariance[(index, index)]);
-        let apart = value - fitted.base.present[place].values[slot];
+        let apart = value - fitted.base.effects[place].values[slot];
         differ(apart, less, more)
     })
 }
@@ -294,7 +295,7 @@ fn replaced(
     for (place, term) in terms.iter().enumerate() {
         for &slot in &term.free {
             let at = 1 + sizes.len();
-            let (present, value) = (&mut base.present[place], values[at]);
+            let (present, value) = (&mut base.effects[place], values[at]);
             if present.possible(slot, value, &base.size) != value {
                 return Ok(Err(Kept::Implausible { what: present.id(), value }));
             }
@@ -307,12 +308,12 @@ fn replaced(
     }
     // amounts that are not the forces' follow, on the scale of the thrust until now; the forms stay
     let mut held = Base { weighed_kg: None, ..base.clone() };
-    for (present, term) in held.present.iter_mut().zip(terms) {
+    for (present, term) in held.effects.iter_mut().zip(terms) {
         let amounts = present.signature.amounts;
         present.free.retain(|slot| !term.free.contains(slot) && amounts.contains(slot));
     }
     let settled = fit_rows(traces, held, Newton::Held)?.base;
-    for (present, settled) in base.present.iter_mut().zip(&settled.present) {
+    for (present, settled) in base.effects.iter_mut().zip(&settled.effects) {
         present.values.clone_from(&settled.values);
     }
     base.vehicle = settled.vehicle;
@@ -337,7 +338,7 @@ fn put_covariance(
     let mut all: Vec<(usize, usize, f64)> =
         mass.map(|mass| (mass, 0, -mass_kg / scale)).into_iter().collect();
     for &Size { place, slot, at, .. } in sizes {
-        let parameter = after.base.present[place].parameter(slot);
+        let parameter = after.base.effects[place].parameter(slot);
         let by = if parameter.is_some_and(|of| follows_force(of.unit)) { by_force } else { 1.0 };
         all.extend(column(after, place, slot).map(|index| (index, at, by)));
     }

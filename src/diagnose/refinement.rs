@@ -13,7 +13,6 @@ use super::other_law::add_other_laws;
 use super::physical::make_physical;
 use super::reconstructed::reconstruct;
 use super::signature::EffectTerm;
-use super::signatures::BENT_THRUST;
 use super::tested::Search;
 use super::thrust_slope::may_be_noise;
 use super::torques_by_instruments::torques_by_instruments;
@@ -24,10 +23,12 @@ use crate::stats::normal_deviate;
 use crate::vehicle::Vehicle;
 use nalgebra::{DMatrix, DVector};
 
-/// An effect that is nearer to nothing than this many standard errors, beside all others and with its errors as reconstruction
-/// and instruments tell them, leaves the model. Chosen; not measured.
+/// An effect that is nearer to nothing than this many standard errors, beside all others and with its errors as
+/// reconstruction and instruments tell them, leaves the model. Set by judgement; measured only together with all
+/// conditions of a name (see `Gates`).
 const STAYS: f64 = 3.0;
-/// How often the model is estimated again after effects left it. Chosen; not measured.
+/// How often the model is estimated again after effects left it. A number of steps: only the time of a search and its
+/// last digits depend on it.
 const ROUNDS: usize = 6;
 
 /// Leaves effects without a name out, and estimates the sizes of the others by what has no noise of the autopilot's own: forces
@@ -68,12 +69,12 @@ fn leave_out_unnamed(traces: &[Trace], found: &mut Search) -> Result<bool, Physi
     let mut first = found.after.rows.nuisances.len();
     let mut weakest: Option<(f64, usize)> = None;
     let mut kept: Vec<bool> = Vec::new();
-    for (place, present) in all.present.iter().enumerate() {
+    for (place, present) in all.effects.iter().enumerate() {
         let beyond = is_beyond_showing(&found.after, present, first);
         let strength = fitted_strength(&found.after, present, first);
         let refuted = felt.as_ref().is_some_and(|felt| felt.refutes(&found.after, present, first));
         // a bend acts on the commands' own noise, and that is in the torques
-        let bent = present.is(&BENT_THRUST) && is_fed_back(traces);
+        let bent = present.signature.role.bends_thrust.is_some() && is_fed_back(traces);
         let unseen = bent
             && (!shows_in_forces(&found.after, present, first) || is_noise(present, traces, &found.after));
         first += present.free.len();
@@ -89,7 +90,7 @@ fn leave_out_unnamed(traces: &[Trace], found: &mut Search) -> Result<bool, Physi
     }
     // two that explain much of each other are both uncertain: one leaves, and the other is judged again
     if let Some((z, place)) = weakest {
-        tracing::info!(effect = all.present[place].id(), z, "effect is not certain beside the others");
+        tracing::info!(effect = all.effects[place].id(), z, "effect is not certain beside the others");
         kept[place] = false;
     }
     if kept.iter().all(|kept| *kept) {
@@ -97,7 +98,7 @@ fn leave_out_unnamed(traces: &[Trace], found: &mut Search) -> Result<bool, Physi
     }
     let mut base = all;
     let mut each = kept.into_iter();
-    base.present.retain(|_| each.next().unwrap_or(true));
+    base.effects.retain(|_| each.next().unwrap_or(true));
     found.after = fit(traces, base, Newton::Held)?;
     Ok(true)
 }
@@ -117,7 +118,7 @@ fn is_ordinary(term: &EffectTerm, base: &Base) -> bool {
         || naming.ordinary.is_some_and(|ordinary| term.size() < ordinary)
         || naming.least > 0.0 && of_all() < naming.least
         || naming.most.is_some_and(|most| amounts().any(|amount| *amount > most))
-        || (naming.is_ordinary)(term, &base.present)
+        || (naming.is_ordinary)(term, &base.effects)
 }
 
 /// Significance of an effect that was accepted together with another, from the distance of its amounts from zero. The parameters of

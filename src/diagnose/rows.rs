@@ -172,7 +172,7 @@ impl Rows {
         let mut places = places.into_iter();
         let of = |candidate: &&EffectTerm| {
             if candidate.is_of_sensors() {
-                return self.shown_columns(flights, base, candidate);
+                return self.sensor_columns(flights, base, candidate);
             }
             let place = places.next().unwrap_or(Ok(0..0))?;
             Ok(columns.as_ref().map_err(Clone::clone)?[place].to_vec())
@@ -181,7 +181,7 @@ impl Rows {
     }
 
     /// The same of an effect that changes what sensors show.
-    fn shown_columns(
+    fn sensor_columns(
         &self,
         flights: &[Trace],
         base: &Base,
@@ -192,8 +192,8 @@ impl Rows {
             let step = candidate.step_of(index, &base.size);
             moved.values[index] += step;
             let mut with = base.clone();
-            with.present.push(moved);
-            Ok(per_step(self.shown(flights, &with)?, &self.residual, step))
+            with.effects.push(moved);
+            Ok(per_step(self.sensor_residual(flights, &with)?, &self.residual, step))
         };
         candidate.free.iter().map(one).collect()
     }
@@ -222,7 +222,7 @@ impl Rows {
         base: &Base,
     ) -> Result<Vec<Channels>, PhysicsError> {
         let places: Vec<(usize, usize)> = base
-            .present
+            .effects
             .iter()
             .enumerate()
             .flat_map(|(effect, present)| present.free.iter().map(move |&index| (effect, index)))
@@ -230,11 +230,11 @@ impl Rows {
         let mut models: Vec<Moved> = Vec::new();
         let mut of_sensors: Vec<(usize, Channels)> = Vec::new();
         for (column, &(effect, index)) in places.iter().enumerate() {
-            let present = &base.present[effect];
+            let present = &base.effects[effect];
             let step = present.step_of(index, &base.size);
             let moved = |by: f64| {
                 let mut moved = base.clone();
-                moved.present[effect].values[index] += by;
+                moved.effects[effect].values[index] += by;
                 moved
             };
             // not beyond what is possible: a load has no negative mass
@@ -242,7 +242,11 @@ impl Rows {
             let below = present.possible(index, value - 0.5 * step, &base.size) - value;
             let (up, down) = (moved(below + step), moved(below));
             if present.is_of_sensors() {
-                let shown = per_step(self.shown(recorded, &up)?, &self.shown(recorded, &down)?, step);
+                let shown = per_step(
+                    self.sensor_residual(recorded, &up)?,
+                    &self.sensor_residual(recorded, &down)?,
+                    step,
+                );
                 of_sensors.push((column, shown));
             } else {
                 models.push(Moved { up: up.model(&[])?, down: Some(down.model(&[])?), step });
@@ -255,7 +259,7 @@ impl Rows {
 
     /// The residual with other effects on the sensors. Effects on the vehicle keep their values, an approximation that
     /// is better the smaller the sensors' effects are.
-    fn shown(&self, recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
+    fn sensor_residual(&self, recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
         let model = base.model(&[])?;
         let mut out = Channels::default();
         for (trace, along) in true_readings(recorded, base).iter().zip(&self.flights) {

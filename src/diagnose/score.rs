@@ -115,7 +115,7 @@ pub(super) fn columns_of_each(
 /// The same effect, for rotors the same rotor.
 pub(super) fn is_present(base: &Base, candidate: &Candidate) -> bool {
     candidate.parts.iter().all(|part| {
-        base.present.iter().any(|present| {
+        base.effects.iter().any(|present| {
             present.is(part.signature) && is_the_same(present, part)
                 || drags_along_z(present) && drags_along_z(part)
         })
@@ -134,7 +134,7 @@ fn drags_along_z(term: &EffectTerm) -> bool {
 
 /// Tests wind. It acts through drag: both are tested together, or the wind alone if a drag is in the base.
 fn test_winds(flights: &[Trace], fitted: &Fitted, signatures: &[&'static Signature]) -> Vec<Tested> {
-    let present = &fitted.base.present;
+    let present = &fitted.base.effects;
     let is_wind = |term: &EffectTerm| term.signature.role.wind.is_some();
     let moving = flights.iter().all(|trace| trace.known.velocity && trace.known.attitude);
     if present.iter().any(is_wind) || !moving {
@@ -157,7 +157,7 @@ fn test_winds(flights: &[Trace], fitted: &Fitted, signatures: &[&'static Signatu
 fn test_carried(flights: &[Trace], fitted: &Fitted, carried: Carried) -> Option<Tested> {
     let Carried { carrier, unit, term } = carried;
     let mut with_unit = fitted.base.clone();
-    with_unit.present.push(unit.clone());
+    with_unit.effects.push(unit.clone());
     let mut columns = fitted.rows.columns_of(flights, &fitted.base, &carrier).ok()?;
     columns.extend(fitted.rows.columns_through(flights, &with_unit, &term).ok()?);
     let evidence = fitted.weighted.test(&columns)?;

@@ -137,11 +137,11 @@ fn pruned(
     price: Price,
     refused: &mut Vec<&'static str>,
 ) -> Result<(LatencyFinding, bool), PhysicsError> {
-    let before = after.base.present.clone();
+    let before = after.base.effects.clone();
     let (dropped, moved, found) = prune(flights, after)?;
     let placed = one_place(flights, after, price)? | other_form(flights, after, price)?;
     let gone = before.iter().map(|present| present.id());
-    let kept = |id: &&'static str| after.base.present.iter().any(|p| p.id() == *id);
+    let kept = |id: &&'static str| after.base.effects.iter().any(|p| p.id() == *id);
     refused.extend(gone.filter(|id| !kept(id)).inspect(|effect| {
         tracing::info!(effect, "effect dropped from the model");
     }));
@@ -159,22 +159,23 @@ fn by_worth(mut tested: Vec<Tested>, price: Price) -> Vec<Tested> {
 /// part of other effects.
 fn with_last(flights: &[Trace], fitted: Fitted) -> Result<Fitted, PhysicsError> {
     let has_last = |term: &EffectTerm| !term.signature.refinement.freed_last.is_empty();
-    if !fitted.base.present.iter().any(has_last) {
+    if !fitted.base.effects.iter().any(has_last) {
         return Ok(fitted);
     }
     let mut base = fitted.base.clone();
-    for term in base.present.iter_mut().filter(|term| has_last(term)) {
+    for term in base.effects.iter_mut().filter(|term| has_last(term)) {
         term.free = term.signature.refinement.freed_last.to_vec();
     }
     let placed = fit(flights, base, Newton::Held)?;
     let bounded = placed
         .base
-        .present
+        .effects
         .iter()
         .filter(|of| has_last(of))
         .any(|of| of.free.iter().any(|&slot| of.is_at_bound(slot, &placed.base.size)));
     Ok(if placed.misfit() < fitted.misfit() && !bounded { placed } else { fitted })
 }
 
-/// How often effects are pruned and the search continues after no candidate passes any more. Chosen; not measured.
+/// How often effects are pruned and the search continues after no candidate passes any more. A number of steps: only
+/// the time of a search and its last digits depend on it.
 const SETTLINGS: usize = 2;

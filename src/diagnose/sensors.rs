@@ -92,7 +92,7 @@ pub(super) fn true_readings<'a>(flights: &'a [Trace], base: &Base) -> Cow<'a, [T
 }
 
 fn faults(base: &Base) -> Vec<&EffectTerm> {
-    base.present.iter().filter(|present| present.is_of_sensors()).collect()
+    base.effects.iter().filter(|present| present.is_of_sensors()).collect()
 }
 
 /// One flight's states and, where it was recorded, specific force (m/s^2, body).
@@ -157,7 +157,7 @@ mod tests {
         let turned = |angle_rad: f64| {
             let mut base = Base::rigid(&vehicle);
             let signature = signature_of("imu_misalignment").unwrap();
-            base.present.push(signature.term(&[angle_rad, 0.0, 0.0], &[0]));
+            base.effects.push(signature.term(&[angle_rad, 0.0, 0.0], &[0]));
             base
         };
         let known = KnownMotion::of(&flights, &turned(0.02));

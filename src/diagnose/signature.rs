@@ -75,6 +75,13 @@ impl Signature {
         Form { term: self.term(values, free), instead_of_nuisance: false }
     }
 
+    /// The effect with all parameters at zero, the finer ones among them, and all of them estimated.
+    #[must_use]
+    pub fn whole_finer(&'static self) -> EffectTerm {
+        let count = self.effect.parameters().len() + self.effect.finer_parameters().len();
+        self.term(&vec![0.0; count], &(0..count).collect::<Vec<_>>())
+    }
+
     /// The effect with all parameters at zero and all of them estimated.
     #[must_use]
     pub fn whole(&'static self) -> EffectTerm {
@@ -213,6 +220,23 @@ pub enum LatencyKind {
     Delay,
 }
 
+/// Which values of an effect two flights of one vehicle have in common.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OfTheVehicle {
+    /// slots of the values
+    pub slots: &'static [usize],
+    /// difference that flights of one vehicle have, in the unit of the values
+    pub least_difference: f64,
+}
+
+impl OfTheVehicle {
+    /// These slots; any difference counts.
+    #[must_use]
+    pub const fn of(slots: &'static [usize]) -> Self {
+        Self { slots, least_difference: 0.0 }
+    }
+}
+
 /// How an effect acts, and its relations to other effects.
 #[derive(Debug, Clone, Copy)]
 pub struct Role {
@@ -238,8 +262,13 @@ pub struct Role {
     pub damped_by: Option<fn() -> EffectTerm>,
     /// an effect whose columns resemble those of a latency
     pub like_latency: Option<fn() -> EffectTerm>,
-    /// shortens the latency that is found without it
-    pub shortens_latency: bool,
+    /// slot of the inertia of a rotor (kg m^2) that takes yaw torque when its speed changes; without it the latency is
+    /// found too long
+    pub spin_up: Option<usize>,
+    /// slot of the curvature that it gives to the thrust law
+    pub bends_thrust: Option<usize>,
+    /// it belongs to the vehicle, not to a flight
+    pub of_the_vehicle: Option<OfTheVehicle>,
     /// it hangs below the vehicle and is not part of the vehicle's mass
     pub hangs_below: bool,
     /// slot of the time at which it happens, s
@@ -270,7 +299,9 @@ impl Role {
         which: None,
         damped_by: None,
         like_latency: None,
-        shortens_latency: false,
+        spin_up: None,
+        bends_thrust: None,
+        of_the_vehicle: None,
         hangs_below: false,
         moment: None,
         of_the_day: false,
@@ -312,13 +343,13 @@ pub struct Joint {
     pub forms: Option<JointForms>,
     /// why a parameter has its value
     pub whence: fn(&EffectTerm, usize, &Vehicle, &[&'static Signature]) -> Option<Whence>,
-    /// force and torque are not a function of its parameters
-    pub is_irregular: bool,
+    /// force and torque are not a function of its parameters, and why
+    pub irregular: Option<&'static str>,
 }
 
 impl Joint {
     /// One form, all parameters from zero.
-    pub const PLAIN: Self = Self { forms: None, whence: |_, _, _, _| None, is_irregular: false };
+    pub const PLAIN: Self = Self { forms: None, whence: |_, _, _, _| None, irregular: None };
 }
 
 /// A term of the model: an effect with its values, and which of them are estimated.

@@ -31,7 +31,7 @@ pub(super) const BEYOND: f64 = 2.0;
 /// Those that matter, and the others. What is one effect to a reader is judged as one; and where what each of several can take over
 /// of the others matters together, the greatest of them is named.
 pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) -> (Vec<Named>, Vec<Slight>) {
-    let term = |of: &FoundEffect| &fitted.base.present[of.place];
+    let term = |of: &FoundEffect| &fitted.base.effects[of.place];
     let together = |those: &[&FoundEffect]| {
         let each: Vec<_> = those.iter().map(|of| (term(of), of.columns.clone())).collect();
         Materiality::of(fitted, &each)
@@ -80,7 +80,7 @@ pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) ->
 
 /// Whether an effect matters by itself. One whose own part is not known (`None`) does.
 fn is_material(fitted: &Fitted, of: &FoundEffect, own: Option<Materiality>) -> bool {
-    let term = &fitted.base.present[of.place];
+    let term = &fitted.base.effects[of.place];
     if term.is_of_sensors() {
         is_beyond_ordinary(fitted, term, of.columns.start) && own.is_none_or(|of| of.shows())
     } else {

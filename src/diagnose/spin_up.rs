@@ -7,9 +7,8 @@
 
 use super::base::Base;
 use super::rotors::RotorMotion;
-use super::signatures::ROTOR_INERTIA;
+use super::signature::EffectTerm;
 use super::trace::Trace;
-use crate::physics::effects::RotorInertia;
 use crate::physics::{
     ActuationLatency, Airframe, Condition, Effect, Input, Own, Rotors, State, Wrench, delayed_wrench,
 };
@@ -18,6 +17,7 @@ use nalgebra::{Matrix3, Vector3, Vector4};
 /// The rotors' inertia in a base.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SpinUp {
+    effect: &'static dyn Effect,
     jr_kg_m2: f64,
     /// time constant `L` of the yaw torque, s
     lag_s: f64,
@@ -26,11 +26,11 @@ pub(super) struct SpinUp {
 impl SpinUp {
     /// `None` where the base has no rotor inertia, or the rotors no speed.
     pub(super) fn of(base: &Base, airframe: &Airframe) -> Option<Self> {
-        let present = base.present.iter().find(|present| present.is(&ROTOR_INERTIA))?;
-        let jr_kg_m2 = present.values.first().copied().filter(|jr| *jr > 0.0)?;
+        let inertia = |term: &EffectTerm| Some((term.effect(), term.values[term.signature.role.spin_up?]));
+        let (effect, jr_kg_m2) = base.effects.iter().find_map(inertia).filter(|(_, jr)| *jr > 0.0)?;
         let drag_nm = airframe.propulsion.torque_per_thrust_m * airframe.hover_thrust_n;
         let lag_s = jr_kg_m2 * airframe.hover_speed_rad_s? / (2.0 * drag_nm);
-        lag_s.is_finite().then_some(Self { jr_kg_m2, lag_s })
+        lag_s.is_finite().then_some(Self { effect, jr_kg_m2, lag_s })
     }
 
     /// Replaces the spin-up torque (N m about z) in `effects` (`[Fz tau]` in addition to the rotors' own), computed
@@ -68,7 +68,7 @@ impl SpinUp {
         rotors.acceleration_1_s = motion.acceleration_1_s.at(index);
         let mut sum = Wrench::zero();
         let mut own = Own { parameters: &[self.jr_kg_m2], states: &[], rates: &mut [] };
-        RotorInertia.wrench(&at, &rotors, &mut own, &mut sum);
+        self.effect.wrench(&at, &rotors, &mut own, &mut sum);
         sum.torque_nm.z
     }
 }

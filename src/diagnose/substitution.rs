@@ -22,14 +22,14 @@ pub(super) fn one_for_several(
     price: Price,
     (gates, signatures, refused): (&Gates, &[&'static Signature], &[&'static str]),
 ) -> Result<Option<(Tested, Fitted)>, PhysicsError> {
-    let present = &fitted.base.present;
+    let present = &fitted.base.effects;
     let times = |id: &str| present.iter().filter(|term| term.id() == id).count();
     let Some(several) = present.iter().map(|term| term.id()).find(|id| times(id) > 1) else {
         return Ok(None);
     };
     let columns: usize = present.iter().filter(|term| term.id() == several).map(|term| term.free.len()).sum();
     let mut base = fitted.base.clone();
-    base.present.retain(|term| term.id() != several);
+    base.effects.retain(|term| term.id() != several);
     let without = fit(flights, base, Newton::Held)?;
     let candidates = candidates(&without.base.vehicle, flights, signatures);
     let tested = test_all(flights, &without, &candidates, signatures);

@@ -10,13 +10,10 @@ use super::fit::{CONVERGED, Fitted, Newton, PASSES, linearised, step};
 use super::hausman::holds;
 use super::left_over::of_left_over;
 use super::trace::Trace;
-use crate::estimate::Estimated;
+use crate::estimate::{Estimated, MOMENTS};
 use crate::physics::PhysicsError;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
-
-/// Places of the moments of inertia in [`Estimated::theta`].
-const MOMENTS: [usize; 3] = [1, 4, 6];
 
 /// Inertia and damping of a model as instruments tell them, where least squares contradicts them or is the less certain. The
 /// latency of the model and its standard error, s, are known. Returns the places of the coefficients that
@@ -132,7 +129,8 @@ impl Projected {
 /// Rows among those of all channels, with the directions of their instruments.
 type Served<'a> = (Range<usize>, &'a DMatrix<f64>);
 
-/// Share of a column's squares that must lie where there are instruments. Chosen; not measured.
+/// Share of a column's squares that must lie where there are instruments. With less most of the column would have no
+/// instrument.
 const LEAST_TOLD: f64 = 0.5;
 
 /// The rows and instruments of each torque that has any: those of a vehicle that is not asked to turn about an axis say nothing
@@ -227,7 +225,7 @@ fn estimated(
             take(place, &column.values);
         }
     }
-    let terms = fitted.base.present.iter().flat_map(|present| present.free.iter().map(move |_| present));
+    let terms = fitted.base.effects.iter().flat_map(|present| present.free.iter().map(move |_| present));
     for (place, (present, column)) in terms.zip(&rows.effects).enumerate() {
         // the forces tell a drag; the torques tell what else damps the rotation
         if present.signature.role.like_latency.is_some() && !present.signature.role.of_air {

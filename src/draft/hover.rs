@@ -5,14 +5,15 @@ use crate::signals::{best, thrusts_from_commands};
 use crate::units::GRAVITY_M_S2;
 use crate::vehicle::Vehicle;
 
-/// Rotors carry the vehicle where their thrust is at least this share of its 90th percentile. Chosen; not measured.
+/// Rotors carry the vehicle where their thrust is at least this share of its 90th percentile. Below it the vehicle
+/// stands, takes off or falls.
 const CARRYING: f64 = 0.5;
-/// Samples of rotors that carry the vehicle, from which on a median means something. Chosen; not measured.
+/// Samples of rotors that carry the vehicle, from which on a median means something. They are a second at 50 Hz.
 const LEAST: usize = 50;
-/// Relative standard error: scale and lean of an accelerometer, drag along the rotors' axis, a curve that is not the rotors'.
-/// Chosen.
+/// Relative standard error: scale and lean of an accelerometer, drag along the rotors' axis, a curve that is not the
+/// rotors'.
 const RELATIVE: f64 = 0.03;
-/// The same without an accelerometer, where the mean acceleration is taken for nought. Chosen.
+/// The same without an accelerometer, where the mean acceleration is taken for nought.
 const RELATIVE_BLIND: f64 = 0.06;
 
 /// Full thrust of one rotor that a flight shows for a mass.

@@ -86,7 +86,8 @@ pub fn arm() -> Rule {
     Rule { relative: 0.4, ..Rule::over(PUBLISHED.iter().map(|one| one.arm_m / one.mass_kg.cbrt())) }
 }
 
-/// Thrust of all rotors over weight. Chosen: a multirotor flies with 1.3 to 4 times its weight, and racing machines with 10.
+/// Thrust of all rotors over weight. Set by judgement: a multirotor flies with 1.3 to 4 times its weight, and racing
+/// machines with 10.
 pub const THRUST_TO_WEIGHT: Rule = Rule { usual: 2.2, relative: 0.5 };
 
 /// Exponent of the thrust curve where nothing states it, 0 linear and 1 quadratic, and its standard error. A propeller's

@@ -63,21 +63,22 @@ pub enum DraftError {
     Layout(#[from] LayoutError),
 }
 
-/// Masses of multirotors, kg. Chosen; not measured.
+/// Masses of multirotors, kg. Outside of it a unit is mistaken; nothing between is refused.
 const MASSES_KG: (f64, f64) = (0.005, 500.0);
-/// Sizes of multirotors, m. Chosen; not measured.
+/// Sizes of multirotors, m. Outside of it a unit is mistaken; nothing between is refused.
 const SIZES_M: (f64, f64) = (0.03, 10.0);
 /// Pulse widths of none and of full command where no parameter states them, microseconds: the usual range.
 const PULSES_US: (f64, f64) = (1000.0, 2000.0);
 /// Rotors that do not overlap have a radius of less than half the distance of their hubs.
 const CLEAR: f64 = 0.48;
-/// Standard error of a thrust curve's exponent that a parameter states, and of one that is stated as linear, which is the
-/// default of PX4. Chosen.
+/// Standard error of a thrust curve's exponent that a parameter states, and of one that is stated as linear, which is
+/// the default of PX4. Set by judgement: a curve is measured at one voltage and with one propeller; the standard
+/// errors of what is identified contain it.
 const EXPO_STATED: f64 = 0.15;
 /// See [`EXPO_STATED`].
 const EXPO_LINEAR: f64 = 0.3;
-/// Relative standard error of a full thrust by the share of thrust at which the autopilot expects to hover. Chosen: many
-/// leave the default.
+/// Relative standard error of a full thrust by the share of thrust at which the autopilot expects to hover. Set by
+/// judgement: many leave the default.
 const BY_HOVER_SHARE: f64 = 0.25;
 
 /// A first description of the vehicle that a recording is of. Without streams, as from a vehicle's parameters alone, the
@@ -231,7 +232,7 @@ impl Noted {
     /// What a command of an autopilot that is not known means, and the exponent of its thrust curve.
     fn command_of_any(&mut self, recording: &Recording) -> (Actuator, f64) {
         let Rule { usual, relative } = rules::THRUST_EXPO;
-        self.guess(Guessed::ThrustCurve, relative, "usual; no autopilot's parameter states it");
+        self.guess(Guessed::Expo, relative, "usual; no autopilot's parameter states it");
         if holds_fractions(recording) {
             self.origins.push("commands in 0..1, from no thrust to full thrust".to_owned());
             return (Actuator::Thrust, usual);
@@ -249,7 +250,7 @@ impl Noted {
         if holds_fractions(recording) {
             // the autopilot takes its curve out between these commands and the pulses
             self.origins.push("commands in 0..1, which the autopilot takes for shares of thrust".to_owned());
-            self.guess(Guessed::ThrustCurve, EXPO_LINEAR, "linear in the command, as the autopilot takes it");
+            self.guess(Guessed::Expo, EXPO_LINEAR, "linear in the command, as the autopilot takes it");
             return (Actuator::Thrust, 0.0);
         }
         let range = outputs.pulses.ends_us(parameter).filter(|(low_us, high_us)| high_us > low_us);
@@ -274,16 +275,12 @@ impl Noted {
             Some(expo) => {
                 let expo = rounded(expo);
                 let deviation = if expo > 0.0 { EXPO_STATED } else { EXPO_LINEAR };
-                self.guess(Guessed::ThrustCurve, deviation, format!("{} = {expo}", outputs.expo));
+                self.guess(Guessed::Expo, deviation, format!("{} = {expo}", outputs.expo));
                 expo
             }
             None => {
                 let Rule { usual, relative } = rules::THRUST_EXPO;
-                self.guess(
-                    Guessed::ThrustCurve,
-                    relative,
-                    format!("usual; the log holds no {}", outputs.expo),
-                );
+                self.guess(Guessed::Expo, relative, format!("usual; the log holds no {}", outputs.expo));
                 usual
             }
         };

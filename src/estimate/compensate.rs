@@ -6,11 +6,12 @@ use crate::signals::{Signals, ThrustSource};
 use crate::vehicle::Vehicle;
 use nalgebra::{DVector, Vector4};
 
-/// Standard errors within which an estimated latency agrees with the stated lag. Chosen; not measured.
+/// Standard errors within which an estimated latency agrees with the stated lag. Two are too few: the stated lag has
+/// an error that is not stated.
 const AGREES: f64 = 4.0;
-/// The same for a latency whose kind the flight does not determine. Chosen; not measured.
+/// The same for a latency whose kind the flight does not determine. The usual 95 %.
 const LEANS: f64 = 2.0;
-/// Largest contribution of the log's sampling to both, s. Chosen; not measured.
+/// Largest contribution of the log's sampling to both, s. Half a period of 100 Hz.
 const SAMPLED_S: f64 = 0.005;
 
 /// Division of a latency into delay and lag. A lag that agrees with the one of the vehicle file has its ratio of rising

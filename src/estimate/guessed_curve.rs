@@ -10,7 +10,7 @@ use super::weak::solve_weak;
 use crate::note::{About, Note};
 use crate::physics::ActuationLatency;
 use crate::regression::{WeakMotion, WeakRows, weak_rows};
-use crate::signals::{ConditionSettings, Signals, ThrustSource, WeakKernel};
+use crate::signals::{Signals, ThrustSource, WEAK_HALF_WIDTH_S, WeakKernel};
 use crate::vehicle::{Guessed, Propulsion, ThrustLaw, Vehicle};
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ impl GuessedCurve {
     #[must_use]
     pub fn of(vehicle: &Vehicle) -> Option<Self> {
         let ThrustLaw::Curve { thrust_max_n, expo } = vehicle.propulsion.law else { return None };
-        let guesses = vehicle.guesses.iter().filter(|guess| guess.of == Guessed::ThrustCurve);
+        let guesses = vehicle.guesses.iter().filter(|guess| guess.of == Guessed::Expo);
         let std = guesses.map(|guess| guess.relative).fold(0.0, f64::max);
         let (low, high) = ((expo - std).max(expo.min(0.0)), (expo + std).min(expo.max(1.0)));
         let of = |expo| Propulsion { law: ThrustLaw::Curve { thrust_max_n, expo }, ..vehicle.propulsion };
@@ -66,7 +66,8 @@ impl MovedByCurve {
     }
 }
 
-/// Share of a moment of inertia by which a guessed curve has to move it to be told. Chosen; not measured.
+/// Share of a moment of inertia by which a guessed curve has to move it to be told. Only whether it is told depends
+/// on it; the standard errors contain it in any case.
 const TOLD: f64 = 0.05;
 
 /// A note on moments of inertia that rest on a guessed thrust curve.
@@ -80,9 +81,10 @@ pub fn rests_on_guessed_curve(estimated: &Estimated) -> Option<Note> {
         .map(|index| format!("{} by {:.0} %", NAMES[index], 100.0 * share(index)))
         .collect();
     let text = format!(
-        "{CURVE_IS_A_GUESS}, and one standard error of it moves {}: that is in the standard errors. `identify --with thrust_curve` has the \
+        "{CURVE_IS_A_GUESS}, and one standard error of it moves {}: that is in the standard errors. `identify --with {}` has the \
          flight tell the curve; where it is known, state it in a vehicle file",
-        those.join(", ")
+        those.join(", "),
+        Guessed::Expo.name()
     );
     (!those.is_empty()).then(|| Note::remark(About::Estimate, text))
 }
@@ -119,7 +121,7 @@ pub(super) fn moved_by_curve(
     if flights.iter().all(|signals| signals.quality.thrust_source != ThrustSource::Command) {
         return None;
     }
-    let half_width_s = ConditionSettings::default().weak_half_width_s;
+    let half_width_s = WEAK_HALF_WIDTH_S;
     let rows_of = |mut signals: Signals| {
         if latency.total_s() != 0.0 {
             take_out(&mut signals, vehicle, latency);

@@ -16,7 +16,9 @@ use super::window::by_wider_window;
 use crate::note::{About, Note};
 use crate::physics::ActuationLatency;
 use crate::regression::{WeakMotion, WeakRows, ZeroPhase, weak_rows};
-use crate::signals::{Butterworth, Signals, ThrustSource, WeakKernel, WindowedFir, highest_harmonic_hz};
+use crate::signals::{
+    Butterworth, Signals, ThrustSource, WEAK_HALF_WIDTH_S, WeakKernel, WindowedFir, highest_harmonic_hz,
+};
 use crate::vehicle::Vehicle;
 
 /// Settings of the identification.
@@ -34,7 +36,7 @@ pub struct IdentifySettings {
 
 impl Default for IdentifySettings {
     fn default() -> Self {
-        Self { weak_half_width_s: 0.2, cutoff_hz: None, fir: false, sigma: super::PAPER_SIGMA }
+        Self { weak_half_width_s: WEAK_HALF_WIDTH_S, cutoff_hz: None, fir: false, sigma: super::PAPER_SIGMA }
     }
 }
 

@@ -5,8 +5,8 @@ use super::result::Estimated;
 use super::theta::{THETA, Theta};
 use nalgebra::{SMatrix, Vector4};
 
-/// Largest number of blocks. When all are full, neighbours are merged and blocks last twice as long. Chosen; not
-/// measured.
+/// Largest number of blocks. When all are full, neighbours are merged and blocks last twice as long. Of the live
+/// view: twice as many cost twice the memory and show no more.
 const BLOCKS: usize = 256;
 
 /// Sums of (40), in total and by blocks of time. The blocks contain the data of the scores of any estimate, so that the

@@ -35,10 +35,12 @@ pub use method::Method;
 pub use nominal::Nominal;
 pub use physical::{is_physical, nearest_physical, second_moments};
 pub use plausible::{Contradiction, contradictions, contradicts_file, flights_apart, stated};
-pub use problem::{Channel, Problem, Solution};
+pub use problem::{Channel, Problem, SCORE_LAGS, Solution};
 pub use recommend::Recommendation;
 pub use recursive::{GradientStep, History, PAPER_SIGMA, PaperEstimate, gradient_descent, least_squares};
 pub use result::{Estimated, Finding, MethodResult, POOR, Parameter, RIGID_BODY_ALONE, finding, size_of};
-pub use theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, inertia_of, scale_of, theta_of};
+pub use theta::{
+    INERTIA_ENTRIES, MOMENTS, NAMES, THETA, Theta, ThetaCovariance, UNITS, inertia_of, scale_of, theta_of,
+};
 pub use thrust_scale::ThrustScale;
-pub use weak::{Latency, LatencyKind, WeakEstimate, expected_covariance, latency, solve_weak};
+pub use weak::{JITTER_STD, Latency, LatencyKind, WeakEstimate, expected_covariance, latency, solve_weak};

@@ -4,7 +4,7 @@
 //! real body. This is the condition of the pseudo-inertia and contains the triangle inequalities. `Sigma = L L^T` with
 //! a positive diagonal of L satisfies it always.
 
-use super::theta::{THETA, Theta, ThetaCovariance, inertia_of, scale_of};
+use super::theta::{MOMENTS, THETA, Theta, ThetaCovariance, inertia_of, scale_of};
 use nalgebra::{Matrix3, SMatrix, SVector};
 
 /// Second moments of the mass, kg m^2.
@@ -64,7 +64,6 @@ pub fn nearest_physical(theta: &Theta, covariance: &ThetaCovariance, nominal: &T
 
 /// A body that is thicker in all directions, from which the search can begin where the stated one is flat.
 fn thickened(theta: &Theta) -> Theta {
-    const MOMENTS: [usize; 3] = [1, 4, 6];
     let by = 0.1 * MOMENTS.iter().map(|&moment| theta[moment]).sum::<f64>() / 3.0;
     Theta::from_fn(|index, _| if MOMENTS.contains(&index) { theta[index] + by } else { theta[index] })
 }

@@ -42,11 +42,12 @@ pub struct Solution {
     pub lags: usize,
 }
 
-/// Longest correlation of the residuals that is allowed for, rows (2 s). Chosen; not measured.
+/// Longest correlation of the residuals that is allowed for, rows (2 s). Longer ones are drift, which no flight of a
+/// minute can measure; coverage: `cargo bench --bench coverage`.
 const MOST_LAGS: usize = 40;
-/// Width of the Bartlett window of the scores, rows (1 s). Chosen; the coverage of the intervals is measured by `cargo
-/// bench --bench coverage`.
-const SCORE_LAGS: usize = 20;
+/// Width of the Bartlett window of the scores, rows (1 s). It covers the kernel's 0.4 s and the controller's
+/// response; the coverage of the intervals is measured by `cargo bench --bench coverage`.
+pub const SCORE_LAGS: usize = 20;
 
 impl Problem {
     /// Number of parameters.

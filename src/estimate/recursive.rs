@@ -8,9 +8,11 @@ use nalgebra::{Matrix4, SMatrix, Vector4};
 pub const PAPER_SIGMA: f64 = 30.0;
 /// Time between the entries of a history, s.
 const HISTORY_STEP_S: f64 = 0.2;
-/// Length of the blocks over which scores are summed, s. Chosen; not measured.
+/// Length of the blocks over which scores are summed, s. A tenth of the correlation that is allowed for; only memory
+/// depends on it.
 pub(super) const SCORE_BLOCK_S: f64 = 0.1;
-/// Number of blocks over which scores are correlated (1 s). Chosen; not measured.
+/// Number of blocks over which scores are correlated (1 s). As in the weak form: the controller's response; coverage:
+/// `cargo bench --bench coverage`.
 pub(super) const LAGS: usize = 10;
 
 /// Estimates over time.

@@ -5,8 +5,8 @@ use super::nominal::Nominal;
 use super::theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, scale_of};
 use super::weak::WeakEstimate;
 
-/// Largest standard error of a moment of inertia that counts as determined, as a share of its nominal size. Chosen; not
-/// measured.
+/// Largest standard error of a moment of inertia that counts as determined, as a share of its nominal size. A user
+/// can state as much without a flight.
 const LARGEST_RELATIVE_STD: f64 = 0.3;
 
 /// One parameter.
@@ -48,11 +48,12 @@ pub(super) const CURVE_IS_A_GUESS: &str = "the shape of the thrust curve is a gu
 /// Before what a flight is good for, where it is too short for a search: what else acts is then part of mass and inertia.
 pub const RIGID_BODY_ALONE: &str = "too short to search for effects; for a rigid body alone ";
 
-/// Standard error, as a share of the parameter's size, from which it is poor. Chosen; not measured.
+/// Standard error, as a share of the parameter's size, from which it is poor. Only a word of the report depends on
+/// it.
 pub const POOR: f64 = 0.1;
 
-/// Least share of a torque's variance that the rigid body must explain for its inertia to be reported. Chosen; not
-/// measured.
+/// Least share of a torque's variance that the rigid body must explain for its inertia to be reported. With less,
+/// what else turned the vehicle would decide the inertia.
 pub const LEAST_EXPLAINED: f64 = 0.3;
 
 /// Largest factor, or its inverse, by which an inertia may change if the window is twice as wide. Of 100 simulated flights

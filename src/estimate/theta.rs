@@ -16,6 +16,11 @@ pub const NAMES: [&str; THETA] = ["mass", "ixx", "ixy", "ixz", "iyy", "iyz", "iz
 /// Units in `Theta`'s order.
 pub const UNITS: [&str; THETA] = ["kg", "kg m^2", "kg m^2", "kg m^2", "kg m^2", "kg m^2", "kg m^2"];
 
+/// Places of the moments of inertia in `Theta`.
+pub const MOMENTS: [usize; 3] = [1, 4, 6];
+/// Row and column of each entry of the inertia, in `Theta`'s order from its second on.
+pub const INERTIA_ENTRIES: [(usize, usize); THETA - 1] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+
 /// `Theta` of a rigid body.
 #[must_use]
 pub fn theta_of(body: &RigidBody) -> Theta {

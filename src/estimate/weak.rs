@@ -21,12 +21,12 @@ pub(super) const JITTER: usize = THETA + 8;
 const HEAVE: usize = THETA + 9;
 const CURVATURE: usize = THETA + 12;
 /// Standard deviations of the priors of the drag along body z per mass, 1/s, and of its force by a wind per mass,
-/// m/s^2. Rotors have 0.3 to 0.6 1/s (inflow), and identification flights are rarely flown in more than 5 m/s of wind.
-/// Chosen; not measured.
+/// m/s^2. Rotors have 0.3 to 0.6 1/s (inflow), and identification flights are rarely flown in more than 5 m/s of
+/// wind. Wider priors cost precision of the mass, narrower ones bias it in wind.
 const HEAVE_STD: [f64; 3] = [1.0, 2.5, 2.5];
 /// Standard deviation of the prior of the share of the jitter that the rotors average: 1/sqrt(12), uniform between 0
 /// and 1.
-pub(super) const JITTER_STD: f64 = 0.288_675; // 1/sqrt(12)
+pub const JITTER_STD: f64 = 0.288_675; // 1/sqrt(12)
 
 /// How the body follows the recorded command.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,8 +107,8 @@ pub fn expected_covariance(
     known.then(|| ThetaCovariance::from_fn(|i, j| of_theta[(i, j)]))
 }
 
-/// Newton passes on the latency column, which depends on the inertia that is estimated together with it. Chosen; not
-/// measured.
+/// Newton passes on the latency column, which depends on the inertia that is estimated together with it. The column
+/// depends weakly on the inertia; the number only limits the time.
 const PASSES: usize = 4;
 
 fn solve_with(flights: &[WeakRows], start: &Theta, curvature: bool) -> Option<WeakEstimate> {

@@ -4,13 +4,10 @@
 //! motion that something else causes, torque and motion are in another proportion at each frequency, often with the wrong sign.
 //! A window of twice the width weighs lower frequencies, so a comparison of both tells the two apart.
 
-use super::theta::Theta;
+use super::theta::{MOMENTS, Theta};
 use super::weak::{WeakEstimate, solve_weak};
 use crate::regression::{WeakMotion, WeakRows, weak_rows};
 use crate::signals::{Signals, WeakKernel};
-
-/// Places of Ixx, Iyy and Izz in [`Theta`].
-const MOMENTS: [usize; 3] = [1, 4, 6];
 
 /// Ixx, Iyy, Izz by a window of twice `half_width_s`, as shares of those of `narrow`, from the same signals; NaN where either
 /// has none, also if no stretch of flight is long enough for that window.

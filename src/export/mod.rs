@@ -18,7 +18,7 @@ mod rotorpy;
 mod sdf;
 mod source;
 
-pub use aircraft::{AircraftParameter, AircraftParameters, ParameterStyle, aircraft_parameters};
+pub use aircraft::{AircraftParameter, AircraftParameters, aircraft_parameters};
 pub use error::ExportError;
 pub use format::{Format, export};
 pub use places::{PLACES, places};

@@ -5,6 +5,7 @@
 //! bytes once more: these have to be the same. The faster way stays. The checksum is that of the file transfer in either
 //! case.
 
+use super::part::COMPARED;
 use std::time::Duration;
 
 use mavlink::dialects::ardupilotmega::MavMessage;
@@ -20,13 +21,11 @@ use super::remote::{Place, Protocol, RemoteLog};
 use super::{Dialogue, FetchError};
 use crate::wire::Frame;
 
-/// Log messages are tried where the file transfer has more than this to go. Trying takes a list and 2 s, whose bytes are
-/// kept. Chosen; not measured.
+/// Log messages are tried where the file transfer has more than this to go. Trying takes a list and 2 s, whose bytes
+/// are kept. With less the trial would cost more than it gains.
 const LONG_S: f64 = 10.0;
-/// The list of log messages is waited for as long. Chosen; not measured.
+/// The list of log messages is waited for as long. A list that comes later costs more time than the faster way saves.
 const LIST: Duration = Duration::from_secs(5);
-/// Bytes that come once more and are compared where the way changes. Chosen; not measured.
-const COMPARED: usize = 4096;
 
 #[derive(Debug)]
 enum Way {
@@ -48,7 +47,7 @@ pub(super) struct Faster {
     /// bytes a second of the file transfer, where it was found to be slow
     slow_bytes_s: Option<f64>,
     /// the way under way stays
-    is_settled: bool,
+    is_chosen: bool,
     /// of the way under way
     gauge: Gauge,
     /// bytes of the file, once known
@@ -73,7 +72,7 @@ impl Faster {
             path: path.to_owned(),
             way: Way::Ftp(Box::new(FtpReading::new(peer, path, begin))),
             slow_bytes_s: None,
-            is_settled: false,
+            is_chosen: false,
             gauge: Gauge::default(),
             size: None,
             at: begin,
@@ -108,7 +107,7 @@ impl Faster {
 
     /// Bytes a second of the way that stays.
     pub(super) fn bytes_s(&self) -> Option<f64> {
-        self.gauge.bytes_s().filter(|_| self.is_settled)
+        self.gauge.bytes_s().filter(|_| self.is_chosen)
     }
 
     /// Which way stays, once; nothing where the file transfer was fast enough.
@@ -157,13 +156,13 @@ impl Faster {
     /// Log messages are no way for this log, or the slower one.
     fn back_to_ftp(&mut self, now: Duration, log: OtherWay) {
         self.farewell = Some(self.farewell(now));
-        self.settle(Protocol::Ftp, log);
+        self.choose(Protocol::Ftp, log);
         self.gauge = Gauge::default();
         self.way = Way::Ftp(Box::new(FtpReading::new(self.peer, &self.path, self.at)));
     }
 
-    fn settle(&mut self, protocol: Protocol, log: OtherWay) {
-        self.is_settled = true;
+    fn choose(&mut self, protocol: Protocol, log: OtherWay) {
+        self.is_chosen = true;
         self.chosen = self.slow_bytes_s.map(|ftp_bytes_s| Chosen { protocol, ftp_bytes_s, log });
     }
 
@@ -196,12 +195,12 @@ impl Faster {
         if self.size.is_some() {
             self.gauge.note(now, self.at);
         }
-        let Some(bytes_s) = self.gauge.bytes_s().filter(|_| !self.is_settled) else { return };
+        let Some(bytes_s) = self.gauge.bytes_s().filter(|_| !self.is_chosen) else { return };
         match (self.slow_bytes_s, &self.way) {
             (None, _) if seconds(left, bytes_s) > LONG_S => self.try_log(now, bytes_s),
-            (None, _) => self.is_settled = true,
+            (None, _) => self.is_chosen = true,
             (Some(ftp_bytes_s), Way::Log(..)) if bytes_s > ftp_bytes_s => {
-                self.settle(Protocol::Log, OtherWay::Brings(bytes_s));
+                self.choose(Protocol::Log, OtherWay::Brings(bytes_s));
             }
             (Some(_), Way::Log(..)) => self.back_to_ftp(now, OtherWay::Brings(bytes_s)),
             (Some(_), _) => {}
@@ -211,8 +210,8 @@ impl Faster {
     /// All bytes are there by log messages.
     fn log_is_whole(&mut self, now: Duration) {
         self.gauge.end(now, self.at);
-        if let Some(bytes_s) = self.gauge.bytes_s().filter(|_| !self.is_settled) {
-            self.settle(Protocol::Log, OtherWay::Brings(bytes_s));
+        if let Some(bytes_s) = self.gauge.bytes_s().filter(|_| !self.is_chosen) {
+            self.choose(Protocol::Log, OtherWay::Brings(bytes_s));
         }
         self.way = Way::Sum(Box::new(FtpReading::sum_of(self.peer, &self.path, self.at)));
     }

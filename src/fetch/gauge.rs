@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// The speed is measured for this long. Chosen; not measured.
+/// The speed is measured for this long. Shorter would measure the link's buffers, longer delays the choice.
 const MEASURED: Duration = Duration::from_secs(2);
 
 /// How fast bytes come, measured once.

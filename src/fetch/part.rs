@@ -14,7 +14,7 @@ use crate::text;
 use crate::wire::file_transfer::FileSum;
 
 /// Bytes at the end of a part that come once more and are compared.
-const COMPARED: u64 = 4096;
+pub(super) const COMPARED: usize = 4096;
 /// Numbers that are tried for a name that is taken.
 const NUMBERS: u32 = 1000;
 
@@ -154,7 +154,7 @@ impl Part {
         let document = toml::to_string(&identity).unwrap_or_default();
         write_whole(&beside, document.as_bytes()).map_err(failed(&beside))?;
         let had = file.metadata().map_err(failed(&path))?.len();
-        let length = if had > log.size { 0 } else { had.saturating_sub(COMPARED) };
+        let length = if had > log.size { 0 } else { had.saturating_sub(COMPARED as u64) };
         let mut compared = Vec::new();
         if had <= log.size {
             file.seek(SeekFrom::Start(length)).map_err(failed(&path))?;

@@ -9,13 +9,12 @@ use super::pace::Pace;
 use super::peer::Peer;
 use super::remote::Protocol;
 use super::{Dialogue, FetchError};
-use crate::wire::{Frame, Vehicle};
+use crate::wire::{Frame, UID2_BYTES, Vehicle};
 
 /// AUTOPILOT_VERSION, and where its numbers of the processor begin.
 const AUTOPILOT_VERSION: u32 = 148;
 const UID_AT: usize = 8;
 const UID2_AT: usize = 60;
-const UID2_BYTES: usize = 18;
 /// Tries; a vehicle that does not answer is asked all the same for its logs.
 const TRIES: u32 = 8;
 

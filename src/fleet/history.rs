@@ -10,7 +10,8 @@ use crate::study::{CompareStudy, ComparedFlight, InputFile, Track};
 use crate::trim::{Leg, balance};
 use crate::vehicle::Vehicle;
 
-/// Flights of a vehicle that its history has at most, the latest: time grows with the square of their number. Chosen; not measured.
+/// Flights of a vehicle that its history has at most, the latest: time grows with the square of their number. It
+/// bounds the time.
 pub const MOST_FLIGHTS: usize = 200;
 
 /// A vehicle along its flights.

@@ -1,17 +1,12 @@
 //! Commands that wait for their answer: they are repeated until an answer arrives or their time is over.
 
+use crate::wire::command::{ACCEPTED, FAILED, IN_PROGRESS, TEMPORARILY_REJECTED};
 use std::time::Duration;
 
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::target::{Order, Target};
 use crate::wire::Payload;
-
-/// MAV_RESULT as a COMMAND_ACK carries it.
-const ACCEPTED: u8 = 0;
-const TEMPORARILY_REJECTED: u8 = 1;
-const FAILED: u8 = 4;
-const IN_PROGRESS: u8 = 5;
 
 /// Repetition of a command and meaning of its answers.
 #[derive(Debug, Clone, Copy, PartialEq)]

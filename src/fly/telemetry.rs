@@ -1,5 +1,7 @@
 //! State of the vehicle, from its messages.
 
+use crate::recording::landed::ON_GROUND;
+use crate::wire::heartbeat::{ARMED, BASE_MODE_AT};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -20,16 +22,15 @@ use crate::wire::{self, Decoder, Frame, Payload, Record};
 
 const POSITION_TARGET: u32 = 85;
 const ODOMETRY: u32 = 331;
-const LANDED_STATE_ON_GROUND: f64 = 1.0;
-const ARMED: u8 = 128;
-/// Longest time since boot, beyond the silence before, of an autopilot that has just restarted, s. Chosen; not
-/// measured.
+/// Longest time since boot, beyond the silence before, of an autopilot that has just restarted, s. A larger one would
+/// take a working autopilot for a restarted one, a smaller one would miss a slow boot.
 const STARTED_S: f64 = 20.0;
 /// Number of kept texts, which give reasons of a refusal.
 const TEXTS: usize = 64;
-/// A step of the position beyond what velocity explains from which the estimate was reset, m. Chosen; not measured.
+/// A step of the position beyond what velocity explains from which the estimate was reset, m. Twice the step with
+/// which a flight goes on; smaller ones are told by the reset counters.
 const JUMP_M: f64 = 0.7;
-/// Largest time between two samples that show a step, s. Chosen; not measured.
+/// Largest time between two samples that show a step, s. Over more, velocity and its error explain any step.
 const JUMP_GAP_S: f64 = 0.5;
 /// Positions further apart in time are not one stream.
 const POSITION_GAP: Duration = Duration::from_secs(1);
@@ -141,7 +142,7 @@ impl Telemetry {
         match id {
             0 => {
                 self.heartbeat = now;
-                let (custom_mode, armed) = (payload.u32(0), payload.u8(6) & ARMED != 0);
+                let (custom_mode, armed) = (payload.u32(0), payload.u8(BASE_MODE_AT) & ARMED != 0);
                 let state = FlightState { custom_mode, armed, system_status: payload.u8(7) };
                 if self.note_state(now, state, place, news) {
                     let on_ground = self.ground.is_landed_at(now);
@@ -219,7 +220,7 @@ impl Telemetry {
                 }
                 (Quantity::AngularRate, &[x, y, z]) => rates = Some(Vector3::new(x, y, z)),
                 (Quantity::LandedState, &[state]) => {
-                    ground.report(now, (state - LANDED_STATE_ON_GROUND).abs() < 0.5);
+                    ground.report(now, (state - ON_GROUND).abs() < 0.5);
                 }
                 (quantity @ (Quantity::ActuatorCommand | Quantity::RotorSpeed), values) => {
                     outputs.push(Outputs { quantity, source: stream.source, values: values.to_vec() });

@@ -1,27 +1,27 @@
 //! When a vehicle that nothing is known of was in the air.
 
 use crate::autopilot::Autopilot;
+use crate::recording::landed::MOVES;
 use crate::recording::{Quantity, Recording, Stream};
 use crate::signals::{LEAST_FREE_S, ReportedState, best};
 use crate::stats::median;
 
-/// Command from which a motor does more than idle: autopilots let motors idle at up to this value. Chosen; not
-/// measured.
+/// Command from which a motor does more than idle: autopilots let motors idle at up to this value. ArduPilot's
+/// MOT_SPIN_ARM is 0.1 by default.
 const LEAST_COMMAND: f64 = 0.12;
-/// So many samples of a channel behind one another, other than its median, are no damage: single ones are.
-/// Chosen; not measured.
+/// So many samples of a channel behind one another, other than its median, are no damage: single ones are. A single
+/// damaged sample is no flight.
 const LEAST_CHANGED: usize = 3;
 /// What an output may be as a fraction of full scale, reversed ones and pulses of 0 included: the rest is damage.
 const OUTPUTS: std::ops::RangeInclusive<f64> = -1.0..=1.5;
-/// Share of the largest actuation so far that carries a vehicle. Chosen; not measured.
+/// Share of the largest actuation so far that carries a vehicle. Idling motors are below it.
 const FLYING_SHARE: f64 = 0.2;
-/// Time over which actuation is smoothed, s, so that a single sample at a bound is not a landing. Chosen; not measured.
+/// Time over which actuation is smoothed, s, so that a single sample at a bound is not a landing. Longer would hide a
+/// hop.
 const SMOOTHING_S: f64 = 0.3;
-/// Shortest time in the air that counts, s. Chosen; not measured.
+/// Shortest time in the air that counts, s. Less is a test of motors.
 const SHORTEST_S: f64 = 2.0;
-/// A vehicle that turns or moves faster than this does not stand, rad/s and m/s. Chosen; not measured.
-const MOVES: f64 = 0.3;
-/// So many samples of it are no knock. Chosen; not measured.
+/// So many samples of it are no knock. A knock lasts for fewer.
 const LEAST_MOVING: usize = 5;
 
 /// Motor outputs as fractions of full scale: the channels that move, pulse widths from 1000 to 2000 us.

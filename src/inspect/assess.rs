@@ -18,7 +18,8 @@ use crate::vehicle::Vehicle;
 const KEPT_SEGMENTS: usize = 1000;
 /// Flights behind one another in one log that are compared.
 const KEPT_FLIGHTS: usize = 64;
-/// Largest pause between two spans of one flight that the border of a window divides, s. Chosen; not measured.
+/// Largest pause between two spans of one flight that the border of a window divides, s. Spans of two flights are
+/// seconds apart.
 const SAME_FLIGHT_S: f64 = 0.5;
 
 /// Collects what windows of flight say.

@@ -5,14 +5,14 @@ use crate::log::Place;
 use crate::recording::Event;
 use crate::units::seconds_from_us;
 
-/// Time over which arrivals are evaluated together, s. Chosen; not measured.
+/// Time over which arrivals are evaluated together, s. It averages jitter and is short against a drift.
 const BLOCK_S: f64 = 1.0;
-/// Change of the lateness from which the host's clock was set, s: no link delays a message for so long. Chosen; not
-/// measured.
+/// Change of the lateness from which the host's clock was set, s: no link delays a message for so long.
 const HOST_STEP_S: f64 = 10.0;
-/// Restarts that are kept; a log with more is broken. Chosen; not measured.
+/// Restarts that are kept; a log with more is broken. Only memory depends on it.
 const KEPT_RESETS: usize = 1000;
-/// Largest standard error of a drift that is reported, parts per million. Chosen; not measured.
+/// Largest standard error of a drift that is reported, parts per million. Quartz clocks are off by 50: a worse
+/// estimate says nothing.
 const VAGUEST_PPM: f64 = 1000.0;
 
 /// Collects what [`ClockSummary`] says.

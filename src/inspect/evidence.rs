@@ -7,7 +7,7 @@ use crate::recording::{Quantity, StreamKey, StreamStats};
 use crate::signals::SignalsError;
 use crate::vehicle::Vehicle;
 
-/// Least usable time of flight, s. Chosen; not measured.
+/// Least usable time of flight, s. Five kernels of the weak form: with less there are no rows.
 const LEAST_USABLE_S: f64 = 2.0;
 
 /// What the judgement rests on.
@@ -121,12 +121,12 @@ impl Evidence<'_> {
         }
     }
 
-    /// Nothing was flown, or no stream shows it: no vehicle file mends that.
+    /// The log holds no flight, or no stream of a flight: with a vehicle file there would be no more to identify.
     pub(super) fn is_unflown(&self) -> bool {
         let flown = self.assessment.flight.airborne_s >= LEAST_USABLE_S;
         let quantities = [Quantity::RotorSpeed, Quantity::ActuatorCommand, Quantity::Wrench];
         let has_actuators = self.streams.iter().any(|(key, ..)| quantities.contains(&key.quantity));
-        // of outputs that are there and do not move, the conditioning has more to say
+        // outputs that are recorded and do not change: the conditioning gives the reason
         let is_still = has_actuators && self.actuator_hz().is_none();
         let unflown = self.grounded().is_some() || !has_actuators || !(flown || is_still);
         self.steps_back.is_none() && (self.streams.is_empty() || (self.holds_streams() && unflown))
@@ -135,10 +135,10 @@ impl Evidence<'_> {
     /// Why nothing at all can be identified.
     pub(super) fn nothing(&self) -> Option<String> {
         if let Some(kind) = self.kind.filter(|kind| *kind != VehicleKind::Multirotor) {
-            return Some(format!("it is of a {}, and a multirotor is needed", kind.name()));
+            return Some(format!("it is the log of a {}, and only multirotors are identified", kind.name()));
         }
         if !self.timed && !self.undefined {
-            return Some("its messages carry no time of the vehicle's".into());
+            return Some("its messages have no time stamps of the vehicle".into());
         }
         if self.undefined {
             return Some("its messages are not defined in it: its beginning is missing".into());
@@ -147,7 +147,7 @@ impl Evidence<'_> {
             return Some("it ends before its first sample".into());
         }
         if self.streams.is_empty() {
-            return Some("it holds no stream that is known here".into());
+            return Some("it holds no stream that can be used".into());
         }
         if let Some(count) = self.steps_back {
             return Some(format!("its messages are out of order, their stamps run back {count} times"));

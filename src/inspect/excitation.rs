@@ -2,23 +2,22 @@
 
 use super::inspection::Excitation;
 use super::motion::Motion;
-use crate::signals::{Grid, WeakKernel, stride};
+use crate::signals::{Grid, WEAK_HALF_WIDTH_S, WeakKernel, stride};
 use crate::stats::hann_power;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use nalgebra::Vector3;
 
-/// Half width of the kernel, s: that of the identification.
-const HALF_WIDTH_S: f64 = 0.2;
-/// Width of the bins of spectra, Hz. Chosen; not measured.
+/// Width of the bins of spectra, Hz. Only what is shown depends on it.
 const BIN_HZ: f64 = 0.05;
 const BINS: usize = 100;
-/// Share of the power below the band's lower and upper end. Chosen; not measured.
+/// Share of the power below the band's lower and upper end. Only what is shown depends on it.
 const BAND: (f64, f64) = (0.05, 0.95);
-/// Step of the series for spectra and periods, s. Chosen; not measured.
+/// Step of the series for spectra and periods, s. Only what is shown depends on it: motions of up to 5 Hz.
 const SERIES_STEP_S: f64 = 0.1;
-/// Least correlation with the motion one period later for a trajectory that repeats. Chosen; not measured.
+/// Least correlation with the motion one period later for a trajectory that repeats. Only what is shown depends on
+/// it.
 const LEAST_RESEMBLANCE: f64 = 0.8;
-/// Shortest period, s: shorter ones are vibration. Chosen; not measured.
+/// Shortest period, s: shorter ones are vibration. Only what is shown depends on it.
 const SHORTEST_PERIOD_S: f64 = 1.5;
 
 /// Sums of what [`Excitation`] says.
@@ -75,7 +74,7 @@ impl ExcitationTally {
     /// Adds the instants of a window that count.
     pub(super) fn add(&mut self, motion: &Motion) {
         let step_s = motion.grid.step_s;
-        let kernel = WeakKernel::new(HALF_WIDTH_S, step_s);
+        let kernel = WeakKernel::new(WEAK_HALF_WIDTH_S, step_s);
         let centers = kernel.centers(&motion.usable, stride(step_s));
         if centers.is_empty() {
             return;

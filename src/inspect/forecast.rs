@@ -54,7 +54,7 @@ pub(super) fn forecast(
     let mut known = known.ok_or(None)?;
     if vehicle.is_none() {
         // what is relative rests on the shape of the curve alone
-        known.guesses.retain(|guess| guess.of == Guessed::ThrustCurve);
+        known.guesses.retain(|guess| guess.of == Guessed::Expo);
     }
     let period_s = best(window, Quantity::AngularRate, |stream| stream.width == 3)
         .map_or(LEAST_STEP_S, |(_, stream)| median_period_s(stream));

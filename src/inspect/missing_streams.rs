@@ -1,6 +1,7 @@
 //! Streams that a quantity needs and the log does not hold, and how to record them.
 
 use super::evidence::Evidence;
+use crate::diagnose::signatures::ToldBy;
 use crate::recording::Quantity;
 use crate::signals::{LEAST_FORCE_HZ, LEAST_TORQUE_HZ};
 
@@ -14,13 +15,13 @@ pub(super) struct Lack {
 
 /// What a quantity is told from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Need {
+pub(super) enum Need {
     /// of the motors, at this rate or more, Hz
     Commands(f64),
     /// of the body, at this rate or more, Hz
-    Turning(f64),
+    BodyRates(f64),
     /// the same, where they are recorded
-    TurningIfThere(f64),
+    BodyRatesIfThere(f64),
     /// along the thrust
     Force,
     /// with attitude
@@ -30,51 +31,57 @@ enum Need {
 }
 
 const COMMANDS: Need = Need::Commands(LEAST_FORCE_HZ);
-const TURNING: Need = Need::Turning(LEAST_FORCE_HZ);
+const BODY_RATES: Need = Need::BodyRates(LEAST_FORCE_HZ);
 
 /// What to do about a stream that may be gone with damage.
 pub(super) const SOUND_COPY: &str = "give a sound copy of the log";
 
 /// Rate to ask for, Hz.
-const WANTED_HZ: u32 = 100;
+pub(super) const WANTED_HZ: u32 = 100;
 
-fn needs(quantity: &str) -> &'static [Need] {
-    match quantity {
-        "mass" => &[COMMANDS, Need::Force, Need::TurningIfThere(LEAST_FORCE_HZ)],
-        "thrust_curve" => &[COMMANDS, TURNING, Need::Force],
-        // they act always: averaged torques tell them
-        "centre_of_mass" | "rotor_efficiency" => &[COMMANDS, TURNING],
-        "drag" | "wind" => &[COMMANDS, TURNING, Need::Force, Need::Velocity],
-        "voltage_sag" => &[COMMANDS, TURNING, Need::Force, Need::Voltage],
-        // they act through torques as the vehicle turns
-        _ => &[Need::Commands(LEAST_TORQUE_HZ), Need::Turning(LEAST_TORQUE_HZ)],
-    }
+/// The first of the streams that a quantity needs and the log lacks.
+pub(super) fn lack(evidence: &Evidence<'_>, needs: &[Need]) -> Option<Lack> {
+    needs.iter().find_map(|need| need.lack(evidence))
 }
 
-/// The first stream that a quantity needs and the log lacks.
-pub(super) fn lack(evidence: &Evidence<'_>, quantity: &str) -> Option<Lack> {
-    needs(quantity).iter().find_map(|need| need.lack(evidence))
-}
-
-/// What to have recorded for a quantity where what is recorded serves not.
-pub(super) fn remedy(evidence: &Evidence<'_>, quantity: &str) -> Option<String> {
-    needs(quantity).last().map(|need| need.remedy(evidence))
+/// What to have recorded for a quantity where what is recorded does not serve.
+pub(super) fn remedy(evidence: &Evidence<'_>, needs: &[Need]) -> Option<String> {
+    needs.last().map(|need| need.remedy(evidence))
 }
 
 impl Need {
+    /// Streams that tell a parameter of the rigid body, by its place in `Theta`.
+    pub(super) fn of_body(index: usize) -> &'static [Self] {
+        match index {
+            0 => &[COMMANDS, Self::Force, Self::BodyRatesIfThere(LEAST_FORCE_HZ)],
+            _ => Self::of(ToldBy::Torques),
+        }
+    }
+
+    /// Streams that this part of a recording is made of.
+    pub(super) fn of(part: ToldBy) -> &'static [Self] {
+        match part {
+            ToldBy::Forces => &[COMMANDS, BODY_RATES, Self::Force],
+            ToldBy::MeanTorques => &[COMMANDS, BODY_RATES],
+            ToldBy::ForcesOverVelocity => &[COMMANDS, BODY_RATES, Self::Force, Self::Velocity],
+            ToldBy::ForcesOverVoltage => &[COMMANDS, BODY_RATES, Self::Force, Self::Voltage],
+            ToldBy::Torques => &[Self::Commands(LEAST_TORQUE_HZ), Self::BodyRates(LEAST_TORQUE_HZ)],
+        }
+    }
+
     fn lack(self, evidence: &Evidence<'_>) -> Option<Lack> {
         let has = |quantity| evidence.rate_hz(quantity).is_some();
         let reason = match self {
             Self::Commands(least_hz) => slow("motor commands", evidence.actuator_hz(), least_hz)
                 .or_else(|| evidence.actuator_hz().is_none().then(|| "no actuator outputs".into())),
-            Self::Turning(least_hz) if has(Quantity::AngularRate) => {
+            Self::BodyRates(least_hz) if has(Quantity::AngularRate) => {
                 slow("body rates", evidence.rate_hz(Quantity::AngularRate), least_hz)
             }
-            Self::Turning(_) => Some(match evidence.still(Quantity::AngularRate) {
+            Self::BodyRates(_) => Some(match evidence.still(Quantity::AngularRate) {
                 Some(hold) => format!("no body rates: they {hold}"),
                 None => "no body rates".into(),
             }),
-            Self::TurningIfThere(least_hz) => {
+            Self::BodyRatesIfThere(least_hz) => {
                 slow("body rates", evidence.rate_hz(Quantity::AngularRate), least_hz)
             }
             Self::Force => (!evidence.has_vertical_motion())
@@ -97,7 +104,7 @@ impl Need {
         }
         let request = match self {
             Self::Commands(_) => "SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS",
-            Self::Turning(_) | Self::TurningIfThere(_) => {
+            Self::BodyRates(_) | Self::BodyRatesIfThere(_) => {
                 "ATTITUDE_QUATERNION, ATTITUDE, HIGHRES_IMU or RAW_IMU"
             }
             Self::Force => "an IMU message, or attitude and LOCAL_POSITION_NED",

@@ -2,33 +2,28 @@
 
 use super::evidence::Evidence;
 use super::inspection::Outlook;
-use super::missing_streams::lack;
+use super::missing_streams::{Need, lack};
 use crate::estimate::{
-    Estimated, Finding, NAMES, Nominal, THETA, UNITS, finding, rescaled, scaling_mass, size_of,
+    Estimated, Finding, INERTIA_ENTRIES, NAMES, Nominal, THETA, UNITS, finding, rescaled, scaling_mass,
+    size_of,
 };
 use crate::vehicle::{Anchor, Vehicle};
 
-/// Least rms of the angular acceleration for an identification of inertia, rad/s^2. Chosen; not measured.
+/// Least rms of the angular acceleration for an identification of inertia, rad/s^2. A hover in calm air has as much;
+/// the expected error then decides.
 pub(super) const LEAST_ANGULAR_ACCELERATION: f64 = 0.1;
-/// Body axis or axes of each entry of the inertia, in `Theta`'s order from its second on.
-const AXES: [(usize, usize); THETA - 1] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 /// Names of the body axes.
 pub(super) const AXIS_NAMES: [&str; 3] = ["roll", "pitch", "yaw"];
-
-/// The quantity that a parameter is part of.
-fn quantity_of(index: usize) -> &'static str {
-    if index == 0 { "mass" } else { "inertia" }
-}
 
 /// Why a parameter cannot be identified, as far as streams and motion tell.
 fn obstacle(evidence: &Evidence<'_>, index: usize) -> Option<String> {
     if let Some(nothing) = evidence.nothing() {
         return Some(nothing);
     }
-    if let Some(lack) = lack(evidence, quantity_of(index)) {
+    if let Some(lack) = lack(evidence, Need::of_body(index)) {
         return Some(lack.reason);
     }
-    let (first, second) = AXES[index.checked_sub(1)?];
+    let (first, second) = INERTIA_ENTRIES[index.checked_sub(1)?];
     [first, second].into_iter().find_map(|axis| {
         let rms = evidence.angular_acceleration(axis).filter(|rms| *rms < LEAST_ANGULAR_ACCELERATION)?;
         Some(format!("angular acceleration in {} only {rms:.2} rad/s^2 rms", AXIS_NAMES[axis]))
@@ -44,7 +39,7 @@ fn of(evidence: &Evidence<'_>, index: usize) -> Outlook {
     if let (Some(vehicle), Some(expected)) = (evidence.vehicle, &evidence.assessment.expected) {
         let found = judged(vehicle, expected, index);
         // a stream that is missing is told as without a vehicle
-        let missing = || Some(lack(evidence, quantity_of(index))?.reason);
+        let missing = || Some(lack(evidence, Need::of_body(index))?.reason);
         return match found.status {
             "not_determined" => Outlook { reason: missing().or(found.reason), ..found },
             _ => found,

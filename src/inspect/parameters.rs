@@ -55,7 +55,7 @@ impl Parameters {
     }
 
     /// Of what changed, the values that stood longest in the air.
-    pub(super) fn settle(&mut self, autopilot: Autopilot, airborne_s: &[(f64, f64)]) {
+    pub(super) fn keep_airborne(&mut self, autopilot: Autopilot, airborne_s: &[(f64, f64)]) {
         self.values.extend(settled_parameters(autopilot, &self.changes, airborne_s));
     }
 

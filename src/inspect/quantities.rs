@@ -3,34 +3,56 @@
 use super::evidence::Evidence;
 use super::forecast::Forecast;
 use super::inspection::Outlook;
-use super::missing_streams::{Lack, lack, remedy};
+use super::missing_streams::{Lack, Need, lack, remedy};
 use super::outlook::judged;
 use super::quantity::{ExpectedParameter, QuantitySummary};
 use crate::autopilot::VehicleKind;
+use crate::diagnose::signatures::{ToldBy, WANTED, Wanted};
 use crate::diagnose::{Expected, ExpectedError, LEAST_FLIGHT_S, Shown};
 
 /// A quantity's standard error as a share of its usual size up to which it is told: an effect of usual size is then four
 /// standard errors from nothing, which is what `explain` asks for.
 const TOLD: f64 = 0.25;
 
-/// One of them: its name, its parameters among those of the rigid body, and what to fly for more of it.
+/// One of them.
 struct Asked {
+    /// as in documents
     name: &'static str,
-    body: &'static [usize],
+    of: Of,
+    /// what to fly for more of it
     fly: &'static str,
 }
 
-const ASKED: &[Asked] = &[
-    Asked { name: "mass", body: &[0], fly: "a trajectory of `mavid plan`" },
-    Asked { name: "inertia", body: &[1, 4, 6], fly: "a trajectory of `mavid plan`: it turns about all axes" },
-    Asked { name: "thrust_curve", body: &[], fly: "climbs and descents, hard ones too" },
-    Asked { name: "motor_lag", body: &[], fly: "quick turns about all axes" },
-    Asked { name: "drag", body: &[], fly: "legs there and back at 5 m/s and more" },
-    Asked { name: "wind", body: &[], fly: "legs in several directions at 3 m/s and more" },
-    Asked { name: "centre_of_mass", body: &[], fly: "30 s and more with climbs, in calm air" },
-    Asked { name: "rotor_efficiency", body: &[], fly: "30 s and more with climbs, in calm air" },
-    Asked { name: "voltage_sag", body: &[], fly: "until the battery has lost a tenth of its voltage" },
+/// Whose parameter a quantity is.
+#[derive(Clone, Copy)]
+enum Of {
+    /// of the rigid body, at these places among its parameters
+    Body(&'static [usize]),
+    /// of an effect
+    Effect(ToldBy),
+}
+
+const OF_THE_BODY: [Asked; 2] = [
+    Asked { name: "mass", of: Of::Body(&[0]), fly: "a trajectory of `mavid plan`" },
+    Asked {
+        name: "inertia",
+        of: Of::Body(&[1, 4, 6]),
+        fly: "a trajectory of `mavid plan`: it turns about all axes",
+    },
 ];
+
+impl Asked {
+    fn of_effect(wanted: &Wanted) -> Self {
+        Self { name: wanted.name, of: Of::Effect(wanted.told_by), fly: wanted.fly }
+    }
+
+    fn needs(&self) -> &'static [Need] {
+        match self.of {
+            Of::Body(places) => Need::of_body(places[0]),
+            Of::Effect(told_by) => Need::of(told_by),
+        }
+    }
+}
 
 /// What is known of a log's future results.
 pub(super) struct Outcome<'a> {
@@ -45,13 +67,14 @@ pub(super) struct Outcome<'a> {
 
 /// One entry a quantity, in the order of the page.
 pub(super) fn quantities(outcome: &Outcome<'_>) -> Vec<QuantitySummary> {
-    ASKED.iter().map(|asked| outcome.of(asked)).collect()
+    let effects = WANTED.iter().map(Asked::of_effect);
+    OF_THE_BODY.into_iter().chain(effects).map(|asked| outcome.of(&asked)).collect()
 }
 
 impl Outcome<'_> {
     fn of(&self, asked: &Asked) -> QuantitySummary {
         let evidence = self.evidence;
-        let lack = lack(evidence, asked.name);
+        let lack = lack(evidence, asked.needs());
         let none = QuantitySummary {
             name: asked.name,
             status: "no",
@@ -82,18 +105,21 @@ impl Outcome<'_> {
             let fly = is_mended.then_some(asked.fly);
             return QuantitySummary { reason: Some(reason), fly, ..none };
         }
-        if asked.body.is_empty() { self.effect(asked, none) } else { self.body(asked, none) }
+        match asked.of {
+            Of::Body(places) => self.body((asked, places), none),
+            Of::Effect(_) => self.effect(asked, none),
+        }
     }
 
     /// Mass and inertia, by what identification would say.
-    fn body(&self, asked: &Asked, none: QuantitySummary) -> QuantitySummary {
+    fn body(&self, (asked, places): (&Asked, &[usize]), none: QuantitySummary) -> QuantitySummary {
         let by_window = || {
             let (vehicle, body) = self.evidence.assumed?;
             Some((0..self.body.len()).map(|index| judged(vehicle, body, index)).collect::<Vec<_>>())
         };
         let by_window = by_window();
         let judged = by_window.as_deref().unwrap_or(self.body);
-        let parts = || asked.body.iter().filter_map(|index| judged.get(*index));
+        let parts = || places.iter().filter_map(|index| judged.get(*index));
         let known = parts().filter_map(|part| {
             Some(ExpectedParameter {
                 parameter: part.name,
@@ -108,14 +134,14 @@ impl Outcome<'_> {
         let status = match (expected.len(), missing.len()) {
             (0, 0) => "possible",
             (_, 0) => "yes",
-            (some, not) if some > 0 || not < asked.body.len() => "partly",
+            (some, not) if some > 0 || not < places.len() => "partly",
             _ => "no",
         };
         // what to fly is told beside it
         let why = |part: &&Outlook| Some(part.reason.as_ref()?.split(';').next()?.to_owned());
         let told = |part: &&Outlook| Some(format!("{}: {}", part.name, why(part)?));
         let first = missing.first().and_then(why);
-        let is_of_all = missing.len() == asked.body.len() && missing.iter().all(|part| why(part) == first);
+        let is_of_all = missing.len() == places.len() && missing.iter().all(|part| why(part) == first);
         let reasons: Vec<String> =
             if is_of_all { first.into_iter().collect() } else { missing.iter().filter_map(told).collect() };
         let at_most = self.at_most && by_window.is_some() && !expected.is_empty();
@@ -173,7 +199,7 @@ impl Outcome<'_> {
                 // what to record is told beside it
                 let why = why.split(';').next().unwrap_or_default();
                 let reason = format!("no {what} that can be used: {why}");
-                QuantitySummary { reason: Some(reason), set: remedy(self.evidence, asked.name), ..none }
+                QuantitySummary { reason: Some(reason), set: remedy(self.evidence, asked.needs()), ..none }
             }
             Some(Expected::Measured) => {
                 let reason = "rotor speeds are measured, and contain it".to_owned();

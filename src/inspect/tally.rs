@@ -22,7 +22,8 @@ use crate::signals::{OffMixer, SignalsError};
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
 
-/// A window holds all of a flight where no more than this times its seconds can be used. Chosen; not measured.
+/// A window holds all of a flight where no more than this times its seconds can be used. Only the words "at most"
+/// depend on it.
 const MOSTLY: f64 = 1.05;
 /// MAV_SEVERITY_WARNING; smaller is worse.
 const WARNING: u8 = 4;
@@ -293,10 +294,10 @@ impl Found {
     }
 
     /// Of which kind of vehicle it is, and the parameters as they stood in the air. Returns the spans of flight, s.
-    fn settle(&mut self, tally: &mut Tally, assessment: &mut Assessment) -> Vec<(f64, f64)> {
+    fn conclude(&mut self, tally: &mut Tally, assessment: &mut Assessment) -> Vec<(f64, f64)> {
         let flown_s: Vec<(f64, f64)> =
             assessment.flight.segments.iter().map(|segment| (segment.start_s, segment.end_s)).collect();
-        tally.parameters.settle(self.autopilot, &flown_s);
+        tally.parameters.keep_airborne(self.autopilot, &flown_s);
         self.kind =
             self.kind.map(|kind| kind.by_parameters(|name| tally.parameters.values().get(name).copied()));
         self.vehicle.kind = self.kind.map(VehicleKind::name);
@@ -323,7 +324,7 @@ impl Found {
         mut assessment: Assessment,
         vehicle: Option<&Vehicle>,
     ) -> Inspection {
-        let flown_s = self.settle(&mut tally, &mut assessment);
+        let flown_s = self.conclude(&mut tally, &mut assessment);
         let clock = std::mem::take(&mut tally.clock).summary();
         let modes = self.modes_of();
         let foreseen = self.foreseen(&tally, &mut assessment, vehicle);

@@ -3,12 +3,11 @@
 use super::inspection::{ModeChange, Timeline};
 use crate::autopilot::Autopilot;
 use crate::recording::Quantity;
+use crate::recording::landed::ON_GROUND;
 use crate::units::whole_unsigned;
 
 /// Entries kept of each list; a log with more is counted.
 const KEPT: usize = 1000;
-/// MAV_LANDED_STATE_ON_GROUND.
-const ON_GROUND: f64 = 1.0;
 
 /// Collects spans.
 #[derive(Debug, Clone, Default)]

@@ -2,7 +2,7 @@
 
 use super::evidence::Evidence;
 use super::inspection::{Outlook, Unflown, VehicleSummary};
-use super::missing_streams::{SOUND_COPY, lack};
+use super::missing_streams::{Need, SOUND_COPY, WANTED_HZ, lack};
 use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION};
 use crate::autopilot::VehicleKind;
 use crate::diagnose::LEAST_FLIGHT_S;
@@ -12,12 +12,10 @@ use crate::recording::Quantity;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, SignalsError};
 use crate::vehicle::Anchor;
 
-/// Time of flight that a good identification needs, s. Chosen; not measured.
+/// Time of flight that a good identification needs, s. Only advice depends on it.
 const AMPLE_S: f64 = 20.0;
-/// Lost share of the flight from which it is mentioned. Chosen; not measured.
+/// Lost share of the flight from which it is mentioned. Only a remark depends on it.
 const NOTABLE_SHARE: f64 = 0.05;
-/// Rate to ask for, Hz.
-const WANTED_HZ: u32 = 100;
 
 /// The verdict and the advice.
 pub(super) fn verdict(
@@ -101,7 +99,7 @@ fn damaged(evidence: &Evidence<'_>) -> String {
 
 /// There is a flight, and no parameter can be told from it.
 fn no_parameter(evidence: &Evidence<'_>, time: &str) -> String {
-    match lack(evidence, "mass").filter(|_| evidence.vehicle.is_none()) {
+    match lack(evidence, Need::of_body(0)).filter(|_| evidence.vehicle.is_none()) {
         Some(lack) if evidence.damage.is_some() => {
             format!("Nothing can be identified from this log: {}. {}", lack.reason, damaged(evidence))
         }

@@ -4,7 +4,7 @@ use crate::autopilot::Autopilot;
 use crate::log::Loss;
 use crate::recording::{Event, Quantity, Recording, RecordingBuilder, Stream, StreamKey};
 
-/// s of the vehicle's clock in one window. Chosen; not measured.
+/// s of the vehicle's clock in one window. It bounds the memory; a longer one would hold more of a flight at once.
 pub(super) const WINDOW_S: f64 = 120.0;
 /// Stamps and values held in one window at most: 12 MB.
 pub(super) const WINDOW_NUMBERS: usize = 1_500_000;

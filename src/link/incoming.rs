@@ -1,5 +1,6 @@
 //! From bytes to frames and events for the reader.
 
+use crate::wire::heartbeat::HEARTBEAT;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -16,7 +17,6 @@ use crate::wire::{Frame, Splitter};
 
 /// Frames that may wait for the reader; further ones are counted, not delivered.
 pub(super) const WAITING: usize = 1 << 14;
-const HEARTBEAT: u32 = 0;
 
 /// From bytes to frames and events for the reader.
 #[derive(Debug)]

@@ -4,6 +4,7 @@
 //! looked at in cells of ten seconds, which exist only where something is recorded; from them follows which spans of
 //! time are kept. Everything after this works on recordings whose length is bounded and whose samples fill it.
 
+use crate::recording::landed::ON_GROUND;
 use std::collections::BTreeMap;
 
 use crate::recording::{Event, ParameterChange, Quantity, Recording, Stream};
@@ -17,8 +18,6 @@ const LEAST_SAMPLES: u32 = 20;
 const SILENCE_S: f64 = 60.0;
 /// Kept before and after the time in the air where time on the ground is left out, s.
 const GROUND_S: f64 = 10.0;
-/// MAV_LANDED_STATE.
-const ON_GROUND: f64 = 1.0;
 
 /// How much of one log is kept in memory.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -34,7 +34,7 @@ enum Side {
 
 /// What a leap was.
 #[derive(Debug)]
-pub(super) enum Settled<T> {
+pub(super) enum LeapCause<T> {
     /// time that passed: the messages from it on, itself the first
     Passed(Vec<T>),
     /// damage: how many messages bore it, and the others since then
@@ -70,22 +70,22 @@ impl<T> Leap<T> {
     }
 
     /// What it was, as far as it has been told.
-    pub(super) fn settle(self) -> Settled<T> {
+    pub(super) fn resolve(self) -> LeapCause<T> {
         let is_last = self.ahead == 1 && self.leapt_s - self.before_s > LAST_S;
         let is_told = self.is_ahead() || self.ahead > self.back.max(self.elsewhere);
         let has_passed = self.back < self.enough() && is_told && !is_last;
         let messages = self.waiting.into_iter();
         if has_passed {
-            return Settled::Passed(messages.map(|(_, message)| message).collect());
+            return LeapCause::Passed(messages.map(|(_, message)| message).collect());
         }
         let others = messages.filter(|(side, _)| *side == Side::Other);
-        Settled::Damage(self.ahead, others.map(|(_, message)| message).collect())
+        LeapCause::Damage(self.ahead, others.map(|(_, message)| message).collect())
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{BACK_SHORT, Leap, MOST, Settled};
+    use super::{BACK_SHORT, Leap, LeapCause, MOST};
 
     /// What follows on a leap from 100 s; how many were damaged, and how many messages are left.
     fn settled(leapt_s: f64, stamps_s: &[f64]) -> (usize, usize) {
@@ -95,9 +95,9 @@ mod tests {
                 break;
             }
         }
-        match leap.settle() {
-            Settled::Passed(messages) => (0, messages.len()),
-            Settled::Damage(damaged, others) => (damaged, others.len()),
+        match leap.resolve() {
+            LeapCause::Passed(messages) => (0, messages.len()),
+            LeapCause::Damage(damaged, others) => (damaged, others.len()),
         }
     }
 

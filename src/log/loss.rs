@@ -267,7 +267,7 @@ impl fmt::Display for Oddity {
                 write!(f, "the vehicle dropped {count} messages before it could write them")
             }
             Self::WithoutTime { count } => {
-                write!(f, "{count} samples carry no time of the vehicle's and are not read")
+                write!(f, "{count} samples have no time stamps of the vehicle and are not read")
             }
             Self::UnknownUnit { count } => {
                 write!(f, "{count} samples are in a unit that differs between releases and are not read")

@@ -2,7 +2,8 @@
 
 use crate::autopilot::VehicleKind;
 
-/// Fewer messages of a kind, or within less time in s, have no rate. Chosen; not measured.
+/// Fewer messages of a kind, or within less time in s, have no rate. Only what is shown depends on it: of fewer
+/// messages a rate would be chance.
 const LEAST_MESSAGES: u64 = 10;
 const LEAST_SPAN_S: f64 = 0.1;
 

@@ -10,16 +10,18 @@ use crate::autopilot::VehicleKind;
 use crate::recording::{Recording, StreamKey, StreamRepair};
 use crate::wire::{SystemId, Vehicle};
 
-/// Share of a log's bytes without which it is damaged so much that streams may be gone, and that which is most of it. Chosen;
-/// not measured.
+/// Share of a log's bytes without which it is damaged so much that streams may be gone, and that which is most of it.
+/// Only the words of the report depend on it: with less a sound log with a torn end would be called damaged.
 const DAMAGED: f64 = 0.1;
 /// See [`DAMAGED`].
 const MOSTLY: f64 = 0.5;
 /// Bytes of the longest message of a log that a vehicle writes: a ULog's, with its head.
 const LONGEST_MESSAGE: u64 = 65_538;
-/// Steps back of a log's stamps that nothing but another order explains. Chosen; not measured.
+/// Steps back of a log's stamps that nothing but another order explains. A single damaged stamp makes one step back;
+/// five in one log are no chance.
 const OUT_OF_ORDER: u64 = 5;
-/// One message of so many that the vehicle wrote may run back by a damaged stamp. Chosen; not measured.
+/// One message of so many that the vehicle wrote may run back by a damaged stamp. More would call a log sorted
+/// wrongly damaged, less a damaged one sorted wrongly; both are told, and neither is used.
 const DAMAGED_STAMPS: u64 = 500;
 
 /// What was met while reading a log, whatever its format.

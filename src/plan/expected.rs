@@ -25,10 +25,10 @@ pub struct FlightSpan {
     pub left_out_s: f64,
 }
 
-/// Commands nearer to a bound than this are at the bound (-). Chosen; not measured.
+/// Commands nearer to a bound than this are at the bound (-). A pulse width of 1 us is as much.
 const COMMAND_STEP: f64 = 1e-3;
 
-/// Transition from hover to the series, s. Chosen; not measured.
+/// Transition from hover to the series, s. Longer would hide the beginning of the series, shorter would jump.
 const RAMP_S: f64 = 0.5;
 
 /// Standard errors over repeated flights of the parameters in the order of `Theta`, relative to [`parameter_scale`],
@@ -41,7 +41,7 @@ pub fn expected_standard_errors(
     noise: &NoiseModel,
     span: FlightSpan,
 ) -> Option<[f64; 7]> {
-    let flown = flown(series, vehicle, span.flown_s, 1.0)?;
+    let flown = simulated(series, vehicle, span.flown_s, 1.0)?;
     let settings = ConditionSettings {
         transient_s: Some(span.left_out_s),
         weak_half_width_s: noise.kernel_half_width_s,
@@ -68,7 +68,7 @@ pub fn expected_standard_errors(
 
 /// The series flown by the simulated controller with this share of its usual noise, recorded without noise. `None` if
 /// it cannot be flown.
-fn flown(
+fn simulated(
     series: &FourierTrajectory,
     vehicle: &Vehicle,
     flown_s: f64,
@@ -86,7 +86,7 @@ fn flown(
 /// It includes the commands that the controller adds to the plan. `None` if the series cannot be flown.
 #[must_use]
 pub fn share_at_bound(series: &FourierTrajectory, vehicle: &Vehicle) -> Option<f64> {
-    let flown = flown(series, vehicle, 2.0 * series.period_s, 0.0)?;
+    let flown = simulated(series, vehicle, 2.0 * series.period_s, 0.0)?;
     let lowest = FlightSettings::default().command_min;
     let commands = || {
         let streams = flown.streams.iter().filter(|(key, _)| key.quantity == Quantity::ActuatorCommand);

@@ -50,7 +50,8 @@ impl Default for NoiseModel {
     }
 }
 
-/// Share of the accelerometer in the vertical motion if velocity is recorded as well. Chosen; not measured.
+/// Share of the accelerometer in the vertical motion if velocity is recorded as well. Only the expected error of a
+/// plan depends on it.
 const ACCELEROMETER_SHARE: f64 = 0.8;
 
 impl NoiseModel {

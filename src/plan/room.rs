@@ -1,24 +1,28 @@
 //! The room that every plan and every flight has: walls, a ceiling and a floor above the ground.
 
 use super::bounds::{Bound, Quantity};
+use crate::note::{About, Note};
 use crate::units::{deg_from_rad, rad_from_deg};
 use crate::vehicle::{Limits, Vehicle};
 
 /// Error of an estimated height above the place of takeoff, m, which barometers and estimators reach within minutes.
-/// Chosen; not measured.
+/// Barometers drift by 0.1 to 0.3 m within minutes; less would let rotors touch the ground, more costs room.
 pub const HEIGHT_ERROR_M: f64 = 0.3;
-/// Tilt at which the rotors must still be clear of the ground, degrees. Chosen; not measured.
+/// Tilt at which the rotors must still be clear of the ground, degrees. It is the largest tilt that autopilots allow
+/// by default (PX4: 45, ArduPilot: 30 degrees).
 const TILT_DEG: f64 = 45.0;
 
-/// Default room: half its length and width, m. Chosen; not measured.
+/// Default room: half its length and width, m. A default for whoever states none; it is told, and meant for a large
+/// room indoors.
 const WALL_M: f64 = 2.0;
-/// Default room: floor and ceiling, m. Chosen; not measured.
+/// Default room: floor and ceiling, m. A default for whoever states none; it is told: clear of the ground's effect
+/// and of a usual ceiling.
 const HEIGHTS_M: (f64, f64) = (1.0, 3.0);
-/// Default limit of the speed, m/s. Chosen; not measured.
+/// Default limit of the speed, m/s. A default for whoever states none; it is told.
 const SPEED_M_S: f64 = 1.5;
-/// Default limit of roll and of pitch, degrees. Chosen; not measured.
+/// Default limit of roll and of pitch, degrees. A default for whoever states none; it is told.
 const TILT_MAX_DEG: f64 = 15.0;
-/// Default limit of the yaw rate, degrees/s. Chosen; not measured.
+/// Default limit of the yaw rate, degrees/s. A default for whoever states none; it is told.
 const YAW_RATE_MAX_DEG_S: f64 = 60.0;
 
 /// Limits with a room, and the parts of it that were not stated.
@@ -27,7 +31,7 @@ pub struct Roomed {
     /// with all walls, ceiling and floor
     pub limits: Limits,
     /// additions and changes, a sentence each; empty if the room was stated completely
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// Reach of the rotors from the position (the body's origin) of a vehicle, m.
@@ -129,8 +133,9 @@ pub fn with_room(limits: &Limits, vehicle: &Vehicle) -> Roomed {
         missing.extend(tilt_notes(&roomed));
     }
     let mut notes = Vec::new();
+    let mut warn = |text: String| notes.push(Note::warning(About::Vehicle, text));
     if !missing.is_empty() {
-        notes.push(format!(
+        warn(format!(
             "expected a room and speed limits in [limits], got none or a part of them: defaults are used for what is \
              missing, {}; state your own values there if they differ",
             missing.join(", ")
@@ -138,7 +143,7 @@ pub fn with_room(limits: &Limits, vehicle: &Vehicle) -> Roomed {
     }
     if let Some(stated_m) = roomed.z_min_m.filter(|z_min_m| *z_min_m < floor_m) {
         roomed.z_min_m = Some(floor_m);
-        notes.push(format!(
+        warn(format!(
             "expected z_min_m of at least {floor_m:.2} (rotors' reach and {HEIGHT_ERROR_M} m of error in height), got \
              {stated_m:.2}: {floor_m:.2} is the floor of the room"
         ));
@@ -175,7 +180,8 @@ mod tests {
         let whole = with_room(&Limits::default(), &vehicle);
         let limits = whole.limits;
         assert!(limits.z_min_m.unwrap() >= 1.0 && limits.z_max_m.unwrap() <= 10.0, "{limits:?}");
-        assert!(whole.notes[0].contains("defaults are used") && whole.notes[0].contains("roll_max_deg = 15"));
+        assert!(whole.notes[0].text.contains("defaults are used"));
+        assert!(whole.notes[0].text.contains("roll_max_deg = 15"));
         assert_eq!(with_room(&limits, &vehicle), Roomed { limits, notes: Vec::new() });
         let fast = Limits { x_max_m: Some(5.0), speed_max_m_s: Some(3.0), ..Limits::default() };
         let part = with_room(&fast, &vehicle);
@@ -183,8 +189,12 @@ mod tests {
         // a room alone does not say how lively it may be flown
         let calm = with_room(&Limits { speed_max_m_s: None, ..fast }, &vehicle);
         assert_eq!(calm.limits.speed_max_m_s, Some(SPEED_M_S));
-        assert!(calm.limits.roll_max_rad.is_some() && calm.notes[0].contains("speed_max_m_s = 1.50"));
-        assert!(part.notes[0].contains("y_max_m") && !part.notes[0].contains("x_max_m"), "{:?}", part.notes);
+        assert!(calm.limits.roll_max_rad.is_some() && calm.notes[0].text.contains("speed_max_m_s = 1.50"));
+        assert!(
+            part.notes[0].text.contains("y_max_m") && !part.notes[0].text.contains("x_max_m"),
+            "{:?}",
+            part.notes
+        );
     }
 
     #[test]
@@ -195,6 +205,6 @@ mod tests {
         let stated = Limits { z_min_m: Some(-5.0), z_max_m: Some(4.0), ..Limits::default() };
         let roomed = with_room(&stated, &vehicle);
         assert_eq!(roomed.limits.z_min_m, Some(floor_m));
-        assert!(roomed.notes.iter().any(|note| note.contains("got -5.00")), "{:?}", roomed.notes);
+        assert!(roomed.notes.iter().any(|note| note.text.contains("got -5.00")), "{:?}", roomed.notes);
     }
 }

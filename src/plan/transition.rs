@@ -29,9 +29,10 @@ pub struct TransitionError {
     pub violation: Violation,
 }
 
-/// Shortest and longest transition that is tried, s. Chosen; not measured.
+/// Shortest and longest transition that is tried, s. Nothing is flown from rest in less, and a battery is too short
+/// for more.
 const DURATION_S: (f64, f64) = (1.0, 60.0);
-/// Ratio of a tried duration to the one before. Chosen; not measured.
+/// Ratio of a tried duration to the one before. A finer ratio takes longer and saves less than 15 % of a transition.
 const DURATION_RATIO: f64 = 1.15;
 
 /// The path of hover, transition, series, transition and hover. The bounds of height hold for the series; a transition

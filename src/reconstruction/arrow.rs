@@ -9,7 +9,8 @@ use rayon::prelude::*;
 use super::blocks::{Block, Columns, Pair, STATE, State, WIDTH};
 use super::residuals::{Group, Residuals};
 
-/// Added to the diagonal so that states which nothing shows stay where they are. Chosen; not measured.
+/// Added to the diagonal so that states which nothing shows stay where they are. It has to exceed rounding and to
+/// stay far below the information of any sensor, which is 1 and more.
 const HOLD: f64 = 1e-9;
 /// Rows that one thread takes.
 const ROWS_AT_ONCE: usize = 128;

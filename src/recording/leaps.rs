@@ -8,18 +8,22 @@ use std::collections::BTreeMap;
 use super::quantity::Quantity;
 use super::stream::{Stream, StreamKey};
 
-/// Samples on each side with which one is compared. Chosen; not measured.
+/// Samples on each side with which one is compared. Fewer do not tell a leap from a turn, more reach into the next
+/// motion.
 const AROUND: usize = 5;
-/// A sample leaps that is so many times as far from those around it as they are from those around them. Chosen; not measured.
+/// A sample leaps that is so many times as far from those around it as they are from those around them. A smaller one
+/// would cut the tail of a sound sensor's noise, a larger one keep small damage.
 const TIMES: f64 = 8.0;
-/// What leaps by less than this share of what a value mostly spans does no harm. Chosen; not measured.
+/// What leaps by less than this share of what a value mostly spans does no harm. A smaller value would cost samples
+/// for nothing.
 const HARMLESS: f64 = 0.05;
-/// Shares between which a value mostly is. Chosen; not measured.
+/// Shares between which a value mostly is. The outer tenths may be damage themselves.
 const MOSTLY: (f64, f64) = (0.1, 0.9);
 
-/// A state of a flight holds for longer, s. Chosen; not measured.
+/// A state of a flight holds for longer, s. Nothing takes off and lands in less.
 const SHORT_S: f64 = 2.0;
-/// An instance with less than this share of another one's samples is none. Chosen; not measured.
+/// An instance with less than this share of another one's samples is none. Two instances of one sensor send alike;
+/// less is a message of damage.
 const STRAY: f64 = 0.02;
 
 /// How two samples differ.

@@ -8,6 +8,7 @@ mod builder;
 mod event;
 mod flight;
 mod growing;
+pub mod landed;
 mod leaps;
 mod overlap;
 mod quantity;

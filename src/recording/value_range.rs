@@ -3,8 +3,9 @@
 
 use super::quantity::Quantity;
 
-/// A larger value, in SI, is damage and no measurement, whatever the unit of its log; infinite where any value may be meant.
-/// Far beyond what any vehicle does, and far below what damage brings. Chosen; not measured.
+/// A larger value, in SI, is damage and no measurement, whatever the unit of its log; infinite where any value may be
+/// meant. Far beyond what any vehicle does, and far below what damage brings. A smaller bound would cut a racing
+/// machine's measurements, a larger one would let damage through.
 pub(super) const fn most(quantity: Quantity) -> f64 {
     match quantity {
         Quantity::Attitude => 1e2,

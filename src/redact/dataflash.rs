@@ -2,9 +2,9 @@
 
 use super::names::{Coordinate, coordinate, is_identity, is_secret_parameter, is_suspicious};
 use super::pass::{Kind, Pass};
+use crate::autopilot::DATAFLASH_MARKER;
 use std::collections::BTreeMap;
 
-const MARK: [u8; 2] = [0xa3, 0x95];
 const DEFINITION: u8 = 128;
 const DEFINITION_BYTES: usize = 89;
 /// Messages whose bytes hold positions, files or names of the hardware in forms of their own.
@@ -12,7 +12,7 @@ const OPAQUE: &[&str] = &["FILE", "GRAW", "GRXH", "GRXS", "UBX1", "UBX2", "ADSB"
 
 /// Whether a file begins as a DataFlash log: its first message is a definition.
 pub(super) fn is_one(log: &[u8]) -> bool {
-    log.starts_with(&MARK) && log.get(2) == Some(&DEFINITION)
+    log.starts_with(&DATAFLASH_MARKER) && log.get(2) == Some(&DEFINITION)
 }
 
 struct Definition {
@@ -56,7 +56,11 @@ pub(super) fn walk(log: &[u8], pass: &mut Pass) -> Vec<u8> {
     let mut definitions: BTreeMap<u8, Definition> = BTreeMap::new();
     let mut at = 0;
     while at < log.len() {
-        let number = log.get(at..at + 2).filter(|mark| *mark == MARK).and_then(|_| log.get(at + 2)).copied();
+        let number = log
+            .get(at..at + 2)
+            .filter(|mark| *mark == DATAFLASH_MARKER)
+            .and_then(|_| log.get(at + 2))
+            .copied();
         let bytes = match number {
             Some(DEFINITION) => Some(DEFINITION_BYTES),
             Some(number) => definitions.get(&number).map(|of| of.bytes).filter(|bytes| *bytes >= 3),

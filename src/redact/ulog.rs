@@ -2,10 +2,9 @@
 
 use super::names::{coordinate, is_identity, is_secret_parameter, is_suspicious};
 use super::pass::{Kind, Pass};
+use crate::autopilot::{ULOG_DEEPEST, ULOG_HEAD_BYTES, ULOG_MAGIC};
 use std::collections::{BTreeMap, BTreeSet};
 
-const MAGIC: &[u8] = b"ULog\x01\x12\x35";
-const HEADER_BYTES: usize = 16;
 /// Length and kind before each message.
 const HEAD_BYTES: usize = 3;
 /// Topics whose bytes hold positions or names of the hardware in forms of their own.
@@ -24,12 +23,10 @@ const OPAQUE: &[&str] = &[
     "device_information",
     "rtk",
 ];
-/// A definition deeper than this is no definition.
-const DEEPEST: usize = 8;
 
 /// Whether a file begins as a ULog.
 pub(super) fn is_one(log: &[u8]) -> bool {
-    log.starts_with(MAGIC)
+    log.starts_with(&ULOG_MAGIC)
 }
 
 /// A field of a definition.
@@ -50,9 +47,9 @@ struct Schema {
 
 /// Walks the log; the redacted one comes out. What follows a break in the messages is not read.
 pub(super) fn walk(log: &[u8], pass: &mut Pass) -> Vec<u8> {
-    let mut out = log.get(..HEADER_BYTES).unwrap_or_default().to_vec();
+    let mut out = log.get(..ULOG_HEAD_BYTES).unwrap_or_default().to_vec();
     let mut schema = Schema::default();
-    let mut at = HEADER_BYTES.min(log.len());
+    let mut at = ULOG_HEAD_BYTES.min(log.len());
     while let Some(&[low, high, kind]) = log.get(at..at + HEAD_BYTES) {
         let length = usize::from(u16::from_le_bytes([low, high]));
         let Some(body) = log.get(at + HEAD_BYTES..at + HEAD_BYTES + length) else { break };
@@ -87,7 +84,7 @@ impl Schema {
                     return None;
                 }
                 let topic = self.topics.get(&number)?.clone();
-                self.topic(&topic, out.get_mut(2..)?, pass, DEEPEST);
+                self.topic(&topic, out.get_mut(2..)?, pass, ULOG_DEEPEST);
             }
             b'I' => {
                 let (kind, name, value) = keyed(body.first().copied()?, body.get(1..)?)?;

@@ -1,5 +1,6 @@
 //! Plays a recorded flight back at the pace of its stamps.
 
+use crate::wire::heartbeat::{AUTOPILOT_AT, HEARTBEAT, NO_AUTOPILOT, TYPE_AT};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -15,13 +16,8 @@ use crate::log::{LogError, Loss, TlogReader};
 use crate::text;
 use crate::wire::{ComponentId, CrcSeeds, Frame, Payload, SystemId};
 
-const HEARTBEAT: u32 = 0;
 /// HEARTBEAT.type of a ground station and of a companion computer.
 const STATIONS: [u8; 2] = [6, 18];
-const TYPE_AT: usize = 4;
-/// HEARTBEAT.autopilot of what is no vehicle.
-const NO_AUTOPILOT: u8 = 8;
-const AUTOPILOT_AT: usize = 5;
 /// A longer pause, or a step back, is the seam of two logs: played without waiting.
 const SEAM: Duration = Duration::from_secs(3600);
 

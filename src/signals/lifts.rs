@@ -5,12 +5,11 @@ use super::actuation::Actuation;
 use super::reported_state::ReportedState;
 use super::select::best;
 use super::usable::FLYING_SHARE;
+use crate::recording::landed::MOVES;
 use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 
-/// A vehicle that turns or moves faster than this does not stand, rad/s and m/s. Chosen; not measured.
-const MOVES: f64 = 0.3;
-/// Time of such motion that is a flight, s. Chosen; not measured.
+/// Time of such motion that is a flight, s. Less is a knock, or a vehicle that is carried.
 const LEAST_S: f64 = 2.0;
 
 /// The contradiction of a log that shows a flight with a vehicle file by which none of it was one; `None` where the log shows

@@ -38,7 +38,7 @@ pub use align::StreamOffset;
 pub use changed::{
     changes_in_the_air, other_settings, resting_on_defaults, settle_parameters, settled_parameters,
 };
-pub use condition::{ConditionSettings, condition, stride};
+pub use condition::{ConditionSettings, WEAK_HALF_WIDTH_S, condition, stride};
 pub use error::SignalsError;
 pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};
 pub use flight::{AsRecorded, Quality, Reference, Series, Signals};
@@ -50,9 +50,9 @@ pub use reported_state::{LEAST_FREE_S, ReportedState};
 pub use rotor_thrusts::{RotorThrusts, ThrustSource};
 pub use select::{best, best_rank, is_live, mean_rate_hz, median_period_s};
 pub use spectrum::highest_harmonic_hz;
-pub use stated_rotors::{Differing, RotorDifference, rotor_difference};
+pub use stated_rotors::{ARM_NOTABLE, Differing, RotorDifference, rotor_difference};
 pub use sufficient::{
     LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, LEAST_FORCE_HZ, LEAST_TORQUE_HZ, flowing_rate_within_hz,
 };
-pub use usable::{Evidence, Usable, usable};
+pub use usable::{Evidence, FLYING_SHARE, Usable, usable};
 pub use weak::{MAX_ORDER, WeakKernel};

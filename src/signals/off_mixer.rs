@@ -5,18 +5,19 @@ use super::select::{best, is_live};
 use crate::recording::{Quantity, Recording, Stream};
 use std::fmt;
 
-/// An output that stands still for so long in the air does not follow a mixer whose other outputs move, s. Chosen: an autopilot's
-/// controllers move every motor many times a second.
+/// An output that stands still for so long in the air does not follow a mixer whose other outputs move, s. Set by
+/// judgement: an autopilot's controllers move every motor many times a second.
 const HELD_S: f64 = 0.8;
-/// The others move by so much of their range meanwhile, at least two of them. Chosen; not measured.
+/// The others move by so much of their range meanwhile, at least two of them. Less is within the resolution of a
+/// pulse width in calm air.
 const OTHERS_MOVE: f64 = 0.02;
-/// An output within so much of its range from an end is at its bound: a saturated motor still follows its mixer. Chosen.
+/// An output within so much of its range from an end is at its bound: a saturated motor still follows its mixer.
 const AT_BOUND: f64 = 0.03;
-/// Below this share of the range a motor does not turn. Chosen; not measured.
+/// Below this share of the range a motor does not turn. Motors need more to start.
 const STOPPED: f64 = 0.02;
-/// Mean of the others, share of the range, from which on they carry the vehicle. Chosen; not measured.
+/// Mean of the others, share of the range, from which on they carry the vehicle. Below it nothing is in the air.
 const CARRYING: f64 = 0.15;
-/// Samples of an output that must move for it to be a motor's, of ten. Chosen; not measured.
+/// Samples of an output that must move for it to be a motor's, of ten. A servo or an unused output moves less often.
 const MOVES_OF_TEN: usize = 3;
 
 /// An output that left the mixer in the air.
@@ -36,20 +37,20 @@ impl OffMixer {
     /// For whoever wants to use the log.
     #[must_use]
     pub fn advice(&self) -> String {
-        format!("warning: {self}. From there on the log says nothing of the vehicle's laws")
+        format!("warning: {self}. Nothing can be identified from the log after this time")
     }
 }
 
 impl fmt::Display for OffMixer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { output, left_s, held, stopped_s } = self;
-        write!(f, "output {output} left the mixer at {left_s:.1} s")?;
+        write!(f, "motor output {output} does not follow the controllers from {left_s:.1} s on")?;
         match stopped_s {
-            Some(stopped_s) if stopped_s <= left_s => write!(f, " and stopped: it stands at {held:.0}"),
-            Some(stopped_s) => write!(f, ", stuck at {held:.0}, and stopped at {stopped_s:.1} s"),
-            None => write!(f, " and is stuck at {held:.0}"),
+            Some(stopped_s) if stopped_s <= left_s => write!(f, ": it stops, at {held:.0}"),
+            Some(stopped_s) => write!(f, ": it stays at {held:.0}, and stops at {stopped_s:.1} s"),
+            None => write!(f, ": it stays at {held:.0}"),
         }?;
-        f.write_str(", while the other motors follow the controllers")
+        f.write_str(", while the other motors follow them")
     }
 }
 

@@ -31,7 +31,7 @@ impl ClockOffset {
     }
 }
 
-/// Step of the coarse search, s. Chosen; not measured.
+/// Step of the coarse search, s. Half of what the fine search covers.
 const COARSE_S: f64 = 0.2;
 /// Step of the grid that interpolates the faster attitude, s.
 const FINE_S: f64 = 0.005;

@@ -6,29 +6,31 @@
 
 use super::Signals;
 use crate::note::{About, Note};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{AXIS_NAMES, Vehicle};
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// Time over which rotations and torques are compared, s. Chosen; not measured.
+/// Time over which rotations and torques are compared, s. Shorter windows hold the noise of differences, longer ones
+/// average the motion away.
 const WINDOW_S: f64 = 0.1;
-/// Least absolute correlation of two series that belong together, or of one with the wrong sign. Chosen; not measured.
+/// Least absolute correlation of two series that belong together, or of one with the wrong sign. Only a flight with
+/// little noise tells signs and order; with a smaller one a sound log could be contradicted.
 const ALIKE: f64 = 0.6;
-/// Difference of correlations from which a series belongs to another one. Chosen; not measured.
+/// Difference of correlations from which a series belongs to another one. With a smaller difference two columns of
+/// one frame could be exchanged by noise.
 const APART: f64 = 0.3;
-/// Largest ratio of two rates, or its inverse, that noise can explain. Chosen; not measured.
+/// Largest ratio of two rates, or its inverse, that noise can explain. A wrong unit is a factor of 9.8 or 57.
 const RATIO: f64 = 2.0;
-/// Largest ratio of mean thrust to weight, or its inverse. Chosen; not measured.
+/// Largest ratio of mean thrust to weight, or its inverse. A wrong thrust curve is within it, a wrong unit is not.
 const CARRIED: f64 = 1.5;
-/// Least share of a torque's energy that other columns do not explain. Chosen; not measured.
+/// Least share of a torque's energy that other columns do not explain. With less, the column is told by what
+/// resembles it.
 const SEEN: f64 = 0.05;
-/// Least share of the change's amplitude that must remain. Chosen; not measured.
+/// Least share of the change's amplitude that must remain. With less, the change is within what sampling does to it.
 const LEFT: f64 = 0.3;
-/// Least rotation for a comparison, rad/s rms. Chosen; not measured.
+/// Least rotation for a comparison, rad/s rms. Gyroscopes at rest have as much noise.
 const TURNING_RAD_S: f64 = 0.02;
-/// Least number of windows. Chosen; not measured.
+/// Least number of windows. They are 4 s; a correlation of fewer is chance.
 const LEAST: usize = 40;
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Notes on streams that contradict each other.
 pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<Note> {
@@ -74,7 +76,7 @@ fn rates(signals: &Signals, spans: &[(usize, usize)]) -> Vec<String> {
         .collect();
     let said: Vec<Vector3<f64>> = spans.iter().map(|&(first, last)| mean(&rate[first..=last])).collect();
     let mut out = Vec::new();
-    for (axis, name) in AXES.iter().enumerate() {
+    for (axis, name) in AXIS_NAMES.iter().enumerate() {
         let (turned, said) = (column(&turned, axis), column(&said, axis));
         let alike = likeness(&turned, &said);
         if rms(&turned) < TURNING_RAD_S || alike.abs() < ALIKE {
@@ -152,17 +154,17 @@ fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Op
     }
     let columns: Vec<DVector<f64>> =
         columns.iter().map(|column| DVector::from_vec(centred(column))).collect();
-    (0..AXES.len()).find_map(|axis| {
+    (0..AXIS_NAMES.len()).find_map(|axis| {
         let changed = DVector::from_vec(centred(&column(&changed, axis)));
         let alike = alone(&columns, &changed)?;
-        let best = (0..AXES.len()).max_by(|&a, &b| alike[a].abs().total_cmp(&alike[b].abs()))?;
+        let best = (0..AXIS_NAMES.len()).max_by(|&a, &b| alike[a].abs().total_cmp(&alike[b].abs()))?;
         let wrong = alike[best].abs() > ALIKE && alike[best].abs() > alike[axis] + APART;
         wrong.then(|| {
             let sign = if alike[best] < 0.0 { "-" } else { "" };
             format!(
                 "the body turns about {} as if by the rotors' torque about {sign}{} (partial correlation {:.2}; \
                  {:.2} with that about {}): expected the rotors in the vehicle file's order, at its places and turning its way",
-                AXES[axis], AXES[best], alike[best].abs(), alike[axis], AXES[axis]
+                AXIS_NAMES[axis], AXIS_NAMES[best], alike[best].abs(), alike[axis], AXIS_NAMES[axis]
             )
         })
     })

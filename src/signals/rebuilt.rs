@@ -20,7 +20,7 @@ const SAME_CYCLE_S: f64 = 0.006;
 const THRUST_GAP_S: f64 = 0.15;
 /// Commands that are no linear function of the setpoints any more: at their ends.
 const UNSATURATED: std::ops::Range<f64> = 0.02..0.98;
-/// Fewer pairs than this fit five coefficients a rotor badly. Chosen; not measured.
+/// Fewer pairs than this fit five coefficients a rotor badly. They are twelve for each coefficient.
 const LEAST_PAIRS: usize = 60;
 /// Share of the commands' variance that the setpoints must explain. PX4's logs have 0.999, with its parameters unchanged.
 const LEAST_EXPLAINED: f64 = 0.95;

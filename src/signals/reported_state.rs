@@ -1,5 +1,6 @@
 //! The state that the autopilot reports: armed, landed, and whether it commanded thrust.
 
+use crate::recording::landed::{IN_AIR, TAKEOFF, UNDEFINED};
 use crate::recording::{Quantity, Recording, Stream};
 
 /// What an autopilot says of being in the air.
@@ -81,13 +82,10 @@ impl<'a> ReportedState<'a> {
     }
 }
 
-/// Taking off and landing count as flight where less than this is left without them, s. Chosen; not measured.
+/// Taking off and landing count as flight where less than this is left without them, s. It is what remains of a short
+/// hop; with less nothing can be identified anyway.
 pub const LEAST_FREE_S: f64 = 8.0;
 
-/// MAV_LANDED_STATE.
-const UNDEFINED: f64 = 0.0;
-const IN_AIR: f64 = 2.0;
-const TAKEOFF: f64 = 3.0;
 const LANDING: f64 = 4.0;
 
 fn last_word(states: &Stream, t_s: f64) -> Option<f64> {

@@ -126,7 +126,7 @@ pub fn is_live(stream: &Stream) -> bool {
     })
 }
 
-/// A stream of fewer samples says nothing. Chosen; not measured.
+/// A stream of fewer samples says nothing. Of fewer neither rate nor noise can be told.
 pub(super) const LEAST_SAMPLES: usize = 10;
 
 /// The refusal of a recording whose longest stream of a quantity that satisfies `fits` is too short to be used;
@@ -183,8 +183,8 @@ pub(super) fn best_of(
     best_rank(quantity, &rated).map(|index| candidates[index])
 }
 
-/// A faster inertial sensor says no more, Hz: of several that are fast, the one that filters least is best.
-/// Chosen; not measured.
+/// A faster inertial sensor says no more, Hz: of several that are fast, the one that filters least is best. Above it
+/// the motion that is used, up to 5 Hz, is sampled ten times a period.
 const ENOUGH_HZ: f64 = 100.0;
 
 /// A place on the earth, to a centimetre: only where nothing else tells the position.

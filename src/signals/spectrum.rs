@@ -4,13 +4,13 @@ use super::Signals;
 use crate::stats::hann_power;
 use nalgebra::Vector3;
 
-/// Highest frequency of the search, Hz. Chosen; not measured.
+/// Highest frequency of the search, Hz. The weak form passes little of faster motion.
 const HIGHEST_HZ: f64 = 5.0;
-/// Share of the power below the result. Chosen; not measured.
+/// Share of the power below the result. The rest is the tail of noise.
 const SHARE: f64 = 0.98;
 
-/// Least rms of a commanded acceleration that tells a trajectory, m/s^2. Setpoints of positions alone carry zeros in its place.
-/// Chosen; not measured.
+/// Least rms of a commanded acceleration that tells a trajectory, m/s^2. Setpoints of positions alone carry zeros in
+/// its place. Less than any motion that a person would call one.
 const LEAST_COMMANDED_M_S2: f64 = 0.02;
 
 /// The trajectory's highest harmonic, Hz: 98 % of the power of the commanded acceleration is below it, or of the

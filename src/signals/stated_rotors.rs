@@ -6,12 +6,14 @@ use std::fmt;
 use crate::autopilot::{Autopilot, Layout, LayoutUnit, RotorPlace};
 use crate::vehicle::{Rotor, Spin, Vehicle};
 
-/// Ratio of arm lengths from which they are told: arms are often stated by the class of the frame. Chosen; not measured.
-const ARM_NOTABLE: f64 = 1.6;
-/// Directions of one rotor that are further apart are of two, degrees: frames are not all as square as their parameters say.
-/// Chosen; not measured.
+/// Ratio of arm lengths from which they are told: arms are often stated by the class of the frame. Only a remark
+/// depends on it.
+pub const ARM_NOTABLE: f64 = 1.6;
+/// Directions of one rotor that are further apart are of two, degrees: frames are not all as square as their
+/// parameters say. Half of the angle between the arms of a hexarotor is 30 degrees.
 const APART_DEG: f64 = 25.0;
-/// The same as a share of the angle between neighbours, where these are close. Chosen; not measured.
+/// The same as a share of the angle between neighbours, where these are close. Below half, or two neighbours would be
+/// one.
 const APART_SHARE: f64 = 0.4;
 
 /// How the rotors of a vehicle file are others than those that the autopilot's parameters state.

@@ -24,11 +24,11 @@ pub const LEAST_BODY_RATE_HZ: f64 = 38.0;
 /// above.
 pub const LEAST_TORQUE_HZ: f64 = 20.0;
 /// Rate below which forces are not compared either, Hz: 10 Hz with some lost frames, which puts three samples or more
-/// into the weak form's kernel. Chosen; not measured.
+/// into the weak form's kernel. With fewer samples the kernel's mean is an interpolation.
 pub const LEAST_FORCE_HZ: f64 = 8.0;
 
-/// Intervals longer than this many median intervals are gaps, or belong to a time before the rate was requested.
-/// Chosen; not measured.
+/// Intervals longer than this many median intervals are gaps, or belong to a time before the rate was requested. A
+/// lossy link loses a few in a row.
 const FLOWS: f64 = 5.0;
 
 /// Mean rate of a stream, Hz, without its gaps and without an earlier time at a slower rate; 0 for fewer than two

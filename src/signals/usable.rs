@@ -8,22 +8,28 @@ use crate::recording::{Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
-/// Thrust below which a vehicle does not fly, as a share of the nominal weight. Chosen; not measured.
-pub(super) const FLYING_SHARE: f64 = 0.4;
-/// Time left out at both ends of an airborne span for lift-off and touch-down, s. Chosen; not measured.
+/// Thrust below which a vehicle does not fly, as a share of the nominal weight. Between idling and a fast descent; a
+/// smaller one takes motors that spin up for flight.
+pub const FLYING_SHARE: f64 = 0.4;
+/// Time left out at both ends of an airborne span for lift-off and touch-down, s. With less the jerk of lift-off
+/// would be a force; with more short hops are lost.
 const GROUND_MARGIN_S: f64 = 0.5;
-/// A pause is a gap if it is longer than this many periods and than [`LEAST_GAP_S`]. Chosen; not measured.
+/// A pause is a gap if it is longer than this many periods and than [`LEAST_GAP_S`]. A few lost frames can be
+/// interpolated; longer ones hold motion that nobody saw.
 const GAP_PERIODS: f64 = 5.0;
-/// Shortest gap, s. Chosen; not measured.
+/// Shortest gap, s. Three samples at 50 Hz: a shorter pause is interpolated well within the kernel of 0.4 s.
 const LEAST_GAP_S: f64 = 0.06;
-/// An actuator that is longer at its bound is saturated; a shorter contact is a known command, s. Chosen; not measured.
+/// An actuator that is longer at its bound is saturated; a shorter contact is a known command, s. A rotor follows a
+/// short command; only one that stays at a bound hides what the controller wanted.
 const SATURATION_S: f64 = 0.1;
-/// Saturated stretches are kept if less than this time would be left without them, s. Chosen; not measured.
+/// Saturated stretches are kept if less than this time would be left without them, s. With less there is no
+/// identification at all.
 const LEAST_UNSATURATED_S: f64 = 8.0;
-/// Windows over which excitation is assessed, s, relative to the livelier half of the flight, so that a bump at landing
-/// has no influence. Chosen; not measured.
+/// Windows over which excitation is assessed, s, relative to the livelier half of the flight, so that a bump at
+/// landing has no influence. Shorter windows leave holes in slow trajectories, longer ones keep hovers.
 const EXCITATION_WINDOW_S: f64 = 4.0;
-/// Least excitation of a window relative to that half. Chosen; not measured.
+/// Least excitation of a window relative to that half. With more calm parts of a trajectory would be lost, with less
+/// a hover before it would dilute the flight.
 const EXCITATION_SHARE: f64 = 0.3;
 
 /// Seconds of flight that each rule left out (an instant may fall under several).

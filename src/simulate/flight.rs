@@ -13,8 +13,7 @@ use super::plant::{Plant, Push};
 use super::reference::Reference;
 use super::sensors::{NoiseLevels, TelemetrySettings};
 use super::setting::{not_negative, positive, whole_steps};
-use crate::physics::effects::MotorLag;
-use crate::physics::{ActiveEffect, Effect, Evaluation, Input, MAX_ROTORS, Model, State, Wrench};
+use crate::physics::{ActiveEffect, Evaluation, Input, MAX_ROTORS, Model, State, Wrench};
 use crate::recording::Recording;
 use crate::vehicle::{Actuator, Propulsion, Vehicle};
 
@@ -146,9 +145,9 @@ pub fn simulate_flight(
 ) -> Result<SimulatedFlight, SimulateError> {
     let _stage = tracing::debug_span!("simulate", duration_s = settings.duration_s).entered();
     let mut effects = Vec::with_capacity(truth.effects.len() + 1);
-    let own_lag = truth.effects.iter().any(|active| active.effect().id() == MotorLag.id());
+    let own_lag = truth.effects.iter().any(ActiveEffect::is_rotor_lag);
     if not_negative("motor_time_constant_s", settings.motor_time_constant_s)? > 0.0 && !own_lag {
-        effects.push(ActiveEffect::new(&MotorLag, &[settings.motor_time_constant_s])?);
+        effects.push(ActiveEffect::rotor_lag(settings.motor_time_constant_s));
     }
     effects.extend(truth.effects.iter().cloned());
     let model = Model::new(&truth.vehicle, effects)?;

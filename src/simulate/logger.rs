@@ -1,5 +1,6 @@
 //! Writes the log of a synthetic flight.
 
+use crate::recording::landed::IN_AIR;
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
@@ -50,9 +51,6 @@ enum Message {
 /// Resolution of a stamp.
 const MILLISECOND_S: f64 = 1e-3;
 const MICROSECOND_S: f64 = 1e-6;
-
-/// MAV_LANDED_STATE_IN_AIR
-const IN_AIR: f64 = 2.0;
 
 /// One kind of message: when it is due and what it has written so far.
 #[derive(Debug)]

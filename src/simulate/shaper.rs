@@ -5,10 +5,8 @@
 //! square root of the distance in which one can still stop where it is large. What is fed forward comes on top and is
 //! bounded by the jerk alone.
 
+use crate::units::STANDARD_GRAVITY_M_S2;
 use nalgebra::{SVector, Vector1, Vector2, Vector3};
-
-/// Standard gravity, by which ArduPilot turns angular accelerations into jerks, m/s^2.
-const GRAVITY_M_S2: f64 = 9.806_65;
 
 /// How a position error becomes a velocity: the releases differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -56,7 +54,7 @@ pub struct ShaperLimits {
 #[must_use]
 pub fn jerk_within(jerk_m_s3: f64, acceleration_m_s2: f64, angular_acceleration_rad_s2: f64) -> f64 {
     if angular_acceleration_rad_s2 > 0.0 {
-        jerk_m_s3.min(0.5 * (acceleration_m_s2 * angular_acceleration_rad_s2 * GRAVITY_M_S2).sqrt())
+        jerk_m_s3.min(0.5 * (acceleration_m_s2 * angular_acceleration_rad_s2 * STANDARD_GRAVITY_M_S2).sqrt())
     } else {
         jerk_m_s3
     }

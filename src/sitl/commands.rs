@@ -1,5 +1,6 @@
 //! COMMAND_LONG and COMMAND_INT.
 
+use crate::wire::command::{ARM_BY_FORCE, CUSTOM_MODE, SET_MESSAGE_INTERVAL};
 use std::time::Duration;
 
 use mavlink::dialects::ardupilotmega::{COMMAND_ACK_DATA, MESSAGE_INTERVAL_DATA, MavResult, MavSeverity};
@@ -25,15 +26,9 @@ mod cmd {
     pub(super) const ARM_DISARM: u16 = 400;
     pub(super) const GET_HOME_POSITION: u16 = 410;
     pub(super) const GET_MESSAGE_INTERVAL: u16 = 510;
-    pub(super) const SET_MESSAGE_INTERVAL: u16 = 511;
     pub(super) const REQUEST_MESSAGE: u16 = 512;
     pub(super) const REQUEST_CAPABILITIES: u16 = 520;
 }
-
-/// The parameter that forces arming and disarming.
-const FORCE: f64 = 21_196.0;
-/// MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
-const CUSTOM_MODE: i32 = 1;
 
 /// A command from a ground station.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,8 +88,8 @@ impl Vehicle {
     fn obey(&mut self, link: usize, command: &Command, now: Duration) -> MavResult {
         let [p1, p2, p3, p4, p7] = command.params;
         match command.number {
-            cmd::ARM_DISARM if p1 >= 0.5 => self.autopilot.arm(p2 == FORCE, now),
-            cmd::ARM_DISARM => self.autopilot.disarm(p2 == FORCE),
+            cmd::ARM_DISARM if p1 >= 0.5 => self.autopilot.arm(p2 == f64::from(ARM_BY_FORCE), now),
+            cmd::ARM_DISARM => self.autopilot.disarm(p2 == f64::from(ARM_BY_FORCE)),
             cmd::DO_SET_MODE => self.do_set_mode([p1, p2, p3], now),
             cmd::TAKEOFF => self.autopilot.take_off(p7, now),
             cmd::LAND => self.autopilot.set_mode(Mode::Land, now),
@@ -110,7 +105,7 @@ impl Vehicle {
             }
             cmd::PREFLIGHT_REBOOT if self.autopilot.is_armed() => MavResult::MAV_RESULT_DENIED,
             cmd::PREFLIGHT_REBOOT => MavResult::MAV_RESULT_ACCEPTED,
-            cmd::SET_MESSAGE_INTERVAL => self.set_message_interval(link, id_of(p1), p2, [p3, p4, p7]),
+            SET_MESSAGE_INTERVAL => self.set_message_interval(link, id_of(p1), p2, [p3, p4, p7]),
             cmd::GET_MESSAGE_INTERVAL => self.get_message_interval(link, id_of(p1)),
             cmd::REQUEST_MESSAGE => self.request_message(link, id_of(p1)),
             cmd::REQUEST_CAPABILITIES => self.request_message(link, AUTOPILOT_VERSION),
@@ -121,7 +116,7 @@ impl Vehicle {
 
     /// PX4: main and sub mode in the second and third parameter; ArduPilot: the mode's number in the second.
     fn do_set_mode(&mut self, [flags, main, sub]: [f64; 3], now: Duration) -> MavResult {
-        if whole(flags) & CUSTOM_MODE == 0 {
+        if whole(flags) & i32::from(CUSTOM_MODE) == 0 {
             return MavResult::MAV_RESULT_DENIED;
         }
         let custom_mode = match self.settings.autopilot.stack().numbering {

@@ -6,8 +6,7 @@ use std::time::Duration;
 use nalgebra::Vector3;
 
 use super::{Settings, SitlError};
-use crate::physics::effects::MotorLag;
-use crate::physics::{ActiveEffect, Effect, Input, MAX_ROTORS, Model, State, Wrench};
+use crate::physics::{ActiveEffect, Input, MAX_ROTORS, Model, State, Wrench};
 use crate::simulate::{GroundContact, GroundSettings, Plant, PlantMemory};
 
 /// What sensors without noise show at one instant.
@@ -51,15 +50,12 @@ impl Craft {
     pub(super) fn new(settings: &Settings, step: Duration) -> Result<Self, SitlError> {
         let mut effects = Vec::with_capacity(settings.effects.len() + 1);
         // a lag among the effects is the rotors' own
-        let own_lag = settings.effects.iter().any(|active| active.effect().id() == MotorLag.id());
+        let own_lag = settings.effects.iter().any(ActiveEffect::is_rotor_lag);
         if settings.motor_time_constant_s > 0.0 && !own_lag {
             let propulsion = &settings.vehicle.propulsion;
             let is_stated = propulsion.time_constant_s == Some(settings.motor_time_constant_s);
-            let stated = MotorLag::stated(propulsion).filter(|_| is_stated);
-            effects.push(match stated {
-                Some(stated) => stated,
-                None => ActiveEffect::new(&MotorLag, &[settings.motor_time_constant_s])?,
-            });
+            let stated = ActiveEffect::stated_rotor_lag(propulsion).filter(|_| is_stated);
+            effects.push(stated.unwrap_or_else(|| ActiveEffect::rotor_lag(settings.motor_time_constant_s)));
         }
         effects.extend(settings.effects.iter().cloned());
         let model = Model::new(&settings.vehicle, effects)?;

@@ -1,5 +1,6 @@
 //! SET_POSITION_TARGET_LOCAL_NED and SET_ATTITUDE_TARGET as each autopilot reads them.
 
+use crate::wire::mav_frame::{BODY_NED, FORCE_SET, LOCAL_NED};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::Firmware;
@@ -131,17 +132,13 @@ pub(super) enum Refusal {
     Stop,
 }
 
-/// MAV_FRAME.
-const LOCAL_NED: u8 = 1;
 const LOCAL_OFFSET_NED: u8 = 7;
-const BODY_NED: u8 = 8;
 const BODY_OFFSET_NED: u8 = 9;
 
 /// type_mask: 1 means ignore.
 const POSITION: u16 = 0b111;
 const VELOCITY: u16 = 0b111 << 3;
 const ACCELERATION: u16 = 0b111 << 6;
-const FORCE: u16 = 1 << 9;
 const YAW: u16 = 1 << 10;
 const YAW_RATE: u16 = 1 << 11;
 
@@ -204,7 +201,7 @@ fn heading(estimate: &State) -> UnitQuaternion<f64> {
 
 /// PX4: each axis alone is ignored or not; position, velocity and acceleration are honoured together.
 fn px4(fields: &Fields, estimate: &State) -> Result<Demand, Refusal> {
-    if fields.mask & FORCE != 0 {
+    if fields.mask & FORCE_SET != 0 {
         return Err(Refusal::Dropped);
     }
     let masked = |first_bit: u16, values: [f64; 3]| {
@@ -240,7 +237,8 @@ fn px4(fields: &Fields, estimate: &State) -> Result<Demand, Refusal> {
 /// ArduPilot: any bit of a group ignores the whole vector; what it cannot use stops the vehicle.
 fn ardupilot(fields: &Fields, estimate: &State) -> Result<Demand, Refusal> {
     let frame = fields.frame;
-    if fields.mask & FORCE != 0 || !matches!(frame, LOCAL_NED | LOCAL_OFFSET_NED | BODY_NED | BODY_OFFSET_NED)
+    if fields.mask & FORCE_SET != 0
+        || !matches!(frame, LOCAL_NED | LOCAL_OFFSET_NED | BODY_NED | BODY_OFFSET_NED)
     {
         return Err(Refusal::Stop);
     }

@@ -1,13 +1,11 @@
 //! What the vehicle says in words, on its links and in its log.
 
+use crate::wire::STATUSTEXT_BYTES;
 use mavlink::dialects::ardupilotmega::STATUSTEXT_DATA;
 
 use super::Vehicle;
 use super::autopilot::Text;
 use super::message::Message;
-
-/// Letters of one STATUSTEXT.
-const CHUNK_BYTES: usize = 50;
 
 impl Vehicle {
     /// Texts longer than a message go out in numbered chunks.
@@ -16,12 +14,12 @@ impl Vehicle {
             self.keeper.text(self.now(), &said);
             let Text { severity, text } = said;
             let bytes = text.as_bytes();
-            let is_long = bytes.len() > CHUNK_BYTES;
+            let is_long = bytes.len() > STATUSTEXT_BYTES;
             if is_long {
                 self.texts = self.texts.wrapping_add(1).max(1);
             }
-            for (chunk, part) in bytes.chunks(CHUNK_BYTES).enumerate() {
-                let mut text = [0; CHUNK_BYTES];
+            for (chunk, part) in bytes.chunks(STATUSTEXT_BYTES).enumerate() {
+                let mut text = [0; STATUSTEXT_BYTES];
                 text[..part.len()].copy_from_slice(part);
                 let message = Message::from(STATUSTEXT_DATA {
                     severity,

@@ -1,5 +1,6 @@
 //! The vehicle as a whole: the clock that drives it, and its links.
 
+use crate::wire::heartbeat::HEARTBEAT_PERIOD;
 use std::time::Duration;
 
 use mavlink::dialects::ardupilotmega::{
@@ -25,8 +26,6 @@ use crate::wire::{Check, CrcSeeds, Frame, Payload};
 
 /// MAV_COMP_ID_AUTOPILOT1
 const COMPONENT: u8 = 1;
-/// Time between heartbeats.
-const HEARTBEAT_PERIOD: Duration = Duration::from_secs(1);
 
 /// What somebody who stands beside a vehicle sees of it, whatever its messages say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

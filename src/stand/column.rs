@@ -180,8 +180,8 @@ mod tests {
         let rpm = std::f64::consts::TAU / 60.0;
         for (text, quantity, factor) in [
             ("ESC signal (µs)", StandQuantity::Pulse, 1.0),
-            ("Thrust (kgf)", StandQuantity::Thrust, 9.806_65),
-            ("Thrust - gf", StandQuantity::Thrust, 9.806_65e-3),
+            ("Thrust (kgf)", StandQuantity::Thrust, STANDARD_GRAVITY_M_S2),
+            ("Thrust - gf", StandQuantity::Thrust, STANDARD_GRAVITY_M_S2 * 1e-3),
             ("Torque (N·m)", StandQuantity::Torque, 1.0),
             ("Torque - N*m", StandQuantity::Torque, 1.0),
             ("Torque (ozf·in)", StandQuantity::Torque, 0.007_061_551_8),

@@ -7,12 +7,12 @@ use super::table::StandTable;
 use crate::units::rad_s_from_rpm;
 use crate::vehicle::{Actuator, Guessed, Propulsion, PwmRange, ThrustLaw};
 
-/// States of the rotor that a fit needs. Chosen.
+/// States of the rotor that a fit needs. The law has two parameters and its misfit needs three more.
 const LEAST_STEPS: usize = 5;
-/// Share of the squares that a law must explain: a rotor's does 0.99 and more. Chosen.
+/// Share of the squares that a law must explain: a rotor's does 0.99 and more. Less is a table of something else.
 const LEAST_EXPLAINED: f64 = 0.95;
 /// Thrust below this share of the largest is not used: speeds are read badly there, and the scales' offset matters.
-/// Chosen; not measured.
+/// The rest of the range tells the law.
 const LEAST_SHARE: f64 = 0.03;
 /// Largest thrusts of one rotor, N; largest speed, rad/s; torque per thrust, m. Beyond stands a wrong unit.
 const THRUSTS_N: (f64, f64) = (0.005, 5000.0);
@@ -20,9 +20,10 @@ const THRUSTS_N: (f64, f64) = (0.005, 5000.0);
 const SPEED_MOST_RPM: f64 = 150_000.0;
 /// See [`THRUSTS_N`].
 const RATIOS_M: (f64, f64) = (2e-4, 0.3);
-/// Rising and falling thrust that differ by more are told. Chosen.
+/// Rising and falling thrust that differ by more are told. Only a note depends on it.
 const HYSTERESIS: f64 = 0.03;
-/// Standard error of the exponent of the voltage with which it is known. Chosen.
+/// Standard error of the exponent of the voltage with which it is known. A larger one says nothing: exponents lie
+/// between 1 and 2.
 const VOLTAGE_STD: f64 = 0.5;
 /// Pulses of none and of full throttle, where commands are pulses and shares are stated, or the reverse.
 const PULSES: PwmRange = PwmRange { min_us: 1000.0, max_us: 2000.0 };
@@ -189,7 +190,7 @@ impl StandResult {
         }
         self.propulsion.law =
             ThrustLaw::Curve { thrust_max_n: rounded(full.value), expo: rounded(expo.value) };
-        self.measured.extend([Guessed::ThrustMax, Guessed::ThrustCurve]);
+        self.measured.extend([Guessed::ThrustMax, Guessed::Expo]);
         self.sentences.push(format!(
             "thrust at full command {:.3} +- {:.3} N, exponent of its curve {:.3} +- {:.3}, over commands of {:.0} to {:.0} %",
             full.value,

@@ -35,7 +35,7 @@ fn curve_coefficient_and_torque_come_out_with_their_errors() {
     let coefficient = result.propulsion.thrust_coefficient.unwrap();
     assert!((coefficient / 1.1e-5 - 1.0).abs() < 0.01, "{coefficient}");
     assert!((result.propulsion.torque_per_thrust_m - 0.016).abs() < 2e-4);
-    assert_eq!(result.measured, [Guessed::ThrustMax, Guessed::ThrustCurve, Guessed::TorqueRatio]);
+    assert_eq!(result.measured, [Guessed::ThrustMax, Guessed::Expo, Guessed::TorqueRatio]);
     assert!(result.sentences.iter().any(|said| said.starts_with("no voltage")), "{:?}", result.sentences);
     assert!(!result.sentences.iter().any(|said| said.contains("falls")), "{:?}", result.sentences);
 }

@@ -1,8 +1,9 @@
 //! Rows of one state of the rotor, put together: what a stand writes many times a second is no independent measurement.
 
-/// States that are told apart over the range of a test. Chosen; not measured.
+/// States that are told apart over the range of a test. More would split a state by its noise, fewer would merge two.
 const STEPS: usize = 25;
-/// Rows of a state that differ from its median by so many times their usual distance are outliers. Chosen; not measured.
+/// Rows of a state that differ from its median by so many times their usual distance are outliers. Normal errors do
+/// not reach it.
 const OUTLYING: f64 = 6.0;
 
 /// Means over rows of about the same state.

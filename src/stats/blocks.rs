@@ -5,8 +5,9 @@ use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// Stretches of the series. Chosen; not measured.
-const STRETCHES: usize = 12;
+/// Stretches of the series. Fewer leave the test no degrees of freedom against six columns; more are shorter than
+/// what correlates in a flight.
+pub const STRETCHES: usize = 12;
 
 /// Chance of coefficients `theta` if nothing were there, by an F test with the scores of twelve stretches of the series
 /// as replicates. An effect that is there in one part alone passes no such test. `scores` has one row a coefficient and

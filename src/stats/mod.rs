@@ -8,7 +8,7 @@ mod robust;
 mod spectrum;
 mod whittle;
 
-pub use blocks::{chance_by_stretches, percentiles_95, resamples};
+pub use blocks::{STRETCHES, chance_by_stretches, percentiles_95, resamples};
 pub use chance::{f_tail, joint_chance, normal_deviate};
 pub use robust::{median, median_step, normal_sigma, quantile, white_level_of};
 pub use spectrum::{

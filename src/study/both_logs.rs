@@ -24,8 +24,8 @@ const USED: [Quantity; 10] = [
 /// and landing are no flight.
 const STATES: [Quantity; 3] = [Quantity::Armed, Quantity::LandedState, Quantity::Mode];
 
-/// Least share of the flight that a stream of the ground station must cover to replace one of the vehicle's. Chosen; not
-/// measured.
+/// Least share of the flight that a stream of the ground station must cover to replace one of the vehicle's. With
+/// less the flight would have two readings of one quantity.
 const LEAST_COVERED: f64 = 0.9;
 
 /// Each flight once: what the ground station logged of a flight that the vehicle logged as well is brought to the vehicle's

@@ -29,7 +29,7 @@ impl Correlation {
             kept.push((index, name));
         }
         let mut index = fitted.rows.nuisances.len();
-        for present in &fitted.base.present {
+        for present in &fitted.base.effects {
             for &free in &present.free {
                 let parameter = present.parameter(free).map_or("", |parameter| parameter.name);
                 kept.push((index, format!("{}.{parameter}", present.id())));

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use crate::config::{parse_effect_tables, read_effect_tables};
+use crate::config::read_effect_tables;
 use crate::diagnose::signatures::signature_of;
-use crate::physics::effects::MotorLag;
-use crate::physics::{ActiveEffect, Effect};
+use crate::physics::ActiveEffect;
 use crate::text;
 use crate::vehicle::Vehicle;
 
@@ -61,8 +60,8 @@ pub fn with_further(
 /// With the motor lag that the vehicle's `time_constant` states, if no effect is one.
 #[must_use]
 pub fn with_stated_lag(mut effects: Vec<ActiveEffect>, vehicle: &Vehicle) -> Vec<ActiveEffect> {
-    if effects.iter().all(|active| active.effect().id() != MotorLag.id()) {
-        effects.extend(MotorLag::stated(&vehicle.propulsion));
+    if !effects.iter().any(ActiveEffect::is_rotor_lag) {
+        effects.extend(ActiveEffect::stated_rotor_lag(&vehicle.propulsion));
     }
     effects
 }
@@ -73,14 +72,6 @@ pub fn with_stated_lag(mut effects: Vec<ActiveEffect>, vehicle: &Vehicle) -> Vec
 /// [`StudyError::Config`] where it cannot be read; otherwise as [`effects_of`].
 pub fn effects_file(path: &Path, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, StudyError> {
     effects_of(&read_effect_tables(path)?, &text::path(path), vehicle)
-}
-
-/// The same from text; `origin` names it in errors.
-///
-/// # Errors
-/// As [`effects_file`].
-pub fn effects_text(text: &str, origin: &str, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, StudyError> {
-    effects_of(&parse_effect_tables(text, origin)?, origin, vehicle)
 }
 
 /// What a rotor may be called.

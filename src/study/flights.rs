@@ -25,7 +25,8 @@ pub(super) const IDENTIFIED: Hold = Hold { seconds: 1800.0, numbers: 3_000_000 }
 /// What is explained of one log. Memory and time grow with the numbers: a log of an on-board profile holds more of them a second
 /// than telemetry.
 pub(super) const EXPLAINED: Hold = Hold { seconds: 480.0, numbers: 1_500_000 };
-/// Share of a hold-out's samples that may be in an explained flight: none are, but for chance. Chosen; not measured.
+/// Share of a hold-out's samples that may be in an explained flight: none are, but for chance. A hold-out that shares
+/// more would be predicted from itself.
 const MOST_SHARED: f64 = 0.02;
 
 /// How logs are read.
@@ -152,7 +153,7 @@ fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyErro
     let why = if opened.report.lacks_definitions() {
         "expected a whole log, got one whose messages are not defined: its beginning is missing"
     } else if !opened.report.is_timed() {
-        "expected a log with times, got one whose messages carry no time of the vehicle's"
+        "expected a log with times, got one whose messages have no time stamps of the vehicle"
     } else if opened.report.ends_early() {
         "expected a whole log, got one that ends before its first sample"
     } else if flights.all(|flight| ReportedState::of(&flight.recording).never_armed()) {
@@ -252,7 +253,8 @@ pub(super) fn ready<T>(
     Ok(ready)
 }
 
-/// Seconds of flight before an output left the mixer, from which on effects are searched in them. Chosen: no flight of less shows them all.
+/// Seconds of flight before an output left the mixer, from which on effects are searched in them. Set by judgement:
+/// no flight of less shows them all.
 const LEAST_BEFORE_S: f64 = 40.0;
 
 /// Where an output left the mixer, what is to be explained is in the outputs themselves: a flight that was short until then gets no
@@ -294,9 +296,8 @@ pub(super) fn refuse_twins<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) -> R
 }
 
 /// What is hardly meant in a vehicle's file.
-pub(super) fn file_notes(file: &Path, warnings: &[String]) -> Vec<Note> {
-    let about = || About::File(text::path(&file));
-    warnings.iter().map(|warning| Note::warning(about(), warning.as_str())).collect()
+pub(super) fn file_notes(file: &Path, warnings: &[Note]) -> Vec<Note> {
+    warnings.iter().map(|warning| warning.of_file(&text::path(&file))).collect()
 }
 
 /// Names of logs in one line.

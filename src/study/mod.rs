@@ -32,7 +32,7 @@ pub use compare::{
     Change, Changed, CompareRequest, CompareStudy, Compared, ComparedFlight, Judge, LeastChange, compare,
 };
 pub use correlation::Correlation;
-pub use effects::{effects_file, effects_of, effects_text, with_further, with_stated_lag};
+pub use effects::{effects_file, effects_of, with_further, with_stated_lag};
 pub use error::StudyError;
 pub use explain::{
     AlongFlights, AxisFit, AxisResidual, AxisShare, BodyParameter, Estimate, ExplainRequest, ExplainStudy,
@@ -45,7 +45,7 @@ pub use identify::{
     COMPONENTS, IdentifyRequest, IdentifyStudy, Misfit, RotorsAndMotion, WithEffects, identify,
 };
 pub use input::InputFile;
-pub use plan::{Circle, Flown, PlanStudy, PlannedSeries, PlanningRequest, plan_flight};
+pub use plan::{Circle, FlightExtremes, PlanStudy, PlannedSeries, PlanningRequest, plan_flight};
 pub use progress::{Progress, Silent, Stage};
 pub use prove::{
     CaseEffect, CaseParameter, CaseVerdict, Gain, Proof, ProofSummary, ScoredCase, SealedVerdicts, SizeError,
@@ -53,10 +53,11 @@ pub use prove::{
 };
 pub use track::Track;
 pub use validate::{
-    Column, ErrorRow, ErrorTable, Prediction, ValidateRequest, ValidateStudy, ValidatedFlight,
+    Column, ErrorRow, ErrorTable, Prediction, Rank, ValidateRequest, ValidateStudy, ValidatedFlight,
     ValidatedModel, closed_loop_table, playback_table, prediction_table, validate,
 };
 pub use vehicle::{RotorSummary, VehicleSummary, vehicle_summary};
 pub use vehicle_given::{
-    VehicleGiven, draft_from_log, draft_from_parameters, draft_notes, draft_text, with_thrust_stand,
+    VehicleGiven, draft_from_log, draft_from_parameters, draft_notes, draft_text, implausible,
+    with_thrust_stand,
 };

@@ -1,6 +1,7 @@
 //! What follows from a vehicle's file.
 
 use crate::config::LoadedVehicle;
+use crate::note::Note;
 use crate::text;
 use crate::vehicle::{Actuator, Anchor, Spin, ThrustLaw, Vehicle};
 use serde::Serialize;
@@ -41,7 +42,7 @@ pub struct VehicleSummary {
     /// how many the file holds
     pub effects: usize,
     /// what is possible but hardly meant
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Note>,
 }
 
 /// One rotor and its column of the mixer.

@@ -72,11 +72,18 @@ impl Known {
 #[must_use]
 pub fn draft_notes(draft: &Draft) -> Vec<Note> {
     let about = || About::File(DRAFTED.to_owned());
-    let mut notes = file_notes(Path::new(DRAFTED), &draft.vehicle.implausible());
+    let mut notes = file_notes(Path::new(DRAFTED), &implausible(draft));
     notes.extend(draft.doubts.iter().map(|doubt| Note::warning(about(), doubt.as_str())));
     notes.push(Note::remark(about(), draft.origins.join("; ")));
     notes.extend(guesses(&draft.vehicle).map(|text| Note::remark(about(), text)));
     notes
+}
+
+/// What is possible of a drafted vehicle but hardly meant.
+#[must_use]
+pub fn implausible(draft: &Draft) -> Vec<Note> {
+    let doubts = draft.vehicle.implausible().into_iter();
+    doubts.map(|doubt| Note::warning(About::Vehicle, doubt)).collect()
 }
 
 /// The guesses that a vehicle rests on, in a sentence.
@@ -104,7 +111,8 @@ impl VehicleGiven {
                 (of_draft(&draft), PathBuf::from(DRAFTED))
             }
         };
-        loaded.warnings.extend(guesses(&loaded.vehicle));
+        let guesses = guesses(&loaded.vehicle).map(|text| Note::warning(About::Vehicle, text));
+        loaded.warnings.extend(guesses);
         Ok((loaded, origin))
     }
 
@@ -140,7 +148,7 @@ const DRAFTED: &str = "the drafted vehicle";
 
 fn of_draft(draft: &Draft) -> LoadedVehicle {
     LoadedVehicle {
-        warnings: draft.vehicle.implausible(),
+        warnings: implausible(draft),
         vehicle: draft.vehicle.clone(),
         model: ModelTables::default(),
     }
@@ -224,9 +232,11 @@ pub fn with_thrust_stand(mut draft: Draft, table: &Path) -> Result<Draft, StudyE
     Ok(draft)
 }
 
-/// A largest thrust that is known better than this is from a flight. Chosen; not measured.
+/// A largest thrust that is known better than this is from a flight. A guess by class has a standard error of a fifth
+/// and more.
 const FLOWN: f64 = 0.1;
-/// Thrusts of a stand and of a flight that are further apart contradict each other. Chosen; not measured.
+/// Thrusts of a stand and of a flight that are further apart contradict each other. Stands and flights differ by
+/// wakes and batteries; only a warning depends on it.
 const APART: f64 = 1.25;
 
 /// A draft as a vehicle file, with where its values come from.

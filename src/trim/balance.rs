@@ -7,18 +7,23 @@
 use super::legs::{AXES, Leg};
 use nalgebra::{DMatrix, DVector};
 
-/// Share of the scatter of legs that goes from flight to flight as well: wind that turns, a battery that sits elsewhere. Chosen; three
-/// flights of one vehicle outdoors scatter by 0.3 to 0.6 of it, simulated flights by 0.1 to 0.4.
+/// Share of the scatter of legs that goes from flight to flight as well: wind that turns, a battery that sits
+/// elsewhere. Three flights of one vehicle outdoors scatter by 0.3 to 0.6 of it, simulated flights by 0.1 to 0.4;
+/// more hides changes, less names them where there are none (`cargo bench --bench blind -- --vehicles --compared 40
+/// --seed 9101`).
 pub const WANDER: f64 = 0.6;
-/// Standard deviation of the air's lever from flight to flight, arms. Chosen; 15 flights of one vehicle outdoors show 0.2.
+/// Standard deviation of the air's lever from flight to flight, arms. 15 flights of one vehicle outdoors show 0.2.
 pub const AIR_LEVER_SPREAD: f64 = 0.2;
-/// Standard deviation of the air's lever of a vehicle, arms, about zero. Chosen; not measured.
+/// Standard deviation of the air's lever of a vehicle, arms, about zero. Wide on purpose: a body hangs below its
+/// rotors by less than an arm, and the flights tell the rest.
 const AIR_LEVER: f64 = 1.5;
-/// Least scatter of a leg, shares: what a log's commands resolve. Chosen; not measured.
+/// Least scatter of a leg, shares: what a log's commands resolve. A pulse width of 1 us is 1e-3 of the range, and a
+/// leg averages twenty of them.
 const LEAST_SCATTER: f64 = 3e-4;
-/// Residual beyond which a leg counts less, in standard deviations (Huber). Chosen; not measured.
+/// Residual beyond which a leg counts less, in standard deviations (Huber). Huber's usual value is 1.3; with a larger
+/// one a gust pulls the mean, with a smaller one good legs count less.
 const OUTLYING: f64 = 2.0;
-/// Most correlation of a leg with the next that is believed. Chosen; not measured.
+/// Most correlation of a leg with the next that is believed. A larger one would let a few legs give any error.
 const MOST_CORRELATED: f64 = 0.8;
 /// Passes in which scatter and weights settle.
 const PASSES: usize = 6;
@@ -60,6 +65,14 @@ impl Balance {
     #[must_use]
     pub fn std(&self, flight: usize, axis: usize) -> f64 {
         self.covariance[axis][(flight, flight)].max(0.0).sqrt()
+    }
+
+    /// A component of a flight, with the standard error that a flight of the same vehicle differs by: that of the estimate, and what
+    /// wanders from flight to flight.
+    #[must_use]
+    pub fn lean(&self, flight: usize, axis: usize) -> (f64, f64) {
+        let of = &self.flights[flight];
+        (of.lean[axis], self.std(flight, axis).hypot(of.wander[axis]))
     }
 
     /// Covariance of the flights' components with what wanders from flight to flight, `scale` times as much of it.

@@ -2,6 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+/// What the axes of a frame are called.
+pub const AXIS_NAMES: [&str; 3] = ["x", "y", "z"];
+
 /// Mass and inertia about the centre of mass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RigidBody {

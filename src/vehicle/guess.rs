@@ -12,7 +12,7 @@ pub enum Guessed {
     /// largest thrust of a rotor
     ThrustMax,
     /// shape of the thrust curve
-    ThrustCurve,
+    Expo,
     /// radius of a rotor
     RotorRadius,
 }
@@ -20,7 +20,7 @@ pub enum Guessed {
 impl Guessed {
     /// All of them.
     pub const ALL: [Self; 6] =
-        [Self::Arms, Self::Inertia, Self::TorqueRatio, Self::ThrustMax, Self::ThrustCurve, Self::RotorRadius];
+        [Self::Arms, Self::Inertia, Self::TorqueRatio, Self::ThrustMax, Self::Expo, Self::RotorRadius];
 
     /// As files name it.
     #[must_use]
@@ -30,7 +30,7 @@ impl Guessed {
             Self::Inertia => "inertia",
             Self::TorqueRatio => "torque_ratio",
             Self::ThrustMax => "thrust_max",
-            Self::ThrustCurve => "thrust_curve",
+            Self::Expo => "thrust_curve",
             Self::RotorRadius => "rotor_radius",
         }
     }
@@ -43,7 +43,7 @@ impl Guessed {
             Self::Inertia => "the nominal moments of inertia",
             Self::TorqueRatio => "the rotors' torque per thrust",
             Self::ThrustMax => "the rotors' largest thrust",
-            Self::ThrustCurve => "the shape of the thrust curve",
+            Self::Expo => "the shape of the thrust curve",
             Self::RotorRadius => "the rotors' radius",
         }
     }

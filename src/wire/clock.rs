@@ -19,11 +19,11 @@ const HOST_STEP_US: u64 = 10_000_000;
 /// Host's stamps further apart than this, either way, say nothing of the time that passed until the vehicle's do.
 const HOST_LEAP_US: u64 = 3_600_000_000;
 /// Stamps of different messages may run back against each other by this much.
-const BACKWARD_US: i64 = 2_000_000;
+pub const BACKWARD_US: i64 = 2_000_000;
 /// A leap forward beyond this must be matched by the host's clock.
 const FORWARD_US: i64 = 5_000_000;
 /// So many stamps in a row that agree with each other but not with the clock: the clock has restarted.
-const WITNESSES: u8 = 3;
+pub const WITNESSES: u8 = 3;
 /// A vehicle that starts anew may have run this much longer than it was silent: links buffer.
 const BOOT_US: i64 = 10_000_000;
 /// Microseconds larger than this are Unix time (2001), not time since boot (31 years).

@@ -10,7 +10,7 @@ use super::frame::Payload;
 pub const EMBEDDED_UID2: [u8; UID2_BYTES] = *b"mavid simulated v1";
 
 /// Length of the field, and where it begins in the payload of AUTOPILOT_VERSION.
-const UID2_BYTES: usize = 18;
+pub const UID2_BYTES: usize = 18;
 const UID2_OFFSET: usize = 60;
 
 /// A secret of one process: it gives it to the vehicle that it starts, and knows the vehicle by it. What comes over a

@@ -7,19 +7,22 @@
 
 mod checksum;
 mod clock;
+pub mod command;
 mod decode;
 mod embedded;
 mod encode;
 pub mod file_transfer;
 mod frame;
+pub mod heartbeat;
+pub mod mav_frame;
 mod sender;
 mod splitter;
 mod stamped;
 
 pub use self::checksum::{CrcSeeds, checksum};
-pub use clock::{Anchor, Stamp};
-pub use decode::{DecodeReport, Decoder, Source, Vehicle};
-pub use embedded::{EMBEDDED_UID2, Nonce};
+pub use clock::{Anchor, BACKWARD_US, Stamp, WITNESSES};
+pub use decode::{DecodeReport, Decoder, STATUSTEXT_BYTES, Source, Vehicle};
+pub use embedded::{EMBEDDED_UID2, Nonce, UID2_BYTES};
 pub use encode::write_recording;
 pub use frame::{
     Check, ComponentId, Frame, Header, MARKER_V1, MARKER_V2, MAX_FRAME_BYTES, Payload, Start, SystemId,

@@ -48,6 +48,7 @@ pub fn usual(effect: &dyn Effect) -> String {
         |name: &str| all().find(|parameter| parameter.name == name).map_or("-", |parameter| parameter.unit);
     let value = |(name, size): &(&str, Size)| {
         let (number, by) = match size {
+            Size::Usual(..) => return format!("`{name}` of usual size"),
             Size::Of(value) => (*value, ""),
             Size::PerMass(per) => (*per, " per kg"),
             Size::PerInertia(per) => (*per, " per kg m^2"),
@@ -196,7 +197,7 @@ fn simulators(id: &str) -> String {
         (Format::Mjcf, "`mjcf`"),
         (Format::Rotorpy, "`rotorpy`"),
     ];
-    let with_place = places(id).unwrap_or_default();
+    let with_place = places(id);
     let (holds, leaves_out): (Vec<_>, Vec<_>) =
         all.into_iter().partition(|(format, _)| with_place.contains(format));
     let names =

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use mavid::fly::{Cause, Ending, Flown, Level, Note, Outcome};
+use mavid::fly::{Cause, Ending, FlightStatistics, Level, Note, Outcome};
 use mavid::sitl::Beheld;
 
 use crate::harness::laws::{Law, check};
@@ -54,7 +54,7 @@ impl Made {
     }
 
     fn over(self, at: u64, ending: Ending) -> Self {
-        let outcome = Outcome { cause: None, ending, flown: Flown::default(), losses: Vec::new() };
+        let outcome = Outcome { cause: None, ending, flown: FlightStatistics::default(), losses: Vec::new() };
         self.at(at, Seen::Over(outcome))
     }
 
@@ -190,7 +190,7 @@ fn an_end_that_is_not_safe_or_not_true_is_caught() {
     let killed = Outcome {
         cause: Some(Cause::Killed),
         ending: Ending::Fell,
-        flown: Flown::default(),
+        flown: FlightStatistics::default(),
         losses: Vec::new(),
     };
     assert_eq!(flying().at(5000, Seen::Over(killed)).breaks(), []);

@@ -1,15 +1,19 @@
 //! Effects at sizes that ordinary vehicles have, and what a flight must have to show each.
 
-#![allow(dead_code, clippy::unwrap_used)] // no user uses all of it
+#![allow(dead_code, clippy::unwrap_used, clippy::panic)] // no user uses all of it
 
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
+use mavid::diagnose::signatures::signature_of;
 use mavid::physics::ActiveEffect;
+use mavid::physics::effects::ALL;
 use mavid::simulate::{FlightSettings, RandomTrajectory};
 use mavid::units::AIR_DENSITY_KG_M3;
 use mavid::vehicle::Vehicle;
 
 /// An effect at an ordinary size, and the flight that shows it.
+#[derive(Clone, Copy)]
 pub struct Ordinary {
     pub id: &'static str,
     /// name and value of each parameter
@@ -26,6 +30,8 @@ pub enum Size {
     PerMass(f64),
     /// per kg m^2, of the mean of Ixx and Iyy
     PerInertia(f64),
+    /// what the effect's signature calls usual of the parameter of this name
+    Usual(fn(&str, &Vehicle) -> Option<f64>, &'static str),
 }
 
 /// What a flight must have for an effect to show.
@@ -43,10 +49,23 @@ pub enum ShownBy {
 }
 
 use ShownBy::{Ceiling, Descent, Drag, FallingVoltage, GentleMotion, LowFlight, Motion, StatedMotorLag};
-use Size::{Of, PerInertia, PerMass};
+use Size::{Of, PerInertia, PerMass, Usual};
 
-/// Every effect of the library.
-pub const ORDINARY: &[Ordinary] = &[
+/// Every effect of the library: as [`STATED`], or else at the usual size of its signature and shown by any motion.
+pub static ORDINARY: LazyLock<Vec<Ordinary>> = LazyLock::new(|| {
+    let is_stated = |id: &str| STATED.iter().any(|entry| entry.id == id);
+    let others = ALL.iter().filter(|effect| !is_stated(effect.id())).filter_map(|effect| {
+        let usual = signature_of(effect.id())?.naming.usual;
+        let sizes =
+            effect.parameters().iter().map(|parameter| (parameter.name, Usual(usual, parameter.name)));
+        let sizes: Vec<(&str, Size)> = sizes.collect();
+        Some(Ordinary { id: effect.id(), sizes: sizes.leak(), shown_by: Motion })
+    });
+    STATED.iter().copied().chain(others).collect()
+});
+
+/// Effects with sizes of their own, or that need a flight of their own.
+const STATED: &[Ordinary] = &[
     Ordinary {
         id: "linear_drag",
         sizes: &[("dx", PerMass(0.3)), ("dy", PerMass(0.3)), ("dz", Of(0.0))],
@@ -142,6 +161,9 @@ impl Size {
         match self {
             Of(value) => value,
             PerMass(per) => per * vehicle.body.mass_kg,
+            Usual(of, name) => {
+                of(name, vehicle).unwrap_or_else(|| panic!("{name}: expected a usual size in the signature"))
+            }
             PerInertia(per) => per * 0.5 * (inertia[(0, 0)] + inertia[(1, 1)]),
         }
     }

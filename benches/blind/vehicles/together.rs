@@ -51,7 +51,7 @@ fn told(seed: u64, case: &RealCase, study: &ExplainStudy) -> Vec<Put> {
     let put: Vec<Put> = along
         .common()
         .filter_map(|track| {
-            let (value, std) = track.together()?;
+            let (value, std) = track.pooled()?;
             let single = track.values.iter().flatten().map(|(_, std)| *std).fold(f64::INFINITY, f64::min);
             let several = track.values.iter().flatten().count() > 1;
             let truth = truth(case, &track.name);

@@ -2,7 +2,7 @@
 //! `--vehicle` drafts the vehicle from its own parameters.
 
 mod document;
-mod flown;
+mod one_flight;
 mod ride;
 mod typed;
 mod vehicle;
@@ -10,6 +10,6 @@ mod verb;
 mod watch;
 mod words;
 
-pub use flown::{Flown, Manner, flown};
+pub use one_flight::{FlightRun, Manner, one_flight};
 pub use ride::is_attended;
 pub use verb::{outcome, run};

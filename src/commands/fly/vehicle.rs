@@ -15,7 +15,7 @@ use crate::commands::log::{link_of, parameters_of_vehicle};
 use crate::commands::{CommandError, leftover, output};
 
 /// The vehicle, and its file until it lies in the folder of the flight.
-pub(super) struct Flown {
+pub(super) struct FlightVehicle {
     pub(super) vehicle: Vehicle,
     file: File,
 }
@@ -37,11 +37,11 @@ const NAME: &str = "vehicle.toml";
 ///
 /// # Errors
 /// The file is wrong, the vehicle does not answer, or its parameters do not say enough.
-pub(super) fn vehicle_of(args: &FlyArgs) -> Result<Flown, CommandError> {
+pub(super) fn vehicle_of(args: &FlyArgs) -> Result<FlightVehicle, CommandError> {
     if let Some(path) = &args.vehicle {
         let loaded = read_vehicle(path)?;
         output::warnings(path, &loaded.warnings);
-        return Ok(Flown { vehicle: loaded.vehicle, file: File::At(path.clone()) });
+        return Ok(FlightVehicle { vehicle: loaded.vehicle, file: File::At(path.clone()) });
     }
     let Some(mass_kg) = args.mass else {
         return Err(CommandError::Input("expected --vehicle or --mass, got neither".to_owned()));
@@ -58,7 +58,7 @@ pub(super) fn vehicle_of(args: &FlyArgs) -> Result<Flown, CommandError> {
         if guesses == 1 { "" } else { "es" },
         text::path(&file_of(args))
     ));
-    Ok(Flown { file: File::Drafted(draft_text(&draft)?), vehicle: draft.vehicle })
+    Ok(FlightVehicle { file: File::Drafted(draft_text(&draft)?), vehicle: draft.vehicle })
 }
 
 /// Copies a file into the folder of the flight, unless it lies there.
@@ -73,7 +73,7 @@ pub(super) fn copy(from: &Path, to: &Path) -> Result<(), CommandError> {
     write_whole(to, &text).map_err(failed)
 }
 
-impl Flown {
+impl FlightVehicle {
     /// Puts its file into the folder of the flight, which is there.
     pub(super) fn put(self, args: &FlyArgs) -> Result<Vehicle, CommandError> {
         let to = args.out.join(NAME);

@@ -5,7 +5,7 @@ use std::io::IsTerminal;
 use mavid::fly::{Ending, Record};
 
 use super::document::Document;
-use super::flown::{Flown, Manner, flown};
+use super::one_flight::{FlightRun, Manner, one_flight};
 use super::vehicle::file_of;
 use super::watch::View;
 use crate::cli::FlyArgs;
@@ -22,7 +22,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &FlyArgs) -> Result<Outcome
 }
 
 fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> Result<Outcome, CommandError> {
-    let Flown { record, onboard, mut said, view } = flown((stderr, work), args, Manner::default())?;
+    let FlightRun { record, onboard, mut said, view } = one_flight((stderr, work), args, Manner::default())?;
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
     let mut notes = Vec::new();
     let flown = (&*args.out, landed, onboard.as_deref());

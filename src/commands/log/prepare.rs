@@ -1,5 +1,6 @@
 //! The run of `mavid log prepare`.
 
+use crate::commands::agreement::{NO, SET, YES};
 use std::io::{self, BufRead, IsTerminal};
 
 use mavid::autopilot::{LogAwaited, LogChange};
@@ -12,13 +13,6 @@ use super::link::open;
 use super::{hint, state};
 use crate::cli::{LogPrepareArgs, VehicleLinkArgs};
 use crate::commands::{CommandError, Outcome, output};
-
-/// The word that agrees at a terminal.
-const YES: &str = "set";
-/// What agrees as well.
-const ALSO_YES: [&str; 2] = ["y", "yes"];
-/// What does not, beside return alone.
-const NO: [&str; 2] = ["n", "no"];
 
 /// The document.
 #[derive(Debug, Default, Serialize)]
@@ -94,7 +88,7 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
     if !prepared.noted.is_empty() {
         output::message(&earlier(&args.link, &prepared.noted));
     }
-    let set = !changes.is_empty() && (args.set_logging || !json && agreed(YES, "set this")?);
+    let set = !changes.is_empty() && (args.set_logging || !json && agreed(SET, "set this")?);
     if set {
         onboard::change(&mut session, &prepared, changes, &notes).await?;
     }
@@ -227,7 +221,7 @@ pub fn agreed(word: &str, what: &str) -> Result<bool, CommandError> {
     let read = io::stdin().lock().read_line(&mut line);
     read.map_err(|error| CommandError::Failure(format!("cannot read standard input: {error}")))?;
     let answer = line.trim().to_ascii_lowercase();
-    let agrees = answer == word || ALSO_YES.contains(&answer.as_str());
+    let agrees = answer == word || YES.contains(&answer.as_str());
     if !agrees && !answer.is_empty() && !NO.contains(&answer.as_str()) {
         output::message(&format!(
             "expected {word}, y or n, got {}: treated as no",

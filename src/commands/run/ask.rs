@@ -1,5 +1,6 @@
 //! What a person is asked, and what holds where nobody can be asked.
 
+use crate::commands::agreement::{NO, YES};
 use std::io::{self, BufRead};
 
 use mavid::text;
@@ -9,9 +10,6 @@ use crate::commands::{CommandError, output};
 
 /// So often a wrong answer is asked for again.
 const TRIES: u32 = 3;
-/// Words that agree and that do not.
-const YES: [&str; 2] = ["y", "yes"];
-const NO: [&str; 2] = ["n", "no"];
 
 /// Asks, or knows that nobody is there.
 #[derive(Debug, Clone, Copy)]

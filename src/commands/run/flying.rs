@@ -10,7 +10,7 @@ use super::folder::Recorded;
 use super::progress::Progress;
 use super::step::Step;
 use super::target::Target;
-use crate::commands::fly::{self, Flown, Manner};
+use crate::commands::fly::{self, FlightRun, Manner};
 use crate::commands::{CommandError, log, output};
 
 /// A flight that is over, and its logs.
@@ -104,9 +104,9 @@ pub fn fly(context: &Context<'_>, target: &Target, step: &Step) -> Result<Flight
         watches: watched
             .map(|bar| -> Box<dyn FnOnce(&_) + Send> { Box::new(move |pictures| bar.follow(pictures)) }),
     };
-    let flown = fly::flown((context.stderr, context.work), &args, manner);
+    let flown = fly::one_flight((context.stderr, context.work), &args, manner);
     bar.iter().for_each(Progress::end);
-    let Flown { record, onboard, .. } = flown?;
+    let FlightRun { record, onboard, .. } = flown?;
     context.work.waits();
     let why = || record.outcome.cause.as_ref().map_or_else(String::new, |cause| format!(": {cause}"));
     match &record.outcome.ending {

@@ -87,7 +87,7 @@ pub fn hover_m(limits: &Limits, vehicle: &Vehicle) -> f64 {
 ///
 /// # Errors
 /// The room is too small, or nobody states one where nobody can be asked.
-pub fn settle(
+pub fn of_folder(
     (folder, ask): (&Folder, Ask),
     given: Option<&[f64]>,
     vehicle: &Vehicle,
@@ -164,7 +164,7 @@ mod tests {
         let limits = limits_in([6.0, 4.0, 5.0], &vehicle).unwrap();
         let read = parse_limits(&text_of(&limits), "limits.toml").unwrap();
         assert_eq!((read.x_max_m, read.y_max_m, read.z_max_m), (Some(3.0), Some(2.0), Some(5.0)));
-        assert_eq!(with_room(&read, &vehicle).notes, Vec::<String>::new());
+        assert_eq!(with_room(&read, &vehicle).notes, []);
         let hover_m = hover_m(&read, &vehicle);
         assert!(hover_m > read.z_min_m.unwrap() && hover_m < 5.0);
     }

@@ -8,7 +8,7 @@ use mavid::config::read_vehicle;
 use mavid::draft::{Draft, Given, parameters_of};
 use mavid::files::write_whole;
 use mavid::fly::parameters::{Parameters, wanted};
-use mavid::study::draft_from_parameters;
+use mavid::study::{draft_from_parameters, implausible};
 use mavid::text;
 use mavid::vehicle::{Guessed, Vehicle};
 
@@ -32,7 +32,7 @@ const ROTORS: usize = 8;
 ///
 /// # Errors
 /// The vehicle does not answer, or what it says does not suffice and nobody can be asked.
-pub fn settle(context: &Context<'_>, target: &mut Target) -> Result<Vehicle, CommandError> {
+pub fn of_folder(context: &Context<'_>, target: &mut Target) -> Result<Vehicle, CommandError> {
     let path = context.folder.vehicle();
     let args = context.args;
     if path.exists() {
@@ -170,7 +170,7 @@ fn told(draft: &Draft) -> String {
 
 /// A vehicle that contradicts itself is flown only where a person agrees.
 fn doubtless(context: &Context<'_>, draft: &Draft, path: &Path) -> Result<(), CommandError> {
-    let implausible = draft.vehicle.implausible();
+    let implausible = implausible(draft);
     if implausible.is_empty() && draft.doubts.is_empty() {
         return Ok(());
     }
@@ -178,7 +178,9 @@ fn doubtless(context: &Context<'_>, draft: &Draft, path: &Path) -> Result<(), Co
     if context.ask.agreed("The vehicle is doubtful, see above. Use it as it is?", false)? {
         return Ok(());
     }
-    let why = draft.doubts.iter().chain(&implausible).cloned().collect::<Vec<_>>().join("; ");
+    let why =
+        draft.doubts.iter().map(String::as_str).chain(implausible.iter().map(|note| note.text.as_str()));
+    let why = why.collect::<Vec<_>>().join("; ");
     let kept = format!("{}.doubtful", text::path(path));
     // the next run begins with what is stated anew
     let moved = std::fs::rename(path, &kept);

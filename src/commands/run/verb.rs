@@ -45,8 +45,8 @@ pub fn story(
     checked(args)?;
     let folder = Folder::at(args.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER)))?;
     let context = Context::new((args, recipe), (folder, ask), (stderr, work));
-    let flown = flown(&context)?;
-    let Flown { explained: Explained { study, logs }, record, flights } = &flown;
+    let flown = all_flights(&context)?;
+    let FlownFlights { explained: Explained { study, logs }, record, flights } = &flown;
     context.stage("Model and report");
     finish::rigid_body(&context, logs);
     let exports = finish::exports(&context);
@@ -91,7 +91,7 @@ fn flying_vehicle(args: &RunArgs) -> Result<Vehicle, CommandError> {
 }
 
 /// All flights, explained.
-struct Flown {
+struct FlownFlights {
     explained: Explained,
     /// of the last flight, where one was flown now
     record: Option<Record>,
@@ -99,18 +99,18 @@ struct Flown {
 }
 
 /// Flies until every name is certain, or nobody wants a further flight.
-fn flown(context: &Context<'_>) -> Result<Flown, CommandError> {
+fn all_flights(context: &Context<'_>) -> Result<FlownFlights, CommandError> {
     let mut flights = context.folder.flights();
     let is_over = flights.len() >= context.flights_max();
     context.stage("Vehicle");
     let mut target = if is_over { None } else { Some(Target::of(context)?) };
     let vehicle = match &mut target {
-        Some(target) => vehicle::settle(context, target)?,
+        Some(target) => vehicle::of_folder(context, target)?,
         None => read_vehicle(&context.folder.vehicle())?.vehicle,
     };
     let is_simulated = context.args.sitl;
     context.stage("Room and trajectory");
-    room::settle((&context.folder, context.ask), context.args.room.as_deref(), &vehicle, is_simulated)?;
+    room::of_folder((&context.folder, context.ask), context.args.room.as_deref(), &vehicle, is_simulated)?;
     let (mut record, mut logging) = (None, None);
     let mut done = None;
     if flights.is_empty() {
@@ -139,7 +139,7 @@ fn flown(context: &Context<'_>) -> Result<Flown, CommandError> {
         record = Some(fly_one(context, target, (&trajectory, &mut logging), &mut flights)?);
     }
     target.and_then(|target| target.embedded).into_iter().for_each(Embedded::stop);
-    Ok(Flown { explained: done.ok_or_else(nothing_flown)?, record, flights: flights.len() })
+    Ok(FlownFlights { explained: done.ok_or_else(nothing_flown)?, record, flights: flights.len() })
 }
 
 fn nothing_flown() -> CommandError {

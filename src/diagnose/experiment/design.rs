@@ -102,7 +102,7 @@ fn traces(flights: &[Signals], vehicle: &Vehicle, settings: &NextSettings) -> Re
 }
 
 /// Two effects whose distance stays below this many standard deviations in every tried flight have the same effect on
-/// the vehicle. Chosen; not measured.
+/// the vehicle. A tenth of what tells two effects apart: a hundred such flights would be needed.
 const SAME_SIGMA: f64 = 0.5;
 const SAME: &str = "in every flight inside the limits both have the same effect on the vehicle";
 const BY_WEIGHING: &str =

@@ -4,10 +4,10 @@ use crate::signals::Signals;
 use crate::vehicle::Limits;
 use nalgebra::Vector3;
 
-/// Limits of speeds and accelerations over those that were flown. The room and the tilt stay as they were flown.
-/// Chosen; not measured.
+/// Limits of speeds and accelerations over those that were flown. The room and the tilt stay as they were flown. A
+/// person agrees to it before it is flown; more would be another flight.
 const MORE: f64 = 1.5;
-/// Time over which accelerations are averaged, s. Chosen; not measured.
+/// Time over which accelerations are averaged, s. The half width of the weak form's kernel.
 const OVER_S: f64 = 0.2;
 
 /// The room, speeds, accelerations and angles of the usable parts of flights.

@@ -60,6 +60,14 @@ pub struct Pair {
     pub after: f64,
 }
 
+impl Pair {
+    /// Their distance with the next flight, standard deviations.
+    #[must_use]
+    pub fn with_next(&self) -> f64 {
+        self.now.hypot(self.after)
+    }
+}
+
 /// Two effects that no trajectory separates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Inseparable {
@@ -78,7 +86,6 @@ impl std::fmt::Display for Inseparable {
 }
 
 /// Effects whose distance is below this many standard deviations are not distinguished, as in the confusable sets.
-/// Chosen; not measured.
 const ENOUGH_SIGMA: f64 = 5.0;
 
 const BY_SPEEDS: &str = " (rotor speed telemetry, or doublets of 5 Hz and more, separate them)";

@@ -101,7 +101,7 @@ pub(super) fn size(explanation: &Explanation, named: &'static str) -> Option<Que
 
 /// Places of an effect in the base.
 fn places(explanation: &Explanation, id: &str) -> impl Iterator<Item = usize> {
-    let present = explanation.search.after.base.present.iter().enumerate();
+    let present = explanation.search.after.base.effects.iter().enumerate();
     present.filter(move |(_, present)| present.id() == id).map(|(place, _)| place)
 }
 
@@ -130,7 +130,7 @@ fn of_latency(
     Some(weighted.partialled(&[difference]).map_or(0.0, |(_, left)| left.norm()))
 }
 
-/// Step of the grid of the simulated flight, s: many instants a kernel, few a second. Chosen; not measured.
+/// Step of the grid of the simulated flight, s: many instants a kernel, few a second.
 const STEP_S: f64 = 0.02;
 
 /// Predicts flights with the model, the noise and the sensors of the previous flights.
@@ -200,7 +200,7 @@ impl<'a> Foresight<'a> {
         let grid = Grid::covering(0.0, trajectory.period_s + around_s, STEP_S);
         let allocation = Allocation::new(vehicle, 0.0).ok()?;
         let rotors = vehicle.rotors.len();
-        let mut flown = Flown::default();
+        let mut flown = SimulatedSeries::default();
         for index in 0..grid.count {
             let now = Reference::new(trajectory.derivatives(grid.time_s(index)), vehicle.gravity_m_s2);
             let omega = Vector3::from(now.motion.omega);
@@ -226,7 +226,7 @@ impl<'a> Foresight<'a> {
 
 /// Series of the simulated flight.
 #[derive(Default)]
-struct Flown {
+struct SimulatedSeries {
     attitude: Vec<UnitQuaternion<f64>>,
     rate: Vec<Vector3<f64>>,
     position: Vec<Vector3<f64>>,
@@ -236,7 +236,7 @@ struct Flown {
     wrench: Vec<Vector4<f64>>,
 }
 
-impl Flown {
+impl SimulatedSeries {
     /// Signals with the streams of the previous flights, of which `like` is the first.
     fn signals(self, (grid, full_thrust_n): (Grid, f64), like: &Trace) -> Signals {
         let rate_hz = 1.0 / like.command_period_s.max(1e-3);

@@ -12,17 +12,20 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
 
-/// Instants of a period at which the bounds are checked. Chosen; not measured.
+/// Instants of a period at which the bounds are checked. A number of steps: only the time of a search and its last
+/// digits depend on it.
 const INSTANTS: u32 = 100;
-/// Share of each bound's scale that is kept free, for the times between the instants. Chosen; not measured.
+/// Share of each bound's scale that is kept free, for the times between the instants.
 const SPARE: f64 = 0.02;
 /// Margin to the rotors' bounds with which a simulated flight stays off them, for a thrust-to-weight ratio of 2.
 const ROTOR_MARGIN: RotorMargin = ROTOR_MARGINS[2];
 /// Halvings of a factor.
 const HALVINGS: u32 = 14;
-/// First size of a move, relative to the series. It shrinks by [`SHRINK`] when a move fails. Chosen; not measured.
+/// First size of a move, relative to the series. It shrinks by [`SHRINK`] when a move fails. A number of steps: only
+/// the time of a search and its last digits depend on it.
 const MOVE: f64 = 0.5;
-/// Factor on the size of a move after a failure. Chosen; not measured.
+/// Factor on the size of a move after a failure. A number of steps: only the time of a search and its last digits
+/// depend on it.
 const SHRINK: f64 = 0.97;
 
 /// The best series and the distance of every pair.
@@ -40,7 +43,8 @@ pub(super) fn best(
         .map(|(trajectory, _, distances)| (trajectory, distances))
 }
 
-/// Random flights that are assessed before one is searched. Chosen; not measured.
+/// Random flights that are assessed before one is searched. A number of steps: only the time of a search and its last
+/// digits depend on it.
 const PROBES: u64 = 6;
 
 /// The largest distance of every question over a few random flights that fill the room; none if no flight can be

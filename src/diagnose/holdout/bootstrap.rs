@@ -4,7 +4,7 @@
 use crate::compare::improvement_percent;
 use crate::stats::{percentiles_95, resamples};
 
-/// Least number of blocks for an interval. Chosen; not measured.
+/// Least number of blocks for an interval. Of fewer there are too few different draws for an interval of 95 %.
 const LEAST_BLOCKS: usize = 5;
 
 /// A figure with its 95 % bootstrap interval.

@@ -11,6 +11,7 @@ use crate::diagnose::rows::Rows;
 use crate::diagnose::signature::EffectTerm;
 use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::trace::Trace;
+use crate::note::{About, Note};
 use crate::physics::{ActuationLatency, PhysicsError};
 use crate::text::significant;
 use crate::vehicle::Vehicle;
@@ -24,7 +25,7 @@ pub(super) struct Pair {
     /// how the rates of both models move in open loop: it is no merit of the effects
     pub(super) rate_law: Option<RateLaw>,
     /// parameters that were not kept, as sentences
-    pub(super) notes: Vec<String>,
+    pub(super) notes: Vec<Note>,
 }
 
 /// A pair with a flight's own centre of mass.
@@ -77,43 +78,45 @@ pub(super) fn carried_over(
     vehicle: &Vehicle,
     settings: &HoldoutSettings,
 ) -> Result<Pair, PhysicsError> {
+    let about = || About::File(flight.name.to_owned());
     let mut pair = pair(explained, vehicle, trace.command_period_s);
-    let moment = pair.after.present.iter().enumerate().find_map(|(place, term)| {
+    let moment = pair.after.effects.iter().enumerate().find_map(|(place, term)| {
         Some((place, term.signature.role.moment?, *term.signature.amounts.first()?))
     });
     // in another part of the same flight the moment is known
     if let Some((place, slot, amount)) = moment.filter(|_| !settings.same_flight) {
-        let kept_kg = pair.after.present[place].values[amount];
+        let kept_kg = pair.after.effects[place].values[amount];
         let time_s = change_time(&pair.after, (place, slot), trace)?;
-        pair.after.present[place].values[slot] = time_s.unwrap_or(NEVER_S);
+        pair.after.effects[place].values[slot] = time_s.unwrap_or(NEVER_S);
         let when = time_s.map_or("nowhere in this flight".to_owned(), |t| format!("at {t:.1} s"));
-        pair.notes.push(format!(
-            "{}: the moment of the mass change was found again {when}; its size, {kept_kg:+.3} kg, was kept",
-            flight.name
-        ));
+        let text = format!(
+            "the moment of the mass change was found again {when}; its size, {kept_kg:+.3} kg, was kept"
+        );
+        pair.notes.push(Note::remark(about(), text));
     }
-    let has = |what: fn(&EffectTerm) -> bool| pair.after.present.iter().any(what);
+    let has = |what: fn(&EffectTerm) -> bool| pair.after.effects.iter().any(what);
     let of_the_day = has(|term| term.signature.role.of_the_day);
     let by_voltage = has(|term| term.signature.needs.contains(&Need::Voltage));
     if of_the_day && !settings.same_flight {
-        pair.notes.push(format!(
-            "{}: predicted with the wind of the identification flights; another day's wind would show as a difference in the table of parameters",
-            flight.name
+        pair.notes.push(Note::warning(
+            about(),
+            "predicted with the wind of the identification flights; another day's wind would show as a difference in the table of \
+             parameters",
         ));
     }
     if by_voltage && trace.voltage_v.is_none() {
-        pair.notes
-            .push(format!("{}: the battery's voltage is not recorded, so its sag is left out", flight.name));
+        let text = "the battery's voltage is not recorded, so its sag is left out";
+        pair.notes.push(Note::warning(about(), text));
     }
     if let Some(Loaded { base: after, moved_m: [x, y], until_s }) = loaded(&pair.after, trace, settings)? {
-        pair.notes.push(format!(
-            "{}: its centre of mass is not where that of the flights explained is: by ({}, {}) mm along body x and y, as a battery \
+        let text = format!(
+            "its centre of mass is not where that of the flights explained is: by ({}, {}) mm along body x and y, as a battery \
              that is put back elsewhere moves it. This is from the first seconds of the flight, and the errors are those of the \
              rest",
-            flight.name,
             significant(1e3 * x, 2),
             significant(1e3 * y, 2)
-        ));
+        );
+        pair.notes.push(Note::remark(about(), text));
         let before = loaded(&pair.before, trace, settings)?.map_or_else(|| pair.before.clone(), |of| of.base);
         pair.loaded = Some(LoadedPair { before, after, until_s });
     }
@@ -132,7 +135,7 @@ fn change_time(
 ) -> Result<Option<f64>, PhysicsError> {
     let with_time = |time_s: f64| {
         let mut base = after.clone();
-        base.present[place].values[slot] = time_s;
+        base.effects[place].values[slot] = time_s;
         Rows::new(std::slice::from_ref(trace), &base)
     };
     let (unchanged, changed) = (with_time(NEVER_S)?, with_time(0.0)?);

@@ -1,7 +1,7 @@
 //! Closed-loop simulation of the held-out flights from their setpoints, as in Table 4.
 
 use super::bootstrap::{Blocks, Compared, Squares};
-use super::ready::{Ready, flown};
+use super::ready::{Ready, model_of};
 use super::settings::HoldoutSettings;
 use crate::compare::{SIGNALS, TenSignals, autopilot_flight, divergence};
 use crate::diagnose::base::Base;
@@ -42,7 +42,7 @@ pub(super) fn flown_again(
         let levels = noise_levels(&recorded);
         floors.iter_mut().zip(levels).for_each(|(floor, level)| *floor += level * level);
         let fly = |name: &str, base: &Base| -> Result<Vec<(f64, [f64; 10])>, String> {
-            let model = flown(base).map_err(|error| named(&error))?;
+            let model = model_of(base).map_err(|error| named(&error))?;
             let again = autopilot_flight(recording, &model, nominal).map_err(|error| named(&error))?;
             match divergence(&recorded, &again, span_s(ready)) {
                 Some(how) => Err(named(&format!(

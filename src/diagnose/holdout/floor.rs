@@ -34,7 +34,7 @@ pub fn state_noise(signals: &Signals) -> StateNoise {
 /// Share of the variance of the logged commands' jitter that the rotors do not follow. A loop twice as fast as the log
 /// gives one half; slower logs give more, up to one.
 const OTHERWISE: f64 = 0.5;
-/// Fourth differences beyond this many medians are manoeuvres or gaps. Chosen; not measured.
+/// Fourth differences beyond this many medians are manoeuvres or gaps. White noise does not reach it.
 const OUTLIER: f64 = 6.0;
 
 /// Jitter of logged commands, by the covariance of their fourth differences over the rotors. `None` if rotor speeds

@@ -9,6 +9,7 @@ use super::ready::{Ready, trace_of};
 use super::settings::{Explained, HeldOut, HoldoutSettings};
 use super::shown::HoldoutFit;
 use super::{closed_loop, open_loop, other_vehicle, weak};
+use crate::note::{About, Note};
 use crate::vehicle::Vehicle;
 
 /// Compares the explained model with the rigid body alone on hold-out flights. `empirical` acts in addition to the
@@ -47,7 +48,7 @@ pub fn on_left_out(
     if ready.is_empty() {
         return Err(HoldoutError::NoFlight);
     }
-    let mut notes: Vec<String> = ready.iter().flat_map(|ready| ready.pair.notes.clone()).collect();
+    let mut notes: Vec<Note> = ready.iter().flat_map(|ready| ready.pair.notes.clone()).collect();
     // what cannot be played back still has its residuals
     let (open_loop, improvement_percent, blocks, no_open_loop) =
         match open_loop::open_loop(&ready, empirical, settings) {
@@ -61,11 +62,11 @@ pub fn on_left_out(
     let improvement = improvement_percent.map(|improvement| improvement.value);
     let another = other_vehicle.is_some();
     tracing::info!(improvement_percent = improvement, blocks, other_vehicle = another, "hold-out predicted");
-    notes.push(
+    notes.push(Note::remark(
+        About::HoldOut,
         "the floor is the error that white noise of the sensors and of the logged commands would cause with the right \
-         model; noise that an autopilot's estimator has smoothed is not included"
-            .to_owned(),
-    );
+         model; noise that an autopilot's estimator has smoothed is not included",
+    ));
     Ok(HoldoutFit {
         flights: ready.len(),
         blocks,

@@ -4,19 +4,17 @@ use super::settings::HoldoutSettings;
 use crate::diagnose::base::Base;
 use crate::diagnose::channels::AXES;
 use crate::diagnose::rows::Rows;
-use crate::diagnose::signatures::ALL;
+use crate::diagnose::signatures::{ALL, REPACKED_M};
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
 use nalgebra::{Matrix2, Vector2};
 
-/// Beginning of a held-out flight from which its centre of mass is taken, s; the errors are those of the rest. Chosen; not
-/// measured.
+/// Beginning of a held-out flight from which its centre of mass is taken, s; the errors are those of the rest. Longer
+/// would take what is to be predicted, shorter leaves the place vague.
 const FIRST_S: f64 = 5.0;
-/// Largest change of the centre of mass by a battery pack that was put back in another place, m. Chosen; not measured.
-pub(super) const COM_M: f64 = 0.002;
-/// Length of the blocks whose scatter gives its standard error, s. Chosen; not measured.
+/// Length of the blocks whose scatter gives its standard error, s. It is longer than the torques are correlated.
 const BLOCK_S: f64 = 1.0;
-/// Standard errors beyond which it was another place. Chosen; not measured.
+/// Standard errors beyond which it was another place. As many as a name needs.
 const SIGMAS: f64 = 4.0;
 
 /// A base with the centre of mass of another flight.
@@ -41,25 +39,25 @@ pub(super) fn loaded(
     };
     let slots = signature.amounts;
     let mut all = base.clone();
-    for term in &mut all.present {
+    for term in &mut all.effects {
         term.free.clear();
     }
-    let own = all.present.iter().position(|term| std::ptr::eq(term.signature, signature));
-    let place = own.unwrap_or(all.present.len());
+    let own = all.effects.iter().position(|term| std::ptr::eq(term.signature, signature));
+    let place = own.unwrap_or(all.effects.len());
     if own.is_none() {
-        all.present.push(signature.whole());
+        all.effects.push(signature.whole());
     }
-    all.present[place].free = slots[..2].to_vec();
+    all.effects[place].free = slots[..2].to_vec();
     let rows = Rows::new(std::slice::from_ref(trace), &all)?;
     let Some(&first_s) = rows.time_s.first() else { return Ok(None) };
     let until_s = first_s + FIRST_S;
     let Some((moved, std)) = of_torques(&rows, (first_s, until_s)) else { return Ok(None) };
     let is_moved = moved.iter().zip(&std).any(|(moved, std)| moved.abs() > SIGMAS * std);
-    if !is_moved || moved.norm() > COM_M {
+    if !is_moved || moved.norm() > REPACKED_M {
         return Ok(None);
     }
     for (slot, moved) in slots.iter().zip(moved.iter()) {
-        all.present[place].values[*slot] += moved;
+        all.effects[place].values[*slot] += moved;
     }
     Ok(Some(Loaded { base: all, moved_m: moved.into(), until_s }))
 }

@@ -4,7 +4,7 @@ use super::bootstrap::{AtEnd, Blocks, Compared, Interval, Squares};
 use super::error::HoldoutError;
 use super::floor::{command_noise, state_noise};
 use super::rate_law::{EmpiricalRates, Path, RateLaw};
-use super::ready::{Ready, flown};
+use super::ready::{Ready, model_of};
 use super::settings::HoldoutSettings;
 use crate::compare::{
     CommandNoise, CompareError, FloorNoise, PlaybackSettings, StateNoise, WindowErrors, playback_lengths,
@@ -15,13 +15,12 @@ use crate::diagnose::empirical::Empirical;
 use crate::physics::{ActiveEffect, Model, PhysicsError};
 use rayon::prelude::*;
 
-/// Time from one window's start to the next one's, s. Motions that repeat must not always be met at the same place. Chosen; not
-/// measured.
+/// Time from one window's start to the next one's, s. Motions that repeat must not always be met at the same place.
 const STRIDE_S: f64 = 0.17;
 /// Lengths of the windows, s.
 pub const WINDOWS_S: [f64; 3] = [0.1, HALF_S, 1.0];
 /// Length of the windows that are told first, s.
-const HALF_S: f64 = 0.5;
+pub const HALF_S: f64 = 0.5;
 
 /// Errors over windows of one length; `None` for a quantity that the recording does not contain.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,14 +102,14 @@ fn models_of(ready: &Ready) -> Result<Models, PhysicsError> {
 
 /// A base's model with its latency as effects, and with a law of its rates.
 fn predicting(base: &Base, rate_law: Option<RateLaw>) -> Result<Model, PhysicsError> {
-    let model = flown(base)?;
+    let model = model_of(base)?;
     let Some(law) = rate_law else { return Ok(model) };
     model.with(ActiveEffect::new(&EmpiricalRates, &law.values(&model.body.inertia_kg_m2))?)
 }
 
 fn path_of<'a>(ready: &'a Ready) -> Result<Path<'a>, HoldoutError> {
     let (_, base) = ready.pair.predicting();
-    let (model, signals) = (flown(base)?, ready.flight.signals);
+    let (model, signals) = (model_of(base)?, ready.flight.signals);
     let torques_nm = torques_along((&model, &base.vehicle), signals, &playback_of(HALF_S))
         .map_err(|source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source })?;
     Ok(Path { signals, torques_nm, inertia_kg_m2: model.body.inertia_kg_m2 })

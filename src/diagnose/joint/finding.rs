@@ -1,6 +1,6 @@
 //! Result for each effect.
 
-use super::held::{Held, Settled};
+use super::held::{FittedForm, Held};
 use super::latency::{LEAST_LAG_S, Split};
 use super::wanted::RequestedEffects;
 use crate::diagnose::base::follows_force;
@@ -132,11 +132,11 @@ impl EffectFound {
 pub(super) fn effects(
     (flights, vehicle): (&[Trace], &Vehicle),
     wanted: &RequestedEffects,
-    (fitted, settled): (&Fitted, &[Settled]),
+    (fitted, settled): (&Fitted, &[FittedForm]),
     (latency, split): (&LatencyFinding, Split),
     by_mass: Option<f64>,
 ) -> Vec<EffectFound> {
-    let first = fitted.base.present.len() - settled.len();
+    let first = fitted.base.effects.len() - settled.len();
     wanted
         .signatures()
         .iter()
@@ -154,11 +154,11 @@ pub(super) fn effects(
 fn of_columns(
     fitted: &Fitted,
     place: usize,
-    settled: &Settled,
+    settled: &FittedForm,
     (vehicle, wanted, by_mass): (&Vehicle, &RequestedEffects, Option<f64>),
 ) -> EffectFound {
-    let present = &fitted.base.present[place];
-    let before: usize = fitted.base.present[..place].iter().map(|of| of.free.len()).sum();
+    let present = &fitted.base.effects[place];
+    let before: usize = fitted.base.effects[..place].iter().map(|of| of.free.len()).sum();
     let column = |nth: usize| fitted.rows.nuisances.len() + before + nth;
     let scale = Scale { fitted, by_mass };
     let mut parameters = Vec::new();

@@ -21,38 +21,40 @@ pub(super) enum Held {
 
 /// A form with the treatment of its parameters.
 #[derive(Debug, Clone)]
-pub(super) struct Settled {
+pub(super) struct FittedForm {
     pub(super) chosen: Chosen,
     /// slot and reason
     pub(super) held: Vec<(usize, Held)>,
 }
 
-/// A standard error above this share of the plausible range does not determine a parameter. Chosen; not measured.
+/// A standard error above this share of the plausible range does not determine a parameter. An even distribution over
+/// the range has a standard deviation of 0.29 of it; this is less than half of that.
 const SAYS_NOTHING: f64 = 0.125;
-/// Least share of a column that no other column may explain. Above rounding; not measured.
+/// Least share of a column that no other column may explain. Above rounding.
 const OWN: f64 = 1e-7;
-/// Standard errors by which an effect must differ from zero before its other parameters are estimated. Chosen; not
-/// measured.
+/// Standard errors by which an effect must differ from zero before its other parameters are estimated. Before that
+/// its shape would be fitted to noise.
 const SEEN: f64 = 2.5;
-/// Standard errors by which a drag along z must differ from zero to determine a wind along z. Chosen; not measured.
+/// Standard errors by which a drag along z must differ from zero to determine a wind along z. As many as a name
+/// needs.
 const SHOWS_WIND: f64 = 4.0;
 
 /// Fits, holds the parameters that cannot be estimated, and fits again until all remaining ones are determined.
-pub(super) fn settle(
+pub(super) fn estimate_forms(
     flights: &[Trace],
     base: &Base,
     chosen: Vec<Chosen>,
     newton: Newton,
-) -> Result<(Fitted, Vec<Settled>), PhysicsError> {
-    let mut settled: Vec<Settled> =
-        chosen.into_iter().map(|chosen| Settled { chosen, held: Vec::new() }).collect();
-    let before = base.present.len();
-    let start = |settled: &[Settled]| {
+) -> Result<(Fitted, Vec<FittedForm>), PhysicsError> {
+    let mut settled: Vec<FittedForm> =
+        chosen.into_iter().map(|chosen| FittedForm { chosen, held: Vec::new() }).collect();
+    let before = base.effects.len();
+    let start = |settled: &[FittedForm]| {
         let mut base = base.clone();
         // what hangs below is no part of the vehicle
         let load_kg: f64 = settled.iter().filter_map(|of| load_kg(&of.chosen.form)).sum();
         base.vehicle.body.mass_kg -= load_kg;
-        base.present.extend(settled.iter().map(|of| of.chosen.form.clone()));
+        base.effects.extend(settled.iter().map(|of| of.chosen.form.clone()));
         base
     };
     let mut fitted = fit(flights, start(&settled), newton)?;
@@ -71,7 +73,7 @@ pub(super) fn settle(
         let mut bounded = false;
         for (index, of) in settled.iter_mut().enumerate() {
             bounded |= hold_at_bounds(&fitted, before + index, of);
-            next.present[before + index].free.clone_from(&of.chosen.form.free);
+            next.effects[before + index].free.clone_from(&of.chosen.form.free);
         }
         if !bounded && !up_tried {
             up_tried = true;
@@ -90,7 +92,7 @@ fn load_kg(form: &EffectTerm) -> Option<f64> {
 }
 
 /// Holds the last column if columns are linearly dependent. Returns whether there was one.
-fn hold_last(settled: &mut [Settled]) -> bool {
+fn hold_last(settled: &mut [FittedForm]) -> bool {
     let last = settled.iter_mut().rev().find_map(|of| Some((of.chosen.form.free.pop()?, of)));
     let Some((slot, of)) = last else { return false };
     let why = "in this flight its effect is the same as that of other parameters";
@@ -100,13 +102,13 @@ fn hold_last(settled: &mut [Settled]) -> bool {
 
 /// Column of an effect's free parameter.
 fn column(fitted: &Fitted, place: usize, nth: usize) -> usize {
-    let before: usize = fitted.base.present[..place].iter().map(|present| present.free.len()).sum();
+    let before: usize = fitted.base.effects[..place].iter().map(|present| present.free.len()).sum();
     fitted.rows.nuisances.len() + before + nth
 }
 
 /// Slot, value, standard error, and share of its column that no other column explains (`None`: the column is zero).
 pub(super) fn estimates(fitted: &Fitted, place: usize) -> Vec<(usize, f64, f64, Option<f64>)> {
-    let present = &fitted.base.present[place];
+    let present = &fitted.base.effects[place];
     let of = |(nth, &slot): (usize, &usize)| {
         let at = column(fitted, place, nth);
         let std = fitted.covariance[(at, at)].max(0.0).sqrt();
@@ -123,8 +125,8 @@ fn own_share(weighted: &Weighted, index: usize) -> Option<f64> {
     (plain > 0.0).then(|| own / plain)
 }
 
-fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
-    let present = &fitted.base.present[place];
+fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut FittedForm) -> bool {
+    let present = &fitted.base.effects[place];
     let all = estimates(fitted, place);
     let seen = all.iter().any(|(slot, _, std, _)| {
         present.is_amount(*slot) && present.away_from_nothing(*slot, *std).abs() > SEEN
@@ -167,8 +169,8 @@ fn hold_undetermined(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
     anew
 }
 
-fn hold_at_bounds(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
-    let present = &fitted.base.present[place];
+fn hold_at_bounds(fitted: &Fitted, place: usize, of: &mut FittedForm) -> bool {
+    let present = &fitted.base.effects[place];
     let mut any = false;
     for (nth, (slot, value, std, _)) in estimates(fitted, place).into_iter().enumerate() {
         let wanted = value + fitted.coefficients[column(fitted, place, nth)];
@@ -185,9 +187,13 @@ fn hold_at_bounds(fitted: &Fitted, place: usize, of: &mut Settled) -> bool {
 }
 
 /// Estimates the vertical wind only if there is a significant drag along z, through which it acts.
-fn free_vertical_wind(fitted: &Fitted, settled: &mut [Settled], (before, next): (usize, &mut Base)) -> bool {
+fn free_vertical_wind(
+    fitted: &Fitted,
+    settled: &mut [FittedForm],
+    (before, next): (usize, &mut Base),
+) -> bool {
     const UP: usize = 2;
-    let shows = fitted.base.present.iter().enumerate().any(|(place, present)| {
+    let shows = fitted.base.effects.iter().enumerate().any(|(place, present)| {
         let Some(along_z) = present.signature.role.vertical else { return false };
         let free = estimates(fitted, place).into_iter().find(|(slot, ..)| *slot == along_z);
         free.is_some_and(|(_, value, std, _)| value > SHOWS_WIND * std)
@@ -200,7 +206,7 @@ fn free_vertical_wind(fitted: &Fitted, settled: &mut [Settled], (before, next): 
         }
         if shows {
             of.chosen.form.free.push(UP);
-            next.present[before + index].free.push(UP);
+            next.effects[before + index].free.push(UP);
             freed = true;
         } else {
             let why =

@@ -2,7 +2,7 @@
 
 use super::error::JointError;
 use super::finding::{self, EffectFound};
-use super::held::Settled;
+use super::held::FittedForm;
 use super::result::{JointEstimate, Physical};
 use super::scale::Kept;
 use super::wanted::RequestedEffects;
@@ -12,6 +12,7 @@ use crate::diagnose::evidence::LEAST_ROWS;
 use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::latency::{LatencyFinding, finding_of};
 use crate::diagnose::left_over::add_left_over;
+use crate::diagnose::physical::WITHIN_ERROR;
 use crate::diagnose::recorded::Recorded;
 use crate::diagnose::trace::Trace;
 use crate::estimate::{
@@ -54,7 +55,7 @@ pub fn identify_jointly(
     let (start, newton) = latency::held_as(wanted, &traces, (vehicle, known), first, plain.base.latency);
     let base = Base { latency: start, ..plain.base };
     let chosen = choose::choose(&traces, &base, wanted, &recorded)?;
-    let (after, mut settled) = of_file.settle(&traces, base, &chosen, newton)?;
+    let (after, mut settled) = of_file.estimate_forms(&traces, base, &chosen, newton)?;
     let (mut after, split) = latency::split(&traces, after, wanted)?;
     swing::allow_for_noise(&traces, &mut after, &mut settled)?;
     let mut before = before;
@@ -71,7 +72,7 @@ pub fn identify_jointly(
 struct Fits {
     before: Fitted,
     after: Fitted,
-    settled: Vec<Settled>,
+    settled: Vec<FittedForm>,
     split: latency::Split,
     first: LatencyFinding,
 }
@@ -89,7 +90,7 @@ fn put_together(
         estimated.with_guessed_curve(moved)
     };
     // a curve that the flight tells is no guess any more
-    let left = by_curve.filter(|_| !wanted.has(CURVE));
+    let left = by_curve.filter(|_| !wanted.bend_thrust());
     let (mut estimated, mut estimated_before) =
         (guessed(after.rigid_body(), left), guessed(before.rigid_body(), by_curve));
     let physical = made_physical(&mut estimated, &nominal.theta);
@@ -148,9 +149,3 @@ fn made_physical(estimated: &mut Estimated, nominal: &Theta) -> Physical {
     estimated.theta = theta;
     Physical::Moved
 }
-
-/// The effect that takes the place of a guessed thrust curve.
-const CURVE: &str = "thrust_curve";
-
-/// Standard errors by which an inertia may be moved to the nearest possible one. Chosen; not measured.
-const WITHIN_ERROR: f64 = 3.0;

@@ -2,7 +2,7 @@
 //! file that of the weighed mass.
 
 use super::choose::Chosen;
-use super::held::{Settled, settle};
+use super::held::{FittedForm, estimate_forms};
 use crate::diagnose::base::{Base, follows_force};
 use crate::diagnose::fit::{Fitted, Newton};
 use crate::diagnose::latency::{LatencyFinding, fit_latency};
@@ -12,9 +12,10 @@ use crate::diagnose::trace::Trace;
 use crate::physics::{ActiveEffect, PhysicsError};
 use crate::vehicle::{Anchor, Vehicle};
 
-/// Largest number of passes over the scale. Chosen; not measured.
+/// Largest number of passes over the scale. A number of steps: only the time of a search and its last digits depend
+/// on it.
 const PASSES: usize = 4;
-/// A scale that moves by less than this share has converged. Chosen; not measured.
+/// A scale that moves by less than this share has converged. Far below the least error of a mass.
 const CONVERGED: f64 = 1e-4;
 
 /// Effects of the vehicle file that act as stated.
@@ -26,7 +27,7 @@ pub(super) struct Kept<'a> {
 impl Kept<'_> {
     /// The effects on the scale of the stated thrust, if the weighed mass is `factor` times the mass on that scale.
     /// Effects between command and rotor speed go through the latency.
-    fn present(&self, factor: f64) -> Vec<EffectTerm> {
+    fn on_scale(&self, factor: f64) -> Vec<EffectTerm> {
         let one = |known: &&ActiveEffect| {
             let signature = signature_of(known.effect().id())?;
             let mut present = signature.term(known.parameters(), &[]);
@@ -54,7 +55,7 @@ impl Kept<'_> {
         let mut factor = 1.0_f64;
         let mut pass = 0;
         loop {
-            let base = Base { present: self.present(factor), ..Base::rigid(self.vehicle) };
+            let base = Base { effects: self.on_scale(factor), ..Base::rigid(self.vehicle) };
             let (fitted, latency) = fit_latency(flights, base.clone())?;
             pass += 1;
             match self.factor(&fitted) {
@@ -64,25 +65,25 @@ impl Kept<'_> {
         }
     }
 
-    /// [`settle`] on the scale that comes out of it; `base` holds them before all others.
-    pub(super) fn settle(
+    /// [`estimate_forms`] on the scale that comes out of it; `base` holds them before all others.
+    pub(super) fn estimate_forms(
         &self,
         flights: &[Trace],
         mut base: Base,
         chosen: &[Chosen],
         newton: Newton,
-    ) -> Result<(Fitted, Vec<Settled>), PhysicsError> {
+    ) -> Result<(Fitted, Vec<FittedForm>), PhysicsError> {
         let mut factor: Option<f64> = None;
         let mut pass = 0;
         loop {
-            let settled = settle(flights, &base, chosen.to_vec(), newton)?;
+            let settled = estimate_forms(flights, &base, chosen.to_vec(), newton)?;
             pass += 1;
             match self.factor(&settled.0) {
                 Some(now)
                     if factor.is_none_or(|factor| (now / factor - 1.0).abs() > CONVERGED)
                         && pass < PASSES =>
                 {
-                    base.present = self.present(now);
+                    base.effects = self.on_scale(now);
                     factor = Some(now);
                 }
                 _ => return Ok(settled),

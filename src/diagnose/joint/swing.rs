@@ -4,7 +4,7 @@
 //! their residual does not show. Therefore the same amount of noise is added to the motion several times, and the
 //! scatter of the estimates is added to their covariance.
 
-use super::held::{Held, Settled, estimates};
+use super::held::{FittedForm, Held, estimates};
 use crate::diagnose::channels::{Channels, Nuisance};
 use crate::diagnose::evidence::weighted;
 use crate::diagnose::fit::{Fitted, Newton, fit};
@@ -19,22 +19,22 @@ use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Number of noisier motions. Chosen; not measured.
+/// Number of noisier motions. They give a standard error to a fifth of itself.
 const REPLICATES: u64 = 12;
 /// A swing that loses its phase appears as a load that changes along the flight. This is the least change, as a share
-/// of the load. Chosen; not measured.
+/// of the load. Set by judgement.
 const CHANGED_SHARE: f64 = 0.25;
-/// The least change in standard errors. Chosen; not measured.
+/// The least change in standard errors. The usual three.
 const CHANGED: f64 = 3.0;
 
 /// Adds this scatter if a load is estimated. A swing that the noise hides does not determine its load.
 pub(super) fn allow_for_noise(
     flights: &[Trace],
     fitted: &mut Fitted,
-    settled: &mut [Settled],
+    settled: &mut [FittedForm],
 ) -> Result<(), PhysicsError> {
     scatter(flights, fitted)?;
-    let before = fitted.base.present.len() - settled.len();
+    let before = fitted.base.effects.len() - settled.len();
     let mut hidden = Vec::new();
     for (index, of) in
         settled.iter_mut().enumerate().filter(|(_, of)| of.chosen.form.signature.role.hangs_below)
@@ -64,9 +64,9 @@ pub(super) fn allow_for_noise(
     // what is not determined is not in the model: its mass is the vehicle's again
     let mut base = fitted.base.clone();
     for load in hidden {
-        base.vehicle.body.mass_kg += base.present[load].values[0];
-        base.present[load].values[0] = 0.0;
-        base.present[load].free.clear();
+        base.vehicle.body.mass_kg += base.effects[load].values[0];
+        base.effects[load].values[0] = 0.0;
+        base.effects[load].free.clear();
     }
     *fitted = fit(flights, base, Newton::Held)?;
     Ok(())
@@ -74,7 +74,7 @@ pub(super) fn allow_for_noise(
 
 /// Whether the load at `place` of the base seems to change along the flight, apart from its weight.
 fn runs_out_of_step(fitted: &Fitted, place: usize) -> bool {
-    let before: usize = fitted.base.present[..place].iter().map(|present| present.free.len()).sum();
+    let before: usize = fitted.base.effects[..place].iter().map(|present| present.free.len()).sum();
     let load = fitted.rows.effects.get(before);
     let mass = fitted.rows.nuisances.iter().find(|column| column.nuisance == Nuisance::Mass);
     let (Some(load), Some(mass)) = (load, mass) else { return false };
@@ -91,7 +91,7 @@ fn runs_out_of_step(fitted: &Fitted, place: usize) -> bool {
         along(load, square),
     ];
     let Some(evidence) = fitted.weighted.test(&columns) else { return false };
-    let load_kg = fitted.base.present[place].values[0];
+    let load_kg = fitted.base.effects[place].values[0];
     (2..columns.len()).any(|index| {
         let change_kg = evidence.theta[index].abs();
         change_kg > CHANGED_SHARE * load_kg && change_kg > CHANGED * evidence.std(index)

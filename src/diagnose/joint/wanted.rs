@@ -3,7 +3,7 @@
 use super::error::JointError;
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, LatencyKind, Signature};
-use crate::diagnose::signatures::signature_of;
+use crate::diagnose::signatures::{ALL, signature_of};
 use crate::physics::{ActiveEffect, Airframe};
 
 /// Names of parameters that are always identified.
@@ -31,8 +31,8 @@ impl RequestedEffects {
             if signatures.iter().any(|known| known.id() == signature.id()) {
                 return Err(JointError::Twice { id: signature.id() });
             }
-            if signature.joint.is_irregular {
-                return Err(JointError::Gust);
+            if let Some(why) = signature.joint.irregular {
+                return Err(JointError::Irregular { id: signature.id(), why });
             }
             signatures.push(signature);
         }
@@ -66,6 +66,11 @@ impl RequestedEffects {
         self.signatures.iter().any(|signature| signature.role.latency == Some(kind))
     }
 
+    /// Whether the thrust law's curvature is among them: it takes the place of a guessed one.
+    pub(super) fn bend_thrust(&self) -> bool {
+        self.signatures.iter().any(|signature| signature.role.bends_thrust.is_some())
+    }
+
     /// Whether some of them rotate the inertial unit against the body.
     #[must_use]
     pub fn turns_inertial_unit(&self) -> bool {
@@ -84,8 +89,8 @@ impl RequestedEffects {
     pub fn check_wind(&self, known: &[ActiveEffect]) -> Result<(), JointError> {
         let known = known.iter().filter_map(|of| signature_of(of.effect().id()));
         let of_air = self.signatures.iter().copied().chain(known).any(|signature| signature.role.of_air);
-        let has_wind = self.signatures.iter().any(|signature| signature.role.wind.is_some());
-        if has_wind && !of_air { Err(JointError::WindAlone) } else { Ok(()) }
+        let wind = self.signatures.iter().find(|signature| signature.role.wind.is_some());
+        wind.filter(|_| !of_air).map_or(Ok(()), |wind| Err(JointError::WindAlone { id: wind.id() }))
     }
 
     /// Checks the requirements on the flights and on the vehicle file.
@@ -128,6 +133,16 @@ pub(super) fn names() -> String {
     crate::physics::effects::ALL.iter().map(|effect| effect.id()).collect::<Vec<_>>().join(", ")
 }
 
+/// The names of the forces of the air, for messages.
+pub(super) fn names_of_air() -> String {
+    let of_air: Vec<&str> =
+        ALL.iter().filter(|signature| signature.role.of_air).map(|signature| signature.id()).collect();
+    match of_air.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => of_air.concat(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,7 +153,10 @@ mod tests {
         for effect in ALL {
             match RequestedEffects::of(&[format!(" {} ", effect.id())]) {
                 Ok(wanted) => assert!(wanted.has(effect.id()) && wanted.signatures().len() == 1),
-                Err(error) => assert_eq!((error, effect.id()), (JointError::Gust, "gust")),
+                Err(error) => {
+                    assert!(matches!(error, JointError::Irregular { id: "gust", .. }), "{error}");
+                    assert_eq!(effect.id(), "gust");
+                }
             }
         }
         assert!(RequestedEffects::of(&["motor_lag".to_owned()]).is_ok_and(|wanted| wanted.need_commands()));
@@ -150,7 +168,7 @@ mod tests {
         let wind = RequestedEffects::of(&["steady_wind".to_owned()]);
         let drag = ActiveEffect::new(&LinearDrag, &[0.1, 0.1, 0.0]);
         let (wind, drag) = (wind.unwrap(), drag.unwrap());
-        assert_eq!(wind.check_wind(&[]), Err(JointError::WindAlone));
+        assert_eq!(wind.check_wind(&[]), Err(JointError::WindAlone { id: "steady_wind" }));
         assert_eq!(wind.check_wind(&[drag]), Ok(()));
     }
 }

@@ -102,13 +102,15 @@ impl Aperiodic {
 }
 
 /// Least normal deviate of a trend. It is above that of a name, because eight trends are tried and nothing is exactly
-/// constant. Chosen; not measured by itself.
+/// constant. Set by judgement; measured only together with all conditions of a finding (see `Gates`).
 const TREND_Z: f64 = 5.5;
-/// Likelihood ratio beyond which a force drifts by itself. Chosen; not measured.
+/// Likelihood ratio beyond which a force drifts by itself. Set by judgement; measured only together with all
+/// conditions of a finding (see `Gates`).
 const WANDERING: f64 = 12.0;
-/// Time around a mass change that is left out, s. Chosen; not measured.
+/// Time around a mass change that is left out, s. It is the width of the kernels and of the search's step around it.
 const CHANGE_S: f64 = 2.5;
-/// p-value below which the residual depends on a state. Chosen; not measured by itself.
+/// p-value below which the residual depends on a state. Set by judgement; measured only together with all conditions
+/// of a finding (see `Gates`).
 const STATE_P: f64 = 1e-6;
 
 /// Tests the residual of a fit.
@@ -155,7 +157,7 @@ pub fn mass_step_std_kg(traces: &[Trace], fitted: &Fitted, at_s: f64) -> f64 {
 /// error of short duration that is not noise.
 fn quieten(view: &mut View, fitted: &Fitted) {
     let moment_s = |term: &EffectTerm| Some(term.values[term.signature.role.moment?]);
-    for at_s in fitted.base.present.iter().filter_map(moment_s) {
+    for at_s in fitted.base.effects.iter().filter_map(moment_s) {
         for row in 0..view.len() {
             if (view.time_s[row] - at_s).abs() < CHANGE_S {
                 view.residual.iter_mut().for_each(|channel| channel[row] = 0.0);

@@ -9,7 +9,7 @@ use super::super::fit::Fitted;
 use super::super::measured_force::may_feel;
 use super::super::trace::Trace;
 use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_SIDEWAYS};
-use crate::stats::quantile;
+use crate::stats::{STRETCHES, quantile};
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -56,23 +56,26 @@ pub struct Uneven {
     pub spread: f64,
 }
 
-/// Number of piecewise functions along one axis. Chosen; not measured.
+/// Number of piecewise functions along one axis. In a room of a few metres they are half a metre apart; more would
+/// follow noise.
 const HATS: usize = 7;
 /// Least normal deviate of a field. It is above that of a name, because eight directions and places of six columns each
 /// are tried, and the largest deviate reaches four on flights without a field.
 const FIELD_Z: f64 = 5.5;
-/// Number of parts into which the flight is divided. The cluster test has no power with six columns over twelve parts.
-const STRETCHES: usize = 12;
-/// Number of these parts in which a field must explain something. Chosen; not measured.
+/// Number of these parts in which a field must explain something. Set by judgement; measured only together with all
+/// conditions of a finding (see `Gates`).
 const LEAST_STRETCHES: usize = 8;
 /// Pairs of the force's axis and the axis along which it changes. A vertical force that changes with height is left
 /// out, because ground, ceiling and tether cause it.
 const TRIED: [(usize, usize); 8] = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1), (0, 2), (1, 2)];
-/// Least share of the residual energy. Chosen; not measured.
+/// Least share of the residual energy. Set by judgement; measured only together with all conditions of a finding (see
+/// `Gates`).
 const FIELD_GAIN: f64 = 0.01;
-/// Normal deviate beyond which the strength of an effect depends on the place. Chosen; not measured.
+/// Normal deviate beyond which the strength of an effect depends on the place. Set by judgement; measured only
+/// together with all conditions of a finding (see `Gates`).
 const UNEVEN_Z: f64 = 5.5;
-/// Relative change of the strength beyond which it depends on the place. Chosen; not measured.
+/// Relative change of the strength beyond which it depends on the place. Set by judgement; measured only together
+/// with all conditions of a finding (see `Gates`).
 const UNEVEN_SPREAD: f64 = 0.25;
 
 /// Tests for a force field. `None` if position or attitude are not known. `named_energy` is the energy that the named
@@ -86,7 +89,7 @@ pub fn field_test(
     if traces.is_empty() || !traces.iter().all(|trace| trace.known.position && trace.known.attitude) {
         return None;
     }
-    let ranges: Vec<(f64, f64)> = (0..3).map(|axis| flown(traces, axis)).collect();
+    let ranges: Vec<(f64, f64)> = (0..3).map(|axis| position_range(traces, axis)).collect();
     let tested: Vec<_> = TRIED
         .par_iter()
         .filter_map(|&(component, along)| {
@@ -146,7 +149,7 @@ fn all_along(after: &Fitted, columns: &[Channels], theta: &[f64]) -> bool {
 }
 
 /// Range of a world axis that contains 96 % of the rows, m.
-fn flown(traces: &[Trace], axis: usize) -> (f64, f64) {
+fn position_range(traces: &[Trace], axis: usize) -> (f64, f64) {
     let mut values: Vec<f64> = traces
         .iter()
         .flat_map(|trace| trace.centers.iter().map(move |&center| trace.states[center].position_m[axis]))
@@ -272,7 +275,7 @@ fn uneven(traces: &[Trace], after: &Fitted) -> Vec<Uneven> {
     let places = [place(0), place(1)];
     let mut out = Vec::new();
     let mut first = 0;
-    for present in &after.base.present {
+    for present in &after.base.effects {
         let own = &after.rows.effects[first..first + present.free.len()];
         first += present.free.len();
         let columns: Vec<Channels> = own

@@ -34,11 +34,11 @@ pub struct Coherence {
     pub frequency_hz: f64,
 }
 
-/// Length of a window, s. Chosen; not measured.
+/// Length of a window, s. It resolves an eighth of a hertz; only what is shown depends on it.
 const WINDOW_S: f64 = 8.0;
-/// Highest frequency of the mean, Hz. Chosen; not measured.
+/// Highest frequency of the mean, Hz. Only what is shown depends on it.
 const HIGHEST_HZ: f64 = 2.0;
-/// Least number of windows for a coherence. Chosen; not measured.
+/// Least number of windows for a coherence. Of fewer a coherence is near one by chance.
 const LEAST_WINDOWS: usize = 5;
 
 /// The band of one channel; `None` if nothing exceeds noise.

@@ -28,11 +28,14 @@ pub struct GustFound {
     pub statistic: f64,
 }
 
-/// Least force of a gust, rms, as a share of the weight. Chosen; not measured.
+/// Least force of a gust, rms, as a share of the weight. Set by judgement; measured only together with all conditions
+/// of a finding (see `Gates`).
 const LEAST_FORCE: f64 = 0.002;
-/// Air that moves by less is called still, m/s rms: a draught in a room. Chosen; not measured.
+/// Air that moves by less is called still, m/s rms: a draught in a room. Set by judgement; measured only together
+/// with all conditions of a finding (see `Gates`).
 const STILL_M_S: f64 = 0.15;
-/// Largest ratio of the strengths of a gust on the two horizontal axes. Chosen; not measured.
+/// Largest ratio of the strengths of a gust on the two horizontal axes. Gusts along the ground have no direction of
+/// their own; a larger ratio is that of another cause.
 const ALIKE: f64 = 3.0;
 
 impl GustFound {

@@ -11,7 +11,7 @@ pub(super) fn lateral_drag(view: &View, fitted: &Fitted) -> Option<(f64, f64)> {
     let (mut drag, mut variance) = (0.0, 0.0);
     let speed = view.states.iter().find(|(state, _)| *state == Followed::Speed).map(|(_, values)| values);
     let mean_speed = speed.map_or(0.0, |values| values.iter().sum::<f64>() / values.len().max(1) as f64);
-    for present in &fitted.base.present {
+    for present in &fitted.base.effects {
         let slope = present.signature.role.lateral_slope.map_or(0.0, |slope| slope(mean_speed));
         if slope > 0.0 {
             drag += slope * 0.5 * (present.values[0] + present.values[1]);
@@ -29,5 +29,5 @@ pub(super) fn lateral_drag(view: &View, fitted: &Fitted) -> Option<(f64, f64)> {
 /// Drag of the accepted effects along body z, N/(m/s).
 pub(super) fn axial_drag_n_s_m(fitted: &Fitted) -> f64 {
     let along_z = |term: &EffectTerm| term.values.get(term.signature.role.axial?).copied();
-    fitted.base.present.iter().filter_map(along_z).sum()
+    fitted.base.effects.iter().filter_map(along_z).sum()
 }

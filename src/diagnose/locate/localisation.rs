@@ -99,5 +99,5 @@ pub fn localise(traces: &[Trace], fitted: &Fitted) -> Option<Localisation> {
 }
 
 /// Residual power over noise from which an axis has a misfit. The noise is extrapolated from higher frequencies, so a
-/// smaller ratio is not certain. Chosen; not measured.
+/// smaller ratio is not certain. Only what is shown depends on it.
 const BEYOND_NOISE: f64 = 2.0;

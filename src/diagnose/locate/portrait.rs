@@ -27,7 +27,7 @@ pub struct Portrait {
 #[must_use]
 pub fn portrait(traces: &[Trace], fitted: &Fitted, id: &str) -> Option<Portrait> {
     let mut column = 0;
-    for term in &fitted.base.present {
+    for term in &fitted.base.effects {
         if term.id() == id {
             return of_term(traces, fitted, (term, column));
         }

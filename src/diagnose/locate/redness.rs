@@ -154,13 +154,16 @@ pub(super) fn scale(fitted: &Fitted, of: Quantity) -> f64 {
     }
 }
 
-/// Least likelihood ratio of a red spectrum against a white one. Chosen; not measured by itself.
+/// Least likelihood ratio of a red spectrum against a white one. Set by judgement; measured only together with all
+/// conditions of a finding (see `Gates`).
 pub(super) const RED_STATISTIC: f64 = 30.0;
 
-/// A red force must be this many times the force that the velocity's error causes. Chosen; not measured by itself.
+/// A red force must be this many times the force that the velocity's error causes. Set by judgement; measured only
+/// together with all conditions of a finding (see `Gates`).
 pub(super) const CONTRADICTED: f64 = 2.0;
 
-/// Least likelihood ratio of a red spectrum in the difference of the two measurements of force. Chosen; not measured.
+/// Least likelihood ratio of a red spectrum in the difference of the two measurements of force. Set by judgement;
+/// measured only together with all conditions of a finding (see `Gates`).
 const CONTRADICTION_STATISTIC: f64 = 10.0;
 
 /// A torque whose correlation time is shorter than this many time constants of the rotors comes from commands between
@@ -168,8 +171,8 @@ const CONTRADICTION_STATISTIC: f64 = 10.0;
 /// 20 without it.
 const OF_JITTER: f64 = 2.0;
 
-/// A horizontal force whose correlation time is shorter comes from the sensors' filters and from the estimator: air moves more slowly, s.
-/// Chosen; not measured.
+/// A horizontal force whose correlation time is shorter comes from the sensors' filters and from the estimator: air
+/// moves more slowly, s.
 pub(super) const LEAST_S: f64 = 0.3;
 
 /// Correlation times that are tried, s: from the kernel's width to twenty seconds.

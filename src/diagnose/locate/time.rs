@@ -2,6 +2,7 @@
 
 use super::super::channels::AXES;
 use super::view::View;
+use crate::diagnose::correlation::OVERLAP;
 use crate::stats::normal_sigma;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
@@ -62,17 +63,17 @@ pub struct Span {
     pub rms: f64,
 }
 
-/// Rows of one mean: the overlap of the kernels, so that means are nearly independent.
-const OVERLAP: usize = 8;
-/// Distance of the differences from which the long-run variance is computed, in means (2 s). Chosen; not measured.
+/// Distance of the differences from which the long-run variance is computed, in means (2 s). It is longer than the
+/// residual is correlated.
 const APART: usize = 5;
-/// Penalty of a change, times the logarithm of the number of means, in long-run variances. Chosen; not measured.
+/// Penalty of a change, times the logarithm of the number of means, in long-run variances. Only what is shown depends
+/// on it.
 const PENALTY: f64 = 6.0;
-/// Largest number of changes of one channel of one flight. Chosen; not measured.
+/// Largest number of changes of one channel of one flight. Only what is shown depends on it.
 const MOST: usize = 4;
-/// Least number of means on each side of a change (2 s). Chosen; not measured.
+/// Least number of means on each side of a change (2 s). Only what is shown depends on it.
 const SIDE: usize = 5;
-/// Window of a span, in means (2 s). Chosen; not measured.
+/// Window of a span, in means (2 s). Only what is shown depends on it.
 const WINDOW: usize = 5;
 
 /// One mean of neighbouring rows.

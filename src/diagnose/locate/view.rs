@@ -10,9 +10,9 @@ use crate::stats::median_step;
 use nalgebra::Vector3;
 use std::ops::Range;
 
-/// Length of a replicate if the flight does not repeat, s. Chosen; not measured.
+/// Length of a replicate if the flight does not repeat, s. It is longer than the residual is correlated.
 const BLOCK_S: f64 = 5.0;
-/// Length of a replicate for slow states, s. Chosen; not measured.
+/// Length of a replicate for slow states, s. Only what is shown depends on it.
 const SHORT_BLOCK_S: f64 = 1.0;
 
 /// Rows of all flights, one after the other.
@@ -120,7 +120,7 @@ impl View {
         let air = attitude && known(|t| t.known.velocity);
         let wind_m_s = fitted
             .base
-            .present
+            .effects
             .iter()
             .find(|term| term.signature.role.wind.is_some())
             .map_or(Vector3::zeros(), |present| {

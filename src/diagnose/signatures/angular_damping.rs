@@ -2,7 +2,7 @@
 
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Form, Naming, Role, Signature};
+use crate::diagnose::signature::{Form, Naming, OfTheVehicle, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::axes;
 use crate::physics::effects::AngularDamping;
@@ -13,7 +13,11 @@ pub static SIGNATURE: Signature = Signature {
     needs: &[Need::Torques],
     forms: |_| forms(),
     naming: Naming { usual, ..Naming::PLAIN },
-    role: Role { like_latency: Some(|| SIGNATURE.whole()), ..Role::NONE },
+    role: Role {
+        like_latency: Some(|| SIGNATURE.whole()),
+        of_the_vehicle: Some(OfTheVehicle::of(&[0, 1, 2])),
+        ..Role::NONE
+    },
     picture: Picture::of(&[3, 4, 5], Over::Rate),
     ..Signature::of(
         &AngularDamping,

@@ -6,8 +6,8 @@ use crate::diagnose::signature::{EffectTerm, Naming, Role, Signature};
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::BladeFlapping;
 
-/// Height over the centre of mass at which an ordinary drag may act, m: nobody knows a vehicle's centre of mass better. Chosen; not
-/// measured.
+/// Height over the centre of mass at which an ordinary drag may act, m: nobody knows a vehicle's centre of mass
+/// better.
 const ORDINARY_HEIGHT_M: f64 = 0.003;
 
 /// Airspeed at which a drag is taken, m/s.

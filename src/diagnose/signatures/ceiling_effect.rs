@@ -10,7 +10,8 @@ use crate::diagnose::wording::Words;
 use crate::physics::Airframe;
 use crate::physics::effects::CeilingEffect;
 
-/// Distances of a ceiling above the highest rotor position that are tried, rotor radii. Chosen; not measured.
+/// Distances of a ceiling above the highest rotor position that are tried, rotor radii. A grid: the height is refined
+/// afterwards.
 const CEILINGS_RADII: [f64; 7] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0];
 /// Value of a1 that is equivalent to no ceiling, the parameter's bound: the added thrust is proportional to its
 /// inverse.
@@ -18,7 +19,7 @@ const NO_CEILING: f64 = 50.0;
 /// Usual a1 of a ceiling, from measurements whose source is not recorded here.
 const USUAL: f64 = 5.0;
 /// Largest a1 of a ceiling that gets a name. With it, the thrust one rotor radius below the ceiling is about 5 %
-/// larger. Chosen; not measured.
+/// larger.
 const WEAKEST: f64 = 20.0;
 
 /// More thrust under a ceiling.

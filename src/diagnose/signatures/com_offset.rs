@@ -2,19 +2,27 @@
 
 use crate::diagnose::named::Named;
 use crate::diagnose::picture::{Over, Picture};
-use crate::diagnose::signature::{Naming, Role, Signature};
+use crate::diagnose::signature::{Naming, OfTheVehicle, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ComOffset;
 use crate::text::{significant, with_error};
 
-/// Least standard error of the centre of mass, m. A position is not defined better on a vehicle. Chosen; not measured.
+/// Least standard error of the centre of mass, m. A position is not defined better on a vehicle.
 const NUISANCE_M: f64 = 0.000_15;
+/// Largest change of the centre of mass by a battery pack that was put back in another place, m. Set by judgement:
+/// with more another vehicle would pass for a battery that was put back, with less each battery would be another
+/// vehicle.
+pub(in crate::diagnose) const REPACKED_M: f64 = 0.002;
 
 /// A centre of mass that is not where the vehicle file has it.
 pub static SIGNATURE: Signature = Signature {
     forms: |_| vec![SIGNATURE.form(&[0.0; 3], &[0, 1])],
     naming: Naming { least: NUISANCE_M, ..Naming::PLAIN },
-    role: Role { of_the_loading: true, ..Role::NONE },
+    role: Role {
+        of_the_loading: true,
+        of_the_vehicle: Some(OfTheVehicle { slots: &[0, 1, 2], least_difference: REPACKED_M }),
+        ..Role::NONE
+    },
     picture: Picture::of(&[3, 4], Over::Thrust),
     ..Signature::of(
         &ComOffset,

@@ -1,5 +1,6 @@
 //! Signature: a misaligned position reference.
 
+use super::imu_misalignment::ORDINARY_RAD;
 use crate::diagnose::channels::Nuisance;
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::{Need, Recorded};
@@ -7,8 +8,6 @@ use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, Refinement, Ro
 use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::FrameMisalignment;
 
-/// Misalignment that ordinary vehicles have, rad: about half a degree. Chosen; not measured.
-const ORDINARY_RAD: f64 = 0.0087;
 /// Slot of the share by which the attitude is rotated with its frame.
 const WITH_ATTITUDE: usize = 3;
 

@@ -14,13 +14,13 @@ use crate::vehicle::Vehicle;
 const RHO: usize = 0;
 const CA: usize = 1;
 const CB: usize = 2;
-/// Decays of the exponential form that the search tries, per rotor radius. Chosen; not measured.
+/// Decays of the exponential form that the search tries, per rotor radius. A grid: the decay is refined afterwards.
 const DECAYS_TRIED: [f64; 5] = [0.4, 0.7, 1.2, 2.0, 3.5];
-/// Start values of the decay if the other form was accepted, per rotor radius. Chosen; not measured.
+/// Start values of the decay if the other form was accepted, per rotor radius. Start values: the fit moves them.
 const DECAYS: [f64; 2] = [0.7, 1.5];
-/// Decays of the exponential form that `--with` fits, per rotor radius. Chosen; not measured.
+/// Decays of the exponential form that `--with` fits, per rotor radius. Start values: the fit moves them.
 const DECAYS_FITTED: [f64; 3] = [0.4, 0.8, 1.6];
-/// Height at which both forms have the same value at the start of a fit, rotor radii. Chosen; not measured.
+/// Height at which both forms have the same value at the start of a fit, rotor radii. A start value.
 const ALIKE_RADII: f64 = 2.0;
 
 /// More thrust near the ground.

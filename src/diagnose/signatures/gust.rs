@@ -6,7 +6,13 @@ use crate::physics::effects::Gust;
 
 /// Wind that changes.
 pub static SIGNATURE: Signature = Signature {
-    joint: Joint { is_irregular: true, ..Joint::PLAIN },
+    joint: Joint {
+        irregular: Some(
+            "a gust is one random course of the wind that does not repeat, and force and torque are not a function of its \
+             strength and correlation time; `mavid explain` gives both from the remaining residual",
+        ),
+        ..Joint::PLAIN
+    },
     ..Signature::of(
         &Gust,
         &[0, 1],

@@ -6,8 +6,9 @@ use crate::diagnose::signature::{Naming, Role, Signature};
 use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::ImuMisalignment;
 
-/// Misalignment that ordinary vehicles have, rad: about half a degree. Chosen; not measured.
-const ORDINARY_RAD: f64 = 0.0087;
+/// Misalignment that ordinary vehicles have, rad: about half a degree. Set by judgement: with less, ordinary vehicles
+/// would have it.
+pub(super) const ORDINARY_RAD: f64 = 0.0087;
 
 /// An inertial unit that is rotated against the body.
 pub static SIGNATURE: Signature = Signature {

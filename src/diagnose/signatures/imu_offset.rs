@@ -7,7 +7,8 @@ use crate::diagnose::trace::Trace;
 use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::ImuOffset;
 
-/// Distance of the inertial unit from the centre of mass that ordinary vehicles have, m. Chosen; not measured.
+/// Distance of the inertial unit from the centre of mass that ordinary vehicles have, m. Set by judgement: with less,
+/// ordinary vehicles would have it.
 const ORDINARY_M: f64 = 0.005;
 
 /// An accelerometer away from the centre of mass.

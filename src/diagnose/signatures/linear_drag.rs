@@ -3,7 +3,7 @@
 use crate::diagnose::named::Named;
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Joint, Naming, Role, Signature, Whence};
+use crate::diagnose::signature::{Joint, Naming, OfTheVehicle, Role, Signature, Whence};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::axes;
 use crate::physics::effects::LinearDrag;
@@ -40,6 +40,7 @@ pub static SIGNATURE: Signature = Signature {
         with_speed: Some((WITH_SPEED, &[1.0, 1.0])),
         axial: Some(DZ),
         vertical: Some(DZ),
+        of_the_vehicle: Some(OfTheVehicle::of(&[0, 1, DZ])),
         damped_by: Some(|| angular_damping::SIGNATURE.whole()),
         like_latency: Some(|| SIGNATURE.term(&[0.0; 4], &[0, 1, 2])),
         ..Role::NONE

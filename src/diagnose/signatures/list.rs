@@ -1,6 +1,6 @@
 //! All signatures, in the order in which the search tries them.
 
-use crate::diagnose::signature::{LatencyKind, Signature};
+use crate::diagnose::signature::{LatencyKind, Role, Signature};
 
 /// One signature for each effect.
 pub static ALL: &[&Signature] = &[
@@ -37,10 +37,16 @@ pub fn signature_of(id: &str) -> Option<&'static Signature> {
     ALL.iter().copied().find(|signature| signature.id() == id)
 }
 
+/// The first signature whose role meets a condition.
+#[must_use]
+pub fn with_role(meets: impl Fn(&Role) -> bool) -> Option<&'static Signature> {
+    ALL.iter().copied().find(|signature| meets(&signature.role))
+}
+
 /// The signature of the lag or the delay between command and rotor.
 #[must_use]
 pub fn latency_signature(kind: LatencyKind) -> Option<&'static Signature> {
-    ALL.iter().copied().find(|signature| signature.role.latency == Some(kind))
+    with_role(|role| role.latency == Some(kind))
 }
 
 /// Whether an effect is a lag or a delay between command and rotor.
@@ -67,7 +73,7 @@ mod tests {
             assert!(!amounts.is_empty() && amounts.iter().all(|slot| *slot < parameters), "{}", effect.id());
             let role = &signature.role;
             let found_otherwise =
-                role.latency.is_some() || role.wind.is_some() || signature.joint.is_irregular;
+                role.latency.is_some() || role.wind.is_some() || signature.joint.irregular.is_some();
             let forms = signature.whole();
             assert!(found_otherwise || forms.values.len() == parameters, "{}", effect.id());
         }

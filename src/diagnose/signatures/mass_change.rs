@@ -8,12 +8,12 @@ use crate::diagnose::words;
 use crate::physics::effects::MassChange;
 use crate::text::significant;
 
-/// Step between the moments that are tried, s. Chosen; not measured.
+/// Step between the moments that are tried, s. A grid: the moment is refined afterwards.
 const EVERY_S: f64 = 4.0;
 
-/// A change of less than this share of the mass gets no name: slow errors of the accelerometer and of the thrust law are as large.
-/// Chosen; not measured.
-const LEAST_OF_MASS: f64 = 0.01;
+/// A change of less than this share of the mass gets no name: slow errors of the accelerometer and of the thrust law
+/// are as large.
+pub(super) const LEAST_OF_MASS: f64 = 0.01;
 
 /// A mass that changes at a moment of the flight.
 pub static SIGNATURE: Signature = Signature {

@@ -28,9 +28,7 @@ mod vortex_ring;
 mod wanted;
 mod weak_rotor;
 
-pub(super) use gust::SIGNATURE as GUST;
-pub use list::{ALL, latency_kind, latency_signature, signature_of};
-pub(super) use rotor_inertia::SIGNATURE as ROTOR_INERTIA;
+pub(super) use com_offset::REPACKED_M;
+pub use list::{ALL, latency_kind, latency_signature, signature_of, with_role};
 pub(super) use steady_wind::CALM_M_S;
-pub(super) use thrust_curve::SIGNATURE as BENT_THRUST;
-pub use wanted::{WANTED, Wanted};
+pub use wanted::{ToldBy, WANTED, Wanted};

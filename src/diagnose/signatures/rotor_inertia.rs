@@ -2,7 +2,7 @@
 
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Naming, Role, Signature};
+use crate::diagnose::signature::{Naming, OfTheVehicle, Role, Signature};
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::RotorInertia;
 
@@ -12,7 +12,7 @@ pub static SIGNATURE: Signature = Signature {
     forms: |_| vec![SIGNATURE.form(&[0.0], &[0])],
     // and no force of the room, which position and velocity tell of, looks like it
     naming: Naming { ubiquitous: true, ..Naming::PLAIN },
-    role: Role { shortens_latency: true, ..Role::NONE },
+    role: Role { spin_up: Some(0), of_the_vehicle: Some(OfTheVehicle::of(&[0])), ..Role::NONE },
     picture: Picture::of(&[5], Over::Time),
     ..Signature::of(
         &RotorInertia,

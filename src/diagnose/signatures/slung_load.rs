@@ -1,5 +1,6 @@
 //! Signature: a load that swings below.
 
+use super::mass_change::LEAST_OF_MASS;
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{
@@ -10,17 +11,14 @@ use crate::physics::effects::SlungLoad;
 
 /// Lengths of a load's cord that are tried, m: their periods differ by about 20 %.
 const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
-/// Damping of the swing by the air at the start of a fit, 1/s. Chosen; not measured.
+/// Damping of the swing by the air at the start of a fit, 1/s. A start value.
 const SWING_DAMPING_1_S: f64 = 0.2;
-/// Shortest and longest cord that is fitted, m. Chosen; not measured.
+/// Shortest and longest cord that is fitted, m. Shorter ones swing too fast for the kernel, longer ones are flown
+/// outdoors alone.
 const CORDS_M: (f64, f64) = (0.2, 4.0);
 /// Dampings of the swing that are fitted, 1/s, each with the ratio of neighbouring cord lengths. Swings of neighbouring
 /// lengths stay in phase while the swing lasts, or differ by a tenth of a period after a minute.
 const SWINGS: [(f64, f64); 3] = [(0.0, 1.015), (0.1, 1.03), (0.5, 1.1)];
-
-/// A load of less than this share of the mass gets no name: with clean sensors small errors of other laws swing as much. Chosen;
-/// not measured.
-const LEAST_OF_MASS: f64 = 0.01;
 
 /// A load that swings below on a cord.
 pub static SIGNATURE: Signature = Signature {

@@ -8,11 +8,12 @@ use crate::physics::effects::Tether;
 
 /// A length of the tether that no flight reaches, m.
 const SLACK_M: f64 = 500.0;
-/// Least mass of a line per length, kg/m. Chosen; not measured.
+/// Least mass of a line per length, kg/m. A thin cable of two wires has as much.
 const LEAST_LINE_KG_M: f64 = 0.005;
-/// Mass per length at which a carried line is tried, kg/m: a line without weight has no effect. Chosen; not measured.
+/// Mass per length at which a carried line is tried, kg/m: a line without weight has no effect. A start value.
 const LINE_KG_M: f64 = 0.01;
-/// Lengths of a tether that are fitted, as shares of the farthest distance flown. Chosen; not measured.
+/// Lengths of a tether that are fitted, as shares of the farthest distance flown. A grid: the length is refined
+/// afterwards.
 const TAUT_AT: [f64; 6] = [0.4, 0.55, 0.7, 0.8, 0.9, 0.96];
 
 /// A line to the ground.

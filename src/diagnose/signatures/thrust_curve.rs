@@ -1,11 +1,12 @@
 //! Signature: a bent thrust curve.
 
 use crate::diagnose::picture::{Over, Picture};
-use crate::diagnose::signature::{Joint, Naming, Signature};
+use crate::diagnose::signature::{Joint, Naming, OfTheVehicle, Role, Signature};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ThrustCurve;
 
-/// Curvature up to which a thrust curve counts as known (-). Chosen; not measured.
+/// Curvature up to which a thrust curve counts as known (-). Set by judgement: with less, ordinary vehicles would
+/// have it.
 const ORDINARY_BEND: f64 = 0.02;
 
 /// A thrust curve with another curvature than in the vehicle file.
@@ -18,6 +19,7 @@ pub static SIGNATURE: Signature = Signature {
         usual: |parameter, _| (parameter == "curvature").then_some(0.15),
         ..Naming::PLAIN
     },
+    role: Role { bends_thrust: Some(0), of_the_vehicle: Some(OfTheVehicle::of(&[0])), ..Role::NONE },
     joint: Joint {
         forms: Some(|_, _| vec![SIGNATURE.term(&[0.0], &[0]), SIGNATURE.term(&[0.0; 2], &[0, 1])]),
         ..Joint::PLAIN

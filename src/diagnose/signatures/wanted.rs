@@ -13,18 +13,41 @@ pub struct Wanted {
     pub signature: &'static Signature,
     /// size on ordinary vehicles, in the unit of the effect's first amount
     pub usual: fn(&Vehicle) -> f64,
+    /// the part of a recording that tells it
+    pub told_by: ToldBy,
+    /// what to fly for more of it
+    pub fly: &'static str,
 }
 
-/// Lag of small motors with propellers, s. Chosen; not measured.
+/// The part of a recording that tells a quantity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ToldBy {
+    /// torques, as the vehicle turns
+    Torques,
+    /// the mean of torques that act always
+    MeanTorques,
+    /// torques and the force along the thrust
+    Forces,
+    /// the same over the velocity
+    ForcesOverVelocity,
+    /// the same over the battery's voltage
+    ForcesOverVoltage,
+}
+
+/// Lag of small motors with propellers, s. It only scales what `inspect` calls a usual effect.
 const LAG_S: f64 = 0.03;
-/// A light breeze, m/s. Chosen; not measured.
+/// A light breeze, m/s. It only scales what `inspect` calls a usual effect.
 const BREEZE_M_S: f64 = 2.0;
-/// Offset of the centre of mass over the distance of the rotors, as a battery that slipped brings it. Chosen; not measured.
+/// Offset of the centre of mass over the distance of the rotors, as a battery that slipped brings it. It only scales
+/// what `inspect` calls a usual effect.
 const OFFSET_OF_ARM: f64 = 0.05;
-/// Difference of one rotor's thrust that is ordinary (-). Chosen; not measured.
+/// Difference of one rotor's thrust that is ordinary (-). It only scales what `inspect` calls a usual effect.
 const ROTOR: f64 = 0.08;
 /// Thrust goes with the square of the speed, and the speed with the voltage, unless the autopilot corrects it (-).
 const EXPONENT: f64 = 1.5;
+
+/// What tells the balance of a vehicle.
+const LONG_AND_CALM: &str = "30 s and more with climbs, in calm air";
 
 /// All of them, in the order of the page.
 pub static WANTED: &[Wanted] = &[
@@ -32,17 +55,51 @@ pub static WANTED: &[Wanted] = &[
         name: "thrust_curve",
         signature: &thrust_curve::SIGNATURE,
         usual: |vehicle| stated(&thrust_curve::SIGNATURE, vehicle),
+        told_by: ToldBy::Forces,
+        fly: "climbs and descents, hard ones too",
     },
-    Wanted { name: "motor_lag", signature: &motor_lag::SIGNATURE, usual: |_| LAG_S },
+    Wanted {
+        name: "motor_lag",
+        signature: &motor_lag::SIGNATURE,
+        usual: |_| LAG_S,
+        told_by: ToldBy::Torques,
+        fly: "quick turns about all axes",
+    },
     Wanted {
         name: "drag",
         signature: &linear_drag::SIGNATURE,
         usual: |vehicle| stated(&linear_drag::SIGNATURE, vehicle),
+        told_by: ToldBy::ForcesOverVelocity,
+        fly: "legs there and back at 5 m/s and more",
     },
-    Wanted { name: "wind", signature: &steady_wind::SIGNATURE, usual: |_| BREEZE_M_S },
-    Wanted { name: "centre_of_mass", signature: &com_offset::SIGNATURE, usual: offset_m },
-    Wanted { name: "rotor_efficiency", signature: &weak_rotor::SIGNATURE, usual: |_| ROTOR },
-    Wanted { name: "voltage_sag", signature: &battery_sag::SIGNATURE, usual: |_| EXPONENT },
+    Wanted {
+        name: "wind",
+        signature: &steady_wind::SIGNATURE,
+        usual: |_| BREEZE_M_S,
+        told_by: ToldBy::ForcesOverVelocity,
+        fly: "legs in several directions at 3 m/s and more",
+    },
+    Wanted {
+        name: "centre_of_mass",
+        signature: &com_offset::SIGNATURE,
+        usual: offset_m,
+        told_by: ToldBy::MeanTorques,
+        fly: LONG_AND_CALM,
+    },
+    Wanted {
+        name: "rotor_efficiency",
+        signature: &weak_rotor::SIGNATURE,
+        usual: |_| ROTOR,
+        told_by: ToldBy::MeanTorques,
+        fly: LONG_AND_CALM,
+    },
+    Wanted {
+        name: "voltage_sag",
+        signature: &battery_sag::SIGNATURE,
+        usual: |_| EXPONENT,
+        told_by: ToldBy::ForcesOverVoltage,
+        fly: "until the battery has lost a tenth of its voltage",
+    },
 ];
 
 /// The size that the signature states for its first amount; nought where it states none.

@@ -3,7 +3,7 @@
 use crate::diagnose::named::Named;
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Recorded;
-use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, Role, Signature, Whence};
+use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, OfTheVehicle, Role, Signature, Whence};
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words;
 use crate::physics::effects::WeakRotor;
@@ -13,11 +13,14 @@ use crate::vehicle::Vehicle;
 /// Slots of the values: the rotor's number and the factor on its thrust.
 const ROTOR: usize = 0;
 const FACTOR: usize = 1;
-/// Difference between rotors of one vehicle that is ordinary (-). Chosen; not measured.
+/// Difference between rotors of one vehicle that is ordinary (-). Set by judgement: with less, ordinary vehicles
+/// would have it.
 const SCATTER: f64 = 0.08;
-/// Difference of one rotor that is ordinary (-): no two motors and propellers are more alike. Chosen; not measured.
+/// Difference of one rotor that is ordinary (-): no two motors and propellers are more alike. Set by judgement: with
+/// less, ordinary vehicles would have it.
 const ALIKE: f64 = 0.005;
-/// Difference of a second rotor, as a share of that of the first, below which it is none. Chosen; not measured.
+/// Difference of a second rotor, as a share of that of the first, below which it is none. Set by judgement; measured
+/// only together with all conditions of a name (see `Gates`).
 const BESIDE: f64 = 0.33;
 /// Least standard error of a rotor's thrust factor (-). Rotors continue to move between samples at 100 Hz: flights of
 /// the embedded vehicle are off by 0.09 to 0.10 %, all on the same side, while noise alone would give 0.01 to 0.02 %.
@@ -31,7 +34,7 @@ pub static SIGNATURE: Signature = Signature {
         rotors.map(|term| Form { term, instead_of_nuisance: false }).collect()
     },
     naming: Naming { is_ordinary, least_std: BETWEEN_SAMPLES, ..Naming::PLAIN },
-    role: Role { which: Some(ROTOR), ..Role::NONE },
+    role: Role { which: Some(ROTOR), of_the_vehicle: Some(OfTheVehicle::of(&[FACTOR])), ..Role::NONE },
     joint: Joint {
         forms: Some(|recorded: &Recorded, _| {
             terms(recorded.airframe.as_ref().map_or(0, |airframe| airframe.rotor_count()))

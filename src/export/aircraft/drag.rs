@@ -7,7 +7,8 @@
 //! `M = d / m` and `B = rho_0 m / (2 c)` in air of the density rho_0.
 
 use super::determined::Determined;
-use super::parameter::{AircraftParameter, ParameterStyle};
+use super::parameter::AircraftParameter;
+use super::table::{DragNames, Table};
 use crate::export::source::Source;
 use crate::text::with_error;
 
@@ -18,33 +19,8 @@ const MOST_MOMENTUM: f64 = 1.0;
 /// Smallest coefficients that both take for more than none: of momentum drag, 1/s, and of a bluff body, kg/m^2.
 const LEAST_MOMENTUM: f64 = 0.001;
 const LEAST_BALLISTIC: f64 = 1.0;
-/// A drag is told from none where it is so many standard errors from none. Chosen: the usual 95 %.
+/// A drag is told from none where it is so many standard errors from none. It is the usual 95 %.
 const TOLD: f64 = 2.0;
-
-/// Names of the parameters, and the largest ballistic coefficient that the autopilot documents, kg/m^2.
-struct Names {
-    control: Option<&'static str>,
-    momentum: &'static str,
-    ballistic: [&'static str; 2],
-    most_ballistic: f64,
-}
-
-const fn names(style: ParameterStyle) -> Names {
-    match style {
-        ParameterStyle::Px4 => Names {
-            control: Some("EKF2_DRAG_CTRL"),
-            momentum: "EKF2_MCOEF",
-            ballistic: ["EKF2_BCOEF_X", "EKF2_BCOEF_Y"],
-            most_ballistic: 200.0,
-        },
-        ParameterStyle::ArduPilot => Names {
-            control: None,
-            momentum: "EK3_DRAG_MCOEF",
-            ballistic: ["EK3_DRAG_BCOEF_X", "EK3_DRAG_BCOEF_Y"],
-            most_ballistic: 1000.0,
-        },
-    }
-}
 
 /// A coefficient of the estimator.
 enum Coefficient {
@@ -59,13 +35,13 @@ enum Coefficient {
 pub(super) fn drag(
     source: &mut Source<'_>,
     determined: &Determined<'_>,
-    style: ParameterStyle,
+    table: &Table,
 ) -> Vec<AircraftParameter> {
-    let names = names(style);
+    let names = &table.drag;
     let all = [
         (names.momentum, momentum(source, determined, names.momentum)),
-        (names.ballistic[0], bluff(source, determined, &names, 0)),
-        (names.ballistic[1], bluff(source, determined, &names, 1)),
+        (names.ballistic[0], bluff(source, determined, names, 0)),
+        (names.ballistic[1], bluff(source, determined, names, 1)),
     ];
     if all.iter().any(|(_, found)| matches!(found, Coefficient::Beyond)) {
         source.note("the drag of the estimator is left out as a whole: with a part of it alone the wind would come out wrong");
@@ -78,7 +54,7 @@ pub(super) fn drag(
         ));
         return Vec::new();
     }
-    tell_form(source, style);
+    tell_form(source, table);
     let control = names
         .control
         .map(|name| AircraftParameter::switch(name, 1.0, true, "the estimator takes drag to find the wind"));
@@ -125,7 +101,12 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
 }
 
 /// From the drag with the square of the airspeed, along x or y.
-fn bluff(source: &mut Source<'_>, determined: &Determined<'_>, names: &Names, along: usize) -> Coefficient {
+fn bluff(
+    source: &mut Source<'_>,
+    determined: &Determined<'_>,
+    names: &DragNames,
+    along: usize,
+) -> Coefficient {
     let (axis, name) = (["cx", "cy"][along], names.ballistic[along]);
     let (mass_kg, mass_std) = mass(source, determined);
     let Some(std) = determined.std("quadratic_drag", axis) else { return Coefficient::Absent };
@@ -155,21 +136,16 @@ fn bluff(source: &mut Source<'_>, determined: &Determined<'_>, names: &Names, al
 }
 
 /// Tells where the autopilot's law of the quadratic drag is not the model's.
-fn tell_form(source: &mut Source<'_>, style: ParameterStyle) {
+fn tell_form(source: &mut Source<'_>, table: &Table) {
     let Some(by_face) =
         source.value("quadratic_drag", "by_face").or_else(|| source.has("quadratic_drag").then_some(0.0))
     else {
         return;
     };
-    let (own, words) = match style {
-        ParameterStyle::Px4 => {
-            (0.0, "the whole airspeed, with an elliptic mean of the coefficients between the axes")
-        }
-        ParameterStyle::ArduPilot => (1.0, "the airspeed along that axis alone"),
-    };
-    if (by_face - own).abs() > 0.5 || style == ParameterStyle::Px4 {
+    if (by_face - table.drag.by_face).abs() > 0.5 || table.is_px4() {
         source.note(format!(
-            "the estimator's quadratic drag along an axis goes with {words}: it is the model's in flight along an axis, and differs across"
+            "the estimator's quadratic drag along an axis goes with {}: it is the model's in flight along an axis, and differs across",
+            table.drag.law
         ));
     }
 }

@@ -3,7 +3,8 @@
 //! Places are from the centre of mass, forward-right-down; CT is relative, because the allocation divides by the sum.
 
 use super::determined::Determined;
-use super::parameter::{AircraftParameter, ParameterStyle};
+use super::parameter::AircraftParameter;
+use super::table::Table;
 use crate::export::axes::frd;
 use crate::export::source::Source;
 use crate::text::with_error;
@@ -15,9 +16,9 @@ const CT: f64 = 6.5;
 pub(super) fn geometry(
     source: &mut Source<'_>,
     determined: &Determined<'_>,
-    style: ParameterStyle,
+    table: &Table,
 ) -> Vec<AircraftParameter> {
-    if style != ParameterStyle::Px4 {
+    if !table.is_px4() {
         if source.has("weak_rotor") || source.has("com_offset") {
             source.note(
                 "ArduPilot has no parameter for a rotor that gives less, or for a centre of mass beside the rotors' centre: balance the vehicle",

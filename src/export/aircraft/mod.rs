@@ -5,8 +5,9 @@ mod determined;
 mod drag;
 mod geometry;
 mod parameter;
+mod table;
 mod thrust;
 mod write;
 
-pub use parameter::{AircraftParameter, AircraftParameters, ParameterStyle};
+pub use parameter::{AircraftParameter, AircraftParameters};
 pub use write::aircraft_parameters;

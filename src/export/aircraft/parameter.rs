@@ -1,34 +1,5 @@
 //! Parameters of an autopilot that follow from a model.
 
-/// Whose parameters they are, and how their file looks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ParameterStyle {
-    /// PX4's, as ground stations save them: system, component, name, value and type, with tabs between
-    Px4,
-    /// ArduPilot's: name, comma, value
-    ArduPilot,
-}
-
-impl ParameterStyle {
-    /// The name of the format.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Px4 => "px4-params",
-            Self::ArduPilot => "ardupilot-params",
-        }
-    }
-
-    /// The autopilot's name.
-    #[must_use]
-    pub const fn autopilot(self) -> &'static str {
-        match self {
-            Self::Px4 => "PX4",
-            Self::ArduPilot => "ArduPilot",
-        }
-    }
-}
-
 /// One parameter that follows from the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AircraftParameter {

@@ -4,35 +4,11 @@
 //! THR_MDL_FAC or MOT_THST_EXPO. MPC_THR_HOVER and MOT_THST_HOVER are shares of thrust behind that curve.
 
 use super::determined::Determined;
-use super::parameter::{AircraftParameter, ParameterStyle};
+use super::parameter::AircraftParameter;
+use super::table::{Table, ThrustNames};
 use crate::export::source::Source;
 use crate::text::with_error;
 use crate::vehicle::ThrustLaw;
-
-/// Names and documented bounds.
-struct Names {
-    curve: &'static str,
-    curve_bounds: (f64, f64),
-    hover: &'static str,
-    hover_bounds: (f64, f64),
-}
-
-const fn names(style: ParameterStyle) -> Names {
-    match style {
-        ParameterStyle::Px4 => Names {
-            curve: "THR_MDL_FAC",
-            curve_bounds: (0.0, 1.0),
-            hover: "MPC_THR_HOVER",
-            hover_bounds: (0.1, 0.8),
-        },
-        ParameterStyle::ArduPilot => Names {
-            curve: "MOT_THST_EXPO",
-            curve_bounds: (-1.0, 1.0),
-            hover: "MOT_THST_HOVER",
-            hover_bounds: (0.125, 0.6875),
-        },
-    }
-}
 
 /// A rotor's thrust about hover: its command there, and by how many per cent the thrust grows with one per cent of command.
 #[derive(Debug, Clone, Copy)]
@@ -58,9 +34,9 @@ fn share(factor: f64, command: f64) -> f64 {
 pub(super) fn thrust(
     source: &mut Source<'_>,
     determined: &Determined<'_>,
-    style: ParameterStyle,
+    table: &Table,
 ) -> Vec<AircraftParameter> {
-    let names = names(style);
+    let names = &table.thrust;
     let propulsion = source.vehicle.propulsion;
     // one rotor that gives less needs more of the command
     let more = hover_commands(source);
@@ -71,12 +47,12 @@ pub(super) fn thrust(
     };
     let law = AtHover { command, elasticity: 1.0 + stated * command / ((1.0 - stated) + stated * command) };
     let mut parameters = Vec::new();
-    let curve = curve(source, determined, law, &names);
+    let curve = curve(source, determined, law, names);
     let factor = curve.as_ref().map_or(stated, |curve| curve.value);
     let factor_std = curve.as_ref().and_then(|curve| curve.std).unwrap_or(0.0);
     parameters.extend(curve);
-    parameters.extend(hover(source, determined, (factor, factor_std, command), &names));
-    parameters.extend(battery(source, determined, (factor, command), style));
+    parameters.extend(hover(source, determined, (factor, factor_std, command), names));
+    parameters.extend(battery(source, determined, (factor, command), table));
     parameters
 }
 
@@ -91,7 +67,7 @@ fn curve(
     source: &mut Source<'_>,
     determined: &Determined<'_>,
     law: AtHover,
-    names: &Names,
+    names: &ThrustNames,
 ) -> Option<AircraftParameter> {
     let Some(std) = determined.std("thrust_curve", "curvature") else {
         source.note(format!(
@@ -123,7 +99,7 @@ fn hover(
     source: &mut Source<'_>,
     determined: &Determined<'_>,
     (factor, factor_std, command): (f64, f64, f64),
-    names: &Names,
+    names: &ThrustNames,
 ) -> Option<AircraftParameter> {
     let Some(load_std) = determined.load_relative_std() else {
         source.note(format!(
@@ -159,13 +135,13 @@ fn battery(
     source: &mut Source<'_>,
     determined: &Determined<'_>,
     (factor, command): (f64, f64),
-    style: ParameterStyle,
+    table: &Table,
 ) -> Option<AircraftParameter> {
     let std = determined.std("battery_sag", "exponent")?;
     let exponent = source.value("battery_sag", "exponent")?;
     let full_v = source.value("battery_sag", "full_voltage")?;
     let said = format!("thrust goes with the voltage to the power {}", with_error(exponent, std));
-    if style == ParameterStyle::Px4 {
+    if table.is_px4() {
         source.note(format!(
             "battery_sag: {said}; PX4 holds no such law: MC_BAT_SCALE_EN scales by its own estimate of the charge, and is not set here"
         ));

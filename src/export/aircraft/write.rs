@@ -3,8 +3,10 @@
 use super::determined::Determined;
 use super::drag::drag;
 use super::geometry::geometry;
-use super::parameter::{AircraftParameter, AircraftParameters, ParameterStyle};
+use super::parameter::{AircraftParameter, AircraftParameters};
+use super::table;
 use super::thrust::thrust;
+use crate::autopilot::Autopilot;
 use crate::export::error::ExportError;
 use crate::export::notes::line_comments;
 use crate::export::source::Source;
@@ -22,37 +24,37 @@ const WHOLE: u8 = 6;
 /// What has no standard error there has no parameter.
 ///
 /// # Errors
-/// [`ExportError`] where the vehicle is not physical, or where nothing follows from the model.
+/// [`ExportError`] where the vehicle is not physical, the parameters of the autopilot are not known, or where nothing follows from the model.
 pub fn aircraft_parameters(
     vehicle: &Vehicle,
     effects: &[ActiveEffect],
     identified: Option<&Table>,
-    style: ParameterStyle,
+    autopilot: Autopilot,
 ) -> Result<AircraftParameters, ExportError> {
+    let table = table::Table::of(autopilot).ok_or_else(|| ExportError::Unfit {
+        format: "a parameter file",
+        expected: "PX4 or ArduPilot",
+        got: "another autopilot".to_owned(),
+    })?;
     let determined = Determined::of(identified);
     let mut source = Source::new(vehicle, effects)?;
-    let mut parameters = thrust(&mut source, &determined, style);
-    parameters.extend(drag(&mut source, &determined, style));
-    parameters.extend(geometry(&mut source, &determined, style));
-    source.note(match style {
-        ParameterStyle::Px4 => "CA_ROTORn_KM does not follow from the model: the torque of a rotor is the vehicle file's",
-        ParameterStyle::ArduPilot => {
-            "MOT_SPIN_ARM, MOT_SPIN_MIN and MOT_SPIN_MAX do not follow from the model: a flight does not show where motors stop"
-        }
-    });
+    let mut parameters = thrust(&mut source, &determined, table);
+    parameters.extend(drag(&mut source, &determined, table));
+    parameters.extend(geometry(&mut source, &determined, table));
+    source.note(table.never);
     if parameters.is_empty() {
         return Err(ExportError::Unfit {
-            format: style.name(),
+            format: table.format,
             expected: "a model that `mavid identify` or `mavid explain` wrote, with standard errors",
             got: "no identified value that the autopilot has a parameter for".to_owned(),
         });
     }
-    let exported = source.finish(|notes| file(&vehicle.name, &parameters, notes, style));
+    let exported = source.finish(|notes| file(&vehicle.name, &parameters, notes, table));
     Ok(AircraftParameters { parameters, left_out: exported.left_out, text: exported.text })
 }
 
-fn file(name: &str, parameters: &[AircraftParameter], notes: &[String], style: ParameterStyle) -> String {
-    let autopilot = style.autopilot();
+fn file(name: &str, parameters: &[AircraftParameter], notes: &[String], table: &table::Table) -> String {
+    let autopilot = table.name;
     let mut text =
         line_comment("#", &format!("{name}: parameters of the aircraft's {autopilot}, not of a simulator"));
     text.push_str(&line_comment(
@@ -65,12 +67,12 @@ fn file(name: &str, parameters: &[AircraftParameter], notes: &[String], style: P
         let unit = if *unit == "-" { String::new() } else { format!(" {unit}") };
         text.push_str(&line_comment("#", &format!("{name} {said}{unit}: {why}")));
         let value = if *is_integer { format!("{value:.0}") } else { significant(*value, 6) };
-        let _ = match style {
-            ParameterStyle::Px4 => {
-                let kind = if *is_integer { WHOLE } else { REAL };
-                writeln!(text, "1\t1\t{name}\t{value}\t{kind}")
-            }
-            ParameterStyle::ArduPilot => writeln!(text, "{name},{value}"),
+        // as ground stations save them: system, component, name, value and type for PX4, name and value for ArduPilot
+        let _ = if table.is_px4() {
+            let kind = if *is_integer { WHOLE } else { REAL };
+            writeln!(text, "1\t1\t{name}\t{value}\t{kind}")
+        } else {
+            writeln!(text, "{name},{value}")
         };
     }
     text.push_str(&line_comments("#", notes));

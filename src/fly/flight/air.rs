@@ -20,11 +20,13 @@ use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
 use crate::fly::target::Order;
 
-/// Largest lead of the setpoint over a vehicle whose rotors spin up, m. Chosen; not measured.
+/// Largest lead of the setpoint over a vehicle whose rotors spin up, m. A larger lead makes the vehicle jump once its
+/// rotors carry.
 const LEAD_MAX_M: f64 = 0.6;
-/// Distance to its height at which a climb is complete, m. Chosen; not measured.
+/// Distance to its height at which a climb is complete, m. Less may never be reached in wind; more begins the
+/// transfer too low.
 const CLIMBED_M: f64 = 0.3;
-/// Largest speed of a complete climb, m/s. Chosen; not measured.
+/// Largest speed of a complete climb, m/s. As slow as a hover in wind.
 const CLIMBED_M_S: f64 = 0.3;
 
 impl Flight {

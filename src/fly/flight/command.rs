@@ -1,5 +1,6 @@
 //! Commands to the vehicle, which wait for a report of its mode.
 
+use crate::wire::heartbeat::HEARTBEAT_ID;
 use std::time::Duration;
 
 use super::action::Action;
@@ -11,8 +12,6 @@ use crate::fly::outcome::{Cause, Level};
 use crate::fly::safety::{Doubted, Lead};
 use crate::fly::target::{Order, timesync};
 
-/// The message that tells the mode of any vehicle.
-const HEARTBEAT: u16 = 0;
 /// The flight is stepped every 10 ms. After a longer pause, its knowledge may be outdated.
 const STOOD_STILL: Duration = Duration::from_millis(100);
 /// After a longer pause, a flight is not continued, whether setpoints are sent or not.
@@ -29,7 +28,7 @@ impl Flight {
             if let Some(number) = self.known.asks(now, waits || tries) {
                 self.actions.push_back(Action::Send(timesync(number)));
                 if waits {
-                    let question = Order::request_message(HEARTBEAT);
+                    let question = Order::request_message(HEARTBEAT_ID);
                     self.actions.push_back(Action::Send(target.command(&question, 0)));
                 }
             }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::action::Action;
 use super::phase::Phase;
 use super::state::Flight;
-use crate::fly::outcome::{Cause, Ending, Flown, Level, Outcome, Response};
+use crate::fly::outcome::{Cause, Ending, FlightStatistics, Level, Outcome, Response};
 use crate::fly::safety::Lead;
 use crate::units::deg_from_rad;
 
@@ -43,7 +43,7 @@ impl Flight {
         self.guide.lead = Lead::Silent;
         self.commander.clear();
         let (rms_m, max_m) = self.watch.tracking.figures_m();
-        let flown = Flown {
+        let flown = FlightStatistics {
             tracking_rms_m: rms_m,
             tracking_max_m: max_m,
             tilt_max_deg: deg_from_rad(self.watch.envelope.greatest_tilt_rad()),

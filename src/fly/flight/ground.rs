@@ -24,7 +24,8 @@ const ESTIMATOR_GOOD: Duration = Duration::from_secs(5);
 const PRIME: Duration = Duration::from_millis(1500);
 /// A position older than this counts as missing.
 const POSITION_FRESH: Duration = Duration::from_millis(500);
-/// Largest distance between vehicle and start of the trajectory, m. Chosen; not measured.
+/// Largest distance between vehicle and start of the trajectory, m. A larger distance is a mistake in the room's
+/// origin, not a transfer.
 const START_MAX_M: f64 = 5.0;
 /// A vehicle that has not answered five requests a second for this time never answers.
 const ANSWERS_WITHIN: Duration = Duration::from_secs(10);

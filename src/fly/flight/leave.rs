@@ -32,7 +32,8 @@ const DISARM_AFTER: Duration = Duration::from_secs(3);
 const DISARM_AGAIN: Duration = Duration::from_secs(4);
 /// Longest time for which a program that is to end waits for the vehicle to hold: a silent link may come back.
 const STOP_WITHIN: Duration = Duration::from_secs(5);
-/// Deceleration that may be expected of a vehicle after the order to hold, m/s^2. Chosen; not measured.
+/// Deceleration that may be expected of a vehicle after the order to hold, m/s^2. PX4's MPC_ACC_HOR is 3 m/s^2 by
+/// default, ArduPilot's WPNAV_ACCEL 2.5; a larger value orders the hold later.
 const BRAKING_M_S2: f64 = 3.0;
 
 /// Motors off: ten times a second for as long as an ordinary command is repeated.

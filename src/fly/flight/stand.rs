@@ -6,8 +6,8 @@ use crate::fly::outcome::Cause;
 use crate::fly::safety::{Lead, SetpointBounds};
 use nalgebra::Vector3;
 
-/// Largest distance of a standing vehicle outside the room's walls, m, for the error of its estimate. Chosen; not
-/// measured.
+/// Largest distance of a standing vehicle outside the room's walls, m, for the error of its estimate. With more a
+/// vehicle could start outside of the room.
 const OUTSIDE_MAX_M: f64 = 0.1;
 
 impl Flight {

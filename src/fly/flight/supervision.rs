@@ -218,7 +218,7 @@ impl Flight {
                     now,
                     Level::Warning,
                     "link",
-                    format!("heard again after {lasted_s:.1} s of waiting"),
+                    format!("the link is back after {lasted_s:.1} s of waiting"),
                 );
             }
             _ => {}
@@ -251,13 +251,18 @@ impl Flight {
         } else if !self.is_armed() {
             self.finish_watching(now);
         } else if !self.is_in(Mode::External) {
-            // whatever it shows later, it was in another mode since
+            // it left our mode meanwhile: even if it reports it again, nothing is sent any more
             let mode = self.mode_name();
-            self.note(now, Level::Warning, "link", format!("heard again, in {mode}"));
+            self.note(
+                now,
+                Level::Warning,
+                "link",
+                format!("the link is back; the vehicle is in mode {mode}"),
+            );
             self.hands_off(now);
         } else if !self.known.is_in_doubt() && !contact.telemetry.is_arming_contradicted() {
-            // else it may have landed meanwhile, and the mode from before the silence need not be its mode still: it is asked
-            self.note(now, Level::Warning, "link", "heard again, still in our mode: it is told to hold");
+            // it may have landed meanwhile, and its mode may have changed: without doubt about either it is told to hold
+            self.note(now, Level::Warning, "link", "the link is back; the vehicle is still in the mode of setpoints and is told to hold its position");
             self.begin_hold(now);
         } else if now.saturating_sub(self.entered) > self.sortie.settings.watch_max {
             let mode = self.mode_name();

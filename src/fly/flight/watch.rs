@@ -6,11 +6,13 @@ use crate::fly::safety::{Envelope, Masters, Sustained, Tracking};
 use crate::fly::sortie::Sortie;
 use crate::units::rad_from_deg;
 
-/// Default limit of the tilt above the planned one, degrees. Chosen; not measured.
+/// Default limit of the tilt above the planned one, degrees. Gusts and corrections tilt a vehicle beyond its plan; a
+/// larger limit takes over later, a smaller one without need.
 const TILT_BEYOND_DEG: f64 = 20.0;
-/// Least default limit of the tilt, degrees. Chosen; not measured.
+/// Least default limit of the tilt, degrees. A smaller one ends hovers in wind.
 const TILT_LEAST_DEG: f64 = 25.0;
-/// Greatest default limit of the tilt, degrees. Chosen; not measured.
+/// Greatest default limit of the tilt, degrees. Beyond it a vehicle with a thrust of twice its weight does not hold
+/// its height.
 const TILT_MOST_DEG: f64 = 60.0;
 
 /// State of the safety rules.

@@ -1,17 +1,17 @@
 //! Choice of the message from which a quantity is taken, while messages arrive.
 
 use super::track::{Track, WIDTH};
+use crate::recording::landed::ON_GROUND;
 use crate::recording::{Quantity, StreamKey};
 use crate::signals::best_rank;
 
-/// Time for which sources are observed before one is chosen, s. Chosen; not measured.
+/// Time for which sources are observed before one is chosen, s. Every source sends within it; the live view begins so
+/// much later.
 const WATCH_S: f64 = 2.0;
-/// Silence after which a source is given up, s. Chosen; not measured.
+/// Silence after which a source is given up, s. Streams of 10 Hz and a lossy link pause for less.
 const SILENT_S: f64 = 1.0;
 /// Largest number of observed sources of one quantity; others are ignored.
 const WATCHED: usize = 8;
-/// MAV_LANDED_STATE_ON_GROUND
-const ON_GROUND: f64 = 1.0;
 
 const QUANTITIES: [Quantity; 5] = [
     Quantity::AngularRate,

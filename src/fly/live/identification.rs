@@ -8,16 +8,14 @@ use crate::estimate::{finding, rescaled};
 use crate::fly::parameters::Parameters;
 use crate::physics::MAX_ROTORS;
 use crate::recording::{Event, Quantity, Recording};
-use crate::signals::{motor_channels, propulsion_from_log};
+use crate::signals::{FLYING_SHARE, motor_channels, propulsion_from_log};
 use crate::vehicle::{Anchor, Mixer, Propulsion, Vehicle};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
-/// Step between instants, s. Chosen; not measured.
+/// Step between instants, s. The usual rate of attitude and commands; only the live view depends on it.
 const STEP_S: f64 = 0.01;
-/// Thrust below which a vehicle does not fly, as a share of the nominal weight. Chosen; not measured.
-const FLYING_SHARE: f64 = 0.4;
-/// Time left out after every start and gap, s: the filters settle, and the vehicle leaves the ground. Chosen; not
-/// measured.
+/// Time left out after every start and gap, s: the filters settle, and the vehicle leaves the ground. Of the live
+/// view only; the analysis after the flight has its own rules.
 const SETTLING_S: f64 = 2.0;
 /// Largest number of instants that are caught up at once after a stall of the link.
 const CATCH_UP: usize = 400;

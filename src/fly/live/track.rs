@@ -9,7 +9,7 @@ pub(super) type Sample = [f64; WIDTH];
 
 /// Samples kept: more than a second at 100 Hz, half a second at 250 Hz.
 const KEPT: usize = 128;
-/// A longer pause is a gap, s. Chosen; not measured.
+/// A longer pause is a gap, s. Twelve samples at 100 Hz; only the live view depends on it.
 const GAP_S: f64 = 0.12;
 
 /// The value of a stream at an instant.

@@ -18,16 +18,18 @@ use crate::trajectory::FlightPath;
 
 /// Steps of the model between two tried instants: 0.1 s.
 const EVERY: usize = 5;
-/// Error of the model of ArduPilot, m. ArduPilot shapes its own reference and follows that. Chosen; not measured.
+/// Error of the model of ArduPilot, m. ArduPilot shapes its own reference and follows that. It is added to every
+/// distance from a wall: larger refuses more, smaller trusts the model too much.
 const ARDUPILOT_OFF_M: f64 = 0.15;
 /// Error of the model of PX4, m, which models the vehicle itself: the embedded one came to rest 0.46 m further on.
 const PX4_OFF_M: f64 = 0.5;
 /// Largest distance of the rotors beyond walls and ceiling of the room, m, if nothing better is found; a warning is
-/// given. Chosen so that the default plan of the X500 can be flown with PX4's default parameters.
+/// given. Set so that the default plan of the X500 can be flown with PX4's default parameters; a warning is given.
 const WALL_AT_MOST_M: f64 = 1.25;
 /// Shares of velocity and acceleration in the setpoints that are tried, the largest first.
 const SHARES: &[f64] = &[1.0, 0.75, 0.5, 0.35, 0.25, 0.15, 0.1, 0.0];
-/// Share of the allowed distance to the reference that the setpoints themselves may use. Chosen; not measured.
+/// Share of the allowed distance to the reference that the setpoints themselves may use. The rest is for wind and for
+/// what the model of the controller lacks.
 const TRACKING_SHARE: f64 = 0.9;
 /// Steps of the model over which the reference may have been at the vehicle's place: half a second, as in flight.
 const RECENT: usize = 25;

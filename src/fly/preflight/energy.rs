@@ -2,7 +2,8 @@
 
 use crate::fly::finding::Finding;
 
-/// Required charge as a multiple of that of the flight. Chosen; not measured.
+/// Required charge as a multiple of that of the flight. For a second approach and for the estimate's own error; less
+/// would land on an empty battery.
 pub const SPARE_FACTOR: f64 = 1.5;
 
 /// State of the battery.

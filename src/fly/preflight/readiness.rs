@@ -4,7 +4,8 @@ use crate::autopilot::{Autopilot, Mode};
 use crate::fly::finding::Finding;
 use std::time::Duration;
 
-/// Time for which the estimate must have been good. Chosen; not measured.
+/// Time for which the estimate must have been good. An estimator that has just converged can lose its position again;
+/// longer only delays the flight.
 pub const ESTIMATE_GOOD_FOR: Duration = Duration::from_secs(5);
 
 /// Readiness of the vehicle by its own reports.

@@ -47,8 +47,8 @@ pub struct Situation<'a> {
 
 /// Default speed of landing, m/s: ArduPilot's LAND_SPEED; that of PX4, MPC_LAND_SPEED, is larger.
 const LANDS_M_S: f64 = 0.5;
-/// Time with motors on before the takeoff, at the start gate, and on the ground until they stop, s. Chosen; not
-/// measured.
+/// Time with motors on before the takeoff, at the start gate, and on the ground until they stop, s. It enters the
+/// charge that a flight needs, at the power of idling; a larger one asks for more charge.
 const WAITS_S: f64 = 15.0;
 
 impl Situation<'_> {

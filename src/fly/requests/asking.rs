@@ -4,18 +4,14 @@ use super::report::{RatesReport, StreamReport};
 use super::{Answer, Capacity, StreamRequest};
 use crate::fly::address::is_from;
 use crate::fly::target::{MessageId, Order, OutOfRange, Period, Target};
+use crate::wire::command::{ACCEPTED, IN_PROGRESS, SET_MESSAGE_INTERVAL, TEMPORARILY_REJECTED};
 use crate::wire::{Frame, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use std::time::Duration;
 
 const COMMAND_ACK_ID: u32 = 77;
-/// MAV_CMD_SET_MESSAGE_INTERVAL
-const SET_MESSAGE_INTERVAL: u16 = 511;
-/// MAV_RESULT
-const ACCEPTED: u8 = 0;
-const TEMPORARILY_REJECTED: u8 = 1;
-const IN_PROGRESS: u8 = 5;
-/// A refused rate above this is requested once more at half of it, Hz. Chosen; not measured.
+/// A refused rate above this is requested once more at half of it, Hz. Half of less than 50 Hz is too slow for what
+/// is asked for.
 const WORTH_HALVING_HZ: f64 = 50.0;
 
 /// Timing of the requests.

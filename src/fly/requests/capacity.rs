@@ -5,7 +5,7 @@ use crate::autopilot::Autopilot;
 
 /// Share of the setpoints, at 50 Hz, of a radio that transmits both directions in turn, bytes/s.
 const SETPOINTS_BYTES_S: f64 = 50.0 * 65.0;
-/// Largest share of a link's capacity that is used. Chosen; not measured.
+/// Largest share of a link's capacity that is used. The rest is for our own messages; a full link delays them.
 const FILL: f64 = 0.9;
 /// Bits that a byte takes on a serial line: one start bit, eight of data, one stop bit.
 const BITS_PER_BYTE: f64 = 10.0;

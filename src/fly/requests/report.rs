@@ -6,7 +6,8 @@ use crate::autopilot::Autopilot;
 use crate::fly::finding::Finding;
 use crate::signals::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ};
 
-/// Share of the requested rate below which a stream is slower than requested. Chosen; not measured.
+/// Share of the requested rate below which a stream is slower than requested. Autopilots round periods to their loop;
+/// only a word depends on it.
 const SHORT_SHARE: f64 = 0.8;
 
 /// One message.

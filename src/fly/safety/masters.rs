@@ -1,5 +1,6 @@
 //! Detection of another station that commands the vehicle.
 
+use crate::wire::heartbeat::HEARTBEAT;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -12,7 +13,8 @@ use crate::fly::target::Target;
 use crate::wire::{ComponentId, Frame, SystemId};
 
 /// Distance from all of our targets beyond which a reported target is not ours, m. PX4 reports our targets exactly,
-/// ArduPilot some centimetres further on. Chosen; not measured.
+/// ArduPilot some centimetres further on. With less ours would be taken for foreign; a foreign target that near does
+/// no harm.
 const FOREIGN_M: f64 = 0.25;
 /// Largest delay of a report; after a silence it is larger by the silence.
 const DELAY: Duration = Duration::from_secs(1);
@@ -28,7 +30,6 @@ const DRAINS: Duration = Duration::from_secs(20);
 const REPORTS: usize = 2;
 const WINDOW: Duration = Duration::from_secs(3);
 
-const HEARTBEAT: u32 = 0;
 /// SET_ATTITUDE_TARGET, SET_POSITION_TARGET_LOCAL_NED, SET_POSITION_TARGET_GLOBAL_INT with the offset of
 /// their target.
 const SETPOINTS: [(u32, usize); 3] = [(82, 36), (84, 50), (86, 50)];

@@ -1,5 +1,6 @@
 //! The commands that are given.
 
+use crate::wire::command::{ARM_BY_FORCE, CUSTOM_MODE};
 use mavlink::dialects::ardupilotmega::MavCmd;
 
 use super::range::{MessageId, OutOfRange, Period, TakeoffHeight};
@@ -23,11 +24,6 @@ pub enum Order {
     /// `MAV_CMD_REQUEST_MESSAGE`: to send a message now
     Request(MessageId),
 }
-
-/// The magic of `MAV_CMD_COMPONENT_ARM_DISARM` that stops the motors in flight.
-const FORCE: f32 = 21_196.0;
-/// `MAV_MODE_FLAG_CUSTOM_MODE_ENABLED` as a parameter.
-const CUSTOM_MODE: f32 = 1.0;
 
 impl Order {
     /// To enter a mode.
@@ -87,11 +83,11 @@ impl Order {
         match self {
             Self::SetMode(stack, mode) => {
                 let (main, sub) = stack.mode_parameters(*mode);
-                [CUSTOM_MODE, main.into(), sub.into(), 0.0, 0.0, 0.0, 0.0]
+                [f32::from(CUSTOM_MODE), main.into(), sub.into(), 0.0, 0.0, 0.0, 0.0]
             }
             Self::Arm => [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             Self::Disarm => [0.0; 7],
-            Self::Kill => [0.0, FORCE, 0.0, 0.0, 0.0, 0.0, 0.0],
+            Self::Kill => [0.0, ARM_BY_FORCE, 0.0, 0.0, 0.0, 0.0, 0.0],
             Self::Takeoff(height) => [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height.parameter()],
             Self::Interval(message, period) => {
                 [message.parameter(), period.parameter(), 0.0, 0.0, 0.0, 0.0, 0.0]

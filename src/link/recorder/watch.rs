@@ -1,15 +1,10 @@
 //! Notices that a vehicle arms, disarms or changes its mode.
 
+use crate::wire::heartbeat::{ARMED, AUTOPILOT_AT, BASE_MODE_AT, HEARTBEAT, NO_AUTOPILOT};
 use std::collections::BTreeMap;
 
 use crate::wire::{ComponentId, Frame, SystemId};
 
-const HEARTBEAT: u32 = 0;
-/// HEARTBEAT.autopilot of what is no vehicle.
-const NO_AUTOPILOT: u8 = 8;
-const AUTOPILOT_AT: usize = 5;
-const BASE_MODE_AT: usize = 6;
-const ARMED: u8 = 0x80;
 /// Vehicles watched.
 const VEHICLES: usize = 64;
 

@@ -11,6 +11,7 @@ use super::key::SigningKey;
 use super::owner;
 use super::signature::{SIGNATURE_BYTES, TAIL_BYTES, equal_in_constant_time};
 use super::times::{AHEAD, StreamKey, Times, TimesFile};
+use crate::note::{About, Note};
 use crate::wire::{Frame, Version};
 
 /// Largest number of streams that are distinguished; further ones are refused.
@@ -30,7 +31,7 @@ pub struct Signing {
 struct Shared {
     key: SigningKey,
     /// what was odd about the files
-    warnings: Vec<String>,
+    warnings: Vec<Note>,
     state: Mutex<State>,
 }
 
@@ -57,13 +58,14 @@ impl Signing {
         let now = now();
         let (times, file) = TimesFile::open(at, now)?;
         warnings.extend(clock_warning(times.own.saturating_sub(now)));
+        let warnings = warnings.into_iter().map(|text| Note::warning(About::Signing, text)).collect();
         Ok(Self::new(key, times, Some(file), warnings))
     }
 
     /// What was odd about the files when they were opened, in words: a key that others may read or write, a clock that
     /// was set back.
     #[must_use]
-    pub fn warnings(&self) -> &[String] {
+    pub fn warnings(&self) -> &[Note] {
         &self.shared.warnings
     }
 
@@ -79,7 +81,7 @@ impl Signing {
         Self::new(key, Times { own: time, ..Times::default() }, None, Vec::new())
     }
 
-    pub(super) fn new(key: SigningKey, times: Times, file: Option<TimesFile>, warnings: Vec<String>) -> Self {
+    pub(super) fn new(key: SigningKey, times: Times, file: Option<TimesFile>, warnings: Vec<Note>) -> Self {
         let state = State { kept: times.own, times, heard: BTreeSet::new(), file };
         Self { shared: Arc::new(Shared { key, warnings, state: Mutex::new(state) }), link_id: 0 }
     }

@@ -2,14 +2,12 @@
 
 use super::letter::{Letter, MESSAGE_BYTES};
 
-/// Before every message, in front of its number.
-pub(super) const MARKER: [u8; 2] = [0xa3, 0x95];
 /// Marker and number.
 pub(super) const HEADER_BYTES: usize = 3;
 /// The number of FMT, the message that defines the others.
 pub(super) const FMT: u8 = 128;
 /// What FMT itself is made of, in every log.
-const FMT_BYTES: u8 = 89;
+pub(super) const FMT_BYTES: usize = 89;
 
 /// What a message is made of.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,12 +42,7 @@ impl Definition {
     #[must_use]
     pub(super) fn of_fmt() -> Self {
         let fields = "Type,Length,Name,Format,Columns";
-        Self {
-            number: FMT,
-            bytes: FMT_BYTES.into(),
-            name: "FMT".to_owned(),
-            fields: laid_out("BBnNZ", fields),
-        }
+        Self { number: FMT, bytes: FMT_BYTES, name: "FMT".to_owned(), fields: laid_out("BBnNZ", fields) }
     }
 
     /// What a FMT defines; `None` where it cannot be meant: letters that nobody knows, a name that is none, lengths that

@@ -1,9 +1,10 @@
 //! Logs of ArduPilot among the other formats.
 
+use crate::autopilot::DATAFLASH_MARKER;
 use std::io::{BufReader, Read};
 
 use super::damage::DataflashDamage;
-use super::definition::{Definition, FMT, MARKER};
+use super::definition::{Definition, FMT, FMT_BYTES};
 use super::definitions::Definitions;
 use super::forms;
 use super::message::Message;
@@ -38,17 +39,17 @@ pub(in crate::log) const TEXT: Format = Format {
     read_whole: None,
 };
 
-/// A definition is this long; text logs have fewer columns in old releases.
-const FMT_BYTES: usize = 89;
-/// Definitions that are ArduPilot's but for damage. Chosen; not measured: one could be of a log that only resembles.
+/// Definitions that are ArduPilot's but for damage. One could be of a log that only resembles; a log begins with tens
+/// of them.
 const LEAST_KNOWN: u32 = 3;
 /// Lines of a text log among which the first definition is.
 const FIRST_LINES: usize = 64;
 
 /// Definitions, most of them padded as ArduPilot does. PX4's logs of before 2016 have spaces there.
 fn sniff_binary(head: &[u8]) -> Option<Certainty> {
-    let begins =
-        |message: &&[u8]| message[..2] == MARKER && message[2] == FMT && message[5].is_ascii_graphic();
+    let begins = |message: &&[u8]| {
+        message[..2] == DATAFLASH_MARKER && message[2] == FMT && message[5].is_ascii_graphic()
+    };
     let (mut sound, mut others, mut known) = (0, 0, 0);
     for message in head.windows(FMT_BYTES).filter(begins) {
         let is_sound = Definition::from_message(message).is_some();

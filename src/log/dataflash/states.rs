@@ -1,11 +1,8 @@
 //! States, which logs write when they change and streams hold all the time.
 
 use crate::recording::Quantity;
+use crate::recording::landed::{IN_AIR, ON_GROUND};
 
-/// MAV_LANDED_STATE.
-pub(super) const ON_GROUND: f64 = 1.0;
-/// See [`ON_GROUND`].
-pub(super) const IN_AIR: f64 = 2.0;
 /// A state is given again after this long, s.
 const AGAIN_S: f64 = 1.0;
 

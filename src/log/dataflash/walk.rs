@@ -11,7 +11,7 @@ use super::message::{Kept, Message};
 use super::outlet::Outlet;
 use super::routes::{AllRoutes, Route, Routes};
 use super::special::Special;
-use super::states::{IN_AIR, Meaning, ON_GROUND, States, meaning};
+use super::states::{Meaning, States, meaning};
 use super::tally::Tally;
 use super::topics::{Demand, Part};
 use super::values::Values;
@@ -19,7 +19,8 @@ use crate::autopilot::{ARDUPILOT, Autopilot};
 use crate::frames::Geodetic;
 use crate::log::error::LogError;
 use crate::log::format::Sink;
-use crate::log::leap::{Leap, Settled};
+use crate::log::leap::{Leap, LeapCause};
+use crate::recording::landed::{IN_AIR, ON_GROUND};
 use crate::recording::{Event, Quantity};
 
 /// MAV_SEVERITY of texts, which carry none, and of errors.
@@ -79,11 +80,11 @@ pub(super) fn walk(messages: &mut impl Messages, sink: &mut Sink<'_>) -> Result<
     while let Some((message, definitions)) = messages.next()? {
         walk.take(&message, all_routes.of(&message, definitions));
         while walk.leap.as_ref().is_some_and(|(_, is_told)| *is_told) {
-            walk.settle(definitions, &mut all_routes);
+            walk.resolve(definitions, &mut all_routes);
         }
     }
     while walk.leap.is_some() {
-        walk.settle(messages.definitions(), &mut all_routes);
+        walk.resolve(messages.definitions(), &mut all_routes);
     }
     walk.finish();
     Ok(walk.walked)
@@ -120,15 +121,15 @@ impl Walk<'_, '_> {
     }
 
     /// Messages that waited do so no longer.
-    fn settle(&mut self, definitions: &Definitions, all_routes: &mut AllRoutes) {
-        let messages = match self.leap.take().map(|(leap, _)| leap.settle()) {
-            Some(Settled::Passed(messages)) => {
+    fn resolve(&mut self, definitions: &Definitions, all_routes: &mut AllRoutes) {
+        let messages = match self.leap.take().map(|(leap, _)| leap.resolve()) {
+            Some(LeapCause::Passed(messages)) => {
                 let first = messages.first().map(Kept::message);
                 let stamp_s = first.and_then(|first| all_routes.of(&first, definitions).stamp_s(&first));
                 stamp_s.into_iter().for_each(|stamp_s| self.walked.clock.leap(stamp_s));
                 messages
             }
-            Some(Settled::Damage(damaged, others)) => {
+            Some(LeapCause::Damage(damaged, others)) => {
                 self.walked.clock.damaged(damaged as u64);
                 others
             }

@@ -1,5 +1,7 @@
 //! Which of a log's systems flew.
 
+use crate::recording::landed::{MOVES, ON_GROUND};
+use crate::wire::heartbeat::{ARMED, BASE_MODE_AT};
 use std::collections::BTreeMap;
 
 use super::reader::TlogReader;
@@ -7,12 +9,6 @@ use crate::log::error::LogError;
 use crate::log::input::Input;
 use crate::wire::{Record, Source, SystemId, Vehicle};
 
-/// MAV_MODE_FLAG_SAFETY_ARMED.
-const ARMED: u8 = 128;
-/// MAV_LANDED_STATE: unknown and on ground; all others are in the air.
-const ON_GROUND: u8 = 1;
-/// A vehicle that turns or moves faster than this does not stand, rad/s and m/s.
-const MOVES: f64 = 0.3;
 /// So many samples of it are no damage and no knock.
 const LEAST_MOVING: u64 = 20;
 
@@ -43,14 +39,14 @@ impl Deeds {
             Some(Source::Heartbeat) => {
                 if let Some(vehicle) = Vehicle::from_heartbeat(record) {
                     self.stays_down = vehicle.kind.is_some_and(|kind| !kind.flies());
-                    self.armed = payload.u8(6) & ARMED != 0;
+                    self.armed = payload.u8(BASE_MODE_AT) & ARMED != 0;
                 }
                 return;
             }
             Some(Source::ExtendedSysState) => {
                 let state = payload.u8(1);
                 self.landed_state_told |= state != 0;
-                self.in_air_armed |= self.armed && state > ON_GROUND;
+                self.in_air_armed |= self.armed && f64::from(state) > ON_GROUND;
                 return;
             }
             Some(Source::Attitude | Source::LocalPositionNed) => length(payload.f32s(16)),

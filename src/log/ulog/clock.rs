@@ -4,15 +4,12 @@
 //! can hide in a stamp, and several logs may stand behind each other in one file, each with a clock of its own.
 
 use crate::units::seconds_from_us;
+use crate::wire::{BACKWARD_US, WITNESSES};
 
-/// A topic's stamps may run back by this much.
-const BACKWARD_US: u64 = 2_000_000;
 /// What follows tells a longer leap forward from damage.
 const FORWARD_US: u64 = 2_000_000;
 /// Stamps behind one another agree within this.
 const AGREES_US: u64 = 2_000_000;
-/// So many stamps in a row that agree with each other but not with the clock: it has leapt or started anew.
-const WITNESSES: u8 = 3;
 /// So many stamps in a row that fit and are far behind the latest one: damage put that ahead.
 const BEHIND: u8 = 64;
 /// Time goes on by this much where the clock started anew: how long that took is not known.
@@ -78,7 +75,7 @@ impl Clock {
     pub(super) fn goes_on(&self, stamp_us: u64, before_us: Option<u64>) -> bool {
         match before_us {
             None if stamp_us <= self.last_us => true,
-            Some(before_us) if before_us.saturating_sub(stamp_us) > BACKWARD_US => false,
+            Some(before_us) if before_us.saturating_sub(stamp_us) > BACKWARD_US.unsigned_abs() => false,
             _ => !self.is_ahead(stamp_us),
         }
     }
@@ -90,7 +87,7 @@ impl Clock {
     /// Takes a stamp that goes on from the last ones.
     #[inline]
     pub(super) fn go_on(&mut self, stamp_us: u64) {
-        let is_behind = stamp_us.saturating_add(BACKWARD_US) < self.last_us;
+        let is_behind = stamp_us.saturating_add(BACKWARD_US.unsigned_abs()) < self.last_us;
         self.behind = if is_behind { self.behind + 1 } else { 0 };
         if self.behind >= BEHIND {
             (self.last_us, self.behind) = (stamp_us, 0);

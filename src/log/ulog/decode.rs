@@ -7,7 +7,7 @@ use super::schema::Subscription;
 use super::topics::{Bound, streams_of};
 use crate::autopilot::Autopilot;
 use crate::log::flights::is_state;
-use crate::log::leap::{Leap, Settled};
+use crate::log::leap::{Leap, LeapCause};
 use crate::recording::Event;
 use crate::text;
 use crate::units::seconds_from_us;
@@ -188,7 +188,7 @@ impl Decoder {
         let waiting = || Waiting { slot, stamp_us, bytes: bytes.to_vec() };
         if let Some(leap) = &mut self.leap {
             if leap.wait(Some(stamp_s), waiting()) {
-                self.settle(sink);
+                self.resolve(sink);
             }
             return;
         }
@@ -214,17 +214,17 @@ impl Decoder {
     /// No message waits any longer: the log, or what its numbers mean, ends here.
     pub(super) fn finish(&mut self, sink: &mut dyn FnMut(Event<'_>)) {
         while self.leap.is_some() {
-            self.settle(sink);
+            self.resolve(sink);
         }
     }
 
-    fn settle(&mut self, sink: &mut dyn FnMut(Event<'_>)) {
-        let messages = match self.leap.take().map(Leap::settle) {
-            Some(Settled::Passed(messages)) => {
+    fn resolve(&mut self, sink: &mut dyn FnMut(Event<'_>)) {
+        let messages = match self.leap.take().map(Leap::resolve) {
+            Some(LeapCause::Passed(messages)) => {
                 messages.first().into_iter().for_each(|first| self.clock.leap(first.stamp_us));
                 messages
             }
-            Some(Settled::Damage(damaged, others)) => {
+            Some(LeapCause::Damage(damaged, others)) => {
                 self.report.stale_stamps += damaged as u64;
                 others
             }

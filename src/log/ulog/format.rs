@@ -2,12 +2,11 @@
 
 use super::craft::Craft;
 use super::decode::Decoder;
-use super::message::MAGIC;
 use super::reader::UlogReader;
 use super::report::{TopicCount, UlogReport};
 use super::topics::is_read;
 use super::whole::Whole;
-use crate::autopilot::Autopilot;
+use crate::autopilot::{Autopilot, ULOG_MAGIC};
 use crate::log::error::LogError;
 use crate::log::format::{Certainty, Format, Place, Sink};
 use crate::log::input::Input;
@@ -29,7 +28,7 @@ pub(in crate::log) const FORMAT: Format = Format {
 };
 
 fn sniff(head: &[u8]) -> Option<Certainty> {
-    head.starts_with(&MAGIC).then_some(Certainty::Certain)
+    head.starts_with(&ULOG_MAGIC).then_some(Certainty::Certain)
 }
 
 fn read(input: &Input<'_>, _: &OpenOptions, sink: &mut Sink<'_>) -> Result<ReadReport, LogError> {

@@ -1,19 +1,14 @@
 //! Messages of a ULog: a length, a letter, and what the letter says.
 
 use super::schema::{NumberType, Schema, Subscription, is_name};
+use crate::autopilot::{ULOG_FLAG_BYTES, ULOG_HEAD_BYTES, ULOG_MAGIC};
 
-/// First bytes of a log; a version and a stamp follow.
-pub(super) const MAGIC: [u8; 7] = *b"ULog\x01\x12\x35";
-/// Length of magic, version and stamp.
-pub(super) const HEADER_BYTES: usize = 16;
 /// Length and letter before each message.
 pub(super) const PREFIX_BYTES: usize = 3;
 /// A message with its prefix is no longer.
 pub(super) const MOST_BYTES: usize = PREFIX_BYTES + u16::MAX as usize;
 /// What a synchronisation message holds.
 const SYNC: [u8; 8] = [0x2f, 0x73, 0x13, 0x20, 0x25, 0x0c, 0xbb, 0x12];
-/// Bytes of a message with the flags of a file.
-const FLAG_BYTES: usize = 40;
 
 /// One message of a log.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,8 +94,8 @@ pub(super) struct Shape {
 #[inline]
 pub(super) fn shape(sight: &[u8], schema: &Schema) -> Option<Shape> {
     let prefix = sight.first_chunk::<PREFIX_BYTES>()?;
-    if prefix[..] == MAGIC[..PREFIX_BYTES] && sight.starts_with(&MAGIC) {
-        return Some(Shape { likeness: Likeness::Strong, bytes: HEADER_BYTES });
+    if prefix[..] == ULOG_MAGIC[..PREFIX_BYTES] && sight.starts_with(&ULOG_MAGIC) {
+        return Some(Shape { likeness: Likeness::Strong, bytes: ULOG_HEAD_BYTES });
     }
     let [low, high, kind] = *prefix;
     let length = usize::from(u16::from_le_bytes([low, high]));
@@ -130,7 +125,7 @@ fn likeness(kind: u8, length: usize, body: &[u8], schema: &Schema) -> Likeness {
         },
         b'S' => strong_if(length >= SYNC.len() && (cut || body.starts_with(&SYNC))),
         b'O' | b'R' => strong_if(length == 2),
-        b'B' => strong_if(length == FLAG_BYTES),
+        b'B' => strong_if(length == ULOG_FLAG_BYTES),
         b'L' => strong_if(length >= 9 && body.first().is_none_or(|level| severity(*level).is_some())),
         b'C' => strong_if(length >= 11 && body.first().is_none_or(|level| severity(*level).is_some())),
         b'F' => strong_if(length >= 3 && begins_with_name(body)),
@@ -245,7 +240,7 @@ pub(super) fn subscription(body: &[u8]) -> Option<(u16, u8, &str)> {
 pub(super) fn appended_offsets(body: &[u8]) -> impl Iterator<Item = u64> {
     const IS_APPENDED: u8 = 1;
     let flagged = body.get(8).is_some_and(|flags| flags & IS_APPENDED != 0);
-    let offsets = body.get(16..FLAG_BYTES).unwrap_or_default();
+    let offsets = body.get(16..ULOG_FLAG_BYTES).unwrap_or_default();
     let offsets = offsets.chunks_exact(8).filter_map(|bytes| bytes.first_chunk().copied());
     offsets.map(u64::from_le_bytes).filter(move |offset| flagged && *offset > 0)
 }
@@ -292,7 +287,7 @@ mod tests {
 
     #[test]
     fn appended_parts_count_only_where_they_are_flagged() {
-        let mut flags = [0_u8; FLAG_BYTES];
+        let mut flags = [0_u8; ULOG_FLAG_BYTES];
         flags[16] = 77;
         assert_eq!(appended_offsets(&flags).count(), 0);
         flags[8] = 1;

@@ -1,10 +1,11 @@
 //! Reads a ULog message by message, over any reader, in bounded memory.
 
+use crate::autopilot::{ULOG_HEAD_BYTES, ULOG_MAGIC};
 use std::io::Read;
 
 use super::message::{
-    HEADER_BYTES, Likeness, MAGIC, MOST_BYTES, Message, PREFIX_BYTES, Shape, appended_offsets, data_bytes,
-    parse, shape, subscription,
+    Likeness, MOST_BYTES, Message, PREFIX_BYTES, Shape, appended_offsets, data_bytes, parse, shape,
+    subscription,
 };
 use super::report::UlogReport;
 use super::schema::Schema;
@@ -12,7 +13,7 @@ use crate::log::error::LogError;
 use crate::log::lookahead::LookAhead;
 
 /// In sight for every judgement: a message and the next, and as much of what follows as tells what it is.
-const LOOK_BYTES: usize = 2 * MOST_BYTES + HEADER_BYTES + 256;
+const LOOK_BYTES: usize = 2 * MOST_BYTES + ULOG_HEAD_BYTES + 256;
 /// In sight at once of a log that is read whole.
 const WHOLE_CHUNK_BYTES: usize = 4 << 20;
 /// Messages of numbers that are not known, one behind the other, that speak for each other.
@@ -188,14 +189,14 @@ impl<R: Read> UlogReader<R> {
         let sight = self.bytes.sight();
         match sight {
             [] => Err(LogError::Empty),
-            _ if sight.starts_with(&MAGIC) && sight.len() >= HEADER_BYTES => Ok(()),
+            _ if sight.starts_with(&ULOG_MAGIC) && sight.len() >= ULOG_HEAD_BYTES => Ok(()),
             _ => Err(LogError::WrongContent {
                 format: "PX4 log",
                 expected: "the letters ULog, a version and a stamp",
-                came: if sight.starts_with(&MAGIC) {
+                came: if sight.starts_with(&ULOG_MAGIC) {
                     format!("the first {} bytes of one: give the whole log", sight.len())
                 } else {
-                    format!("a file that begins with {:02x?}", &sight[..sight.len().min(HEADER_BYTES)])
+                    format!("a file that begins with {:02x?}", &sight[..sight.len().min(ULOG_HEAD_BYTES)])
                 },
             }),
         }
@@ -214,7 +215,7 @@ impl<R: Read> UlogReader<R> {
         match (this.likeness, sight.get(this.bytes..)) {
             (Likeness::None, _) => Step::Damage,
             (_, None) => Step::CutOff,
-            (_, Some(_)) if sight.starts_with(&MAGIC) => Step::Take { bytes: this.bytes },
+            (_, Some(_)) if sight.starts_with(&ULOG_MAGIC) => Step::Take { bytes: this.bytes },
             (likeness, Some(rest)) if self.is_followed(likeness, rest) => Step::Take { bytes: this.bytes },
             _ => Step::Damage,
         }
@@ -251,7 +252,7 @@ impl<R: Read> UlogReader<R> {
         let message = &self.bytes.sight()[..bytes];
         let (kind, body) = (message[PREFIX_BYTES - 1], &message[PREFIX_BYTES..]);
         self.report.messages += 1;
-        if message.starts_with(&MAGIC) {
+        if message.starts_with(&ULOG_MAGIC) {
             // one log behind another: numbers have a meaning of their own in each
             self.schema = Schema::default();
             self.appended.clear();
@@ -294,8 +295,8 @@ impl<R: Read> UlogReader<R> {
         let (kind, body) = (*message.get(PREFIX_BYTES - 1)?, message.get(PREFIX_BYTES..)?);
         let message = if kind == b'D' {
             parse(kind, body, &self.schema).unwrap_or(Message::Other { kind })
-        } else if message.starts_with(&MAGIC) {
-            let stamp = message.get(MAGIC.len() + 1..)?.first_chunk()?;
+        } else if message.starts_with(&ULOG_MAGIC) {
+            let stamp = message.get(ULOG_MAGIC.len() + 1..)?.first_chunk()?;
             Message::Begin { start_us: u64::from_le_bytes(*stamp) }
         } else if kind == b'A' {
             Message::Subscribe(self.schema.subscription(subscription(body)?.0)?)

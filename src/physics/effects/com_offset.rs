@@ -29,6 +29,10 @@ impl Effect for ComOffset {
         PARAMETERS
     }
 
+    fn sided(&self) -> &'static [usize] {
+        &[1]
+    }
+
     fn hooks(&self) -> &'static [Hook] {
         &[Hook::CenterOfMass]
     }

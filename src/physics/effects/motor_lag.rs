@@ -24,14 +24,26 @@ const fn time_constant(name: &'static str) -> Parameter {
 const PARAMETERS: &[Parameter] = &[time_constant("time_constant")];
 const FINER: &[Parameter] = &[time_constant("time_constant_down")];
 
-impl MotorLag {
-    /// The lag that a vehicle's description states; `None` where it states none, or zero.
+impl ActiveEffect {
+    /// A lag of all rotors, with the same time constant (s) up and down.
     #[must_use]
-    pub fn stated(propulsion: &Propulsion) -> Option<ActiveEffect> {
+    pub fn rotor_lag(time_constant_s: f64) -> Self {
+        Self { effect: &MotorLag, parameters: vec![time_constant_s] }
+    }
+
+    /// Whether it is the lag of the rotors.
+    #[must_use]
+    pub fn is_rotor_lag(&self) -> bool {
+        self.effect.id() == MotorLag.id()
+    }
+
+    /// The lag of the rotors that a vehicle's description states; `None` where it states none, or zero.
+    #[must_use]
+    pub fn stated_rotor_lag(propulsion: &Propulsion) -> Option<Self> {
         let up_s = propulsion.time_constant_s.filter(|up_s| *up_s > 0.0)?;
         let both_s = [up_s, propulsion.time_constant_down_s.unwrap_or(up_s)];
         let given = if propulsion.time_constant_down_s.is_some() { &both_s[..] } else { &both_s[..1] };
-        ActiveEffect::new(&Self, given).ok()
+        Some(Self { effect: &MotorLag, parameters: given.to_vec() })
     }
 }
 

@@ -36,6 +36,10 @@ impl Effect for ThrustTilt {
         PARAMETERS
     }
 
+    fn sided(&self) -> &'static [usize] {
+        &[0]
+    }
+
     fn hooks(&self) -> &'static [Hook] {
         &[Hook::Wrench]
     }

@@ -1,6 +1,7 @@
 //! Horizontal bars, with several series for each name.
 
 use super::colour::colour;
+use super::draw::{LETTER, MARK, TOP};
 use super::frame::{WIDTH, framed, tenths};
 use crate::report::number::significant;
 use maud::{Markup, html};
@@ -20,10 +21,6 @@ pub struct Bars {
 
 const LEFT: f64 = 130.0;
 const RIGHT: f64 = 70.0;
-const TOP: f64 = 42.0;
-/// Dots of a letter of the legend, and of its mark with the space around it.
-const LETTER: f64 = 6.2;
-const MARK: f64 = 38.0;
 const BAR: f64 = 11.0;
 const SPACE: f64 = 8.0;
 

@@ -11,11 +11,11 @@ use std::fmt::Write;
 pub(super) const HEIGHT: f64 = 244.0;
 const LEFT: f64 = 74.0;
 const RIGHT: f64 = 12.0;
-const TOP: f64 = 42.0;
+pub(super) const TOP: f64 = 42.0;
 const BOTTOM: f64 = 40.0;
 /// Dots of a letter of the legend, and of its mark with the space around it.
-const LETTER: f64 = 6.2;
-const MARK: f64 = 38.0;
+pub(super) const LETTER: f64 = 6.2;
+pub(super) const MARK: f64 = 38.0;
 
 /// Positions on the sheet.
 struct Sheet {

@@ -3,6 +3,8 @@
 use maud::{Markup, html};
 
 /// Dots.
+/// Largest number of points of a line: a chart is about 440 dots wide.
+pub const POINTS: usize = 900;
 pub(super) const WIDTH: f64 = 640.0;
 
 /// An element for a page with a title for those who cannot see it.

@@ -13,6 +13,7 @@ mod strip;
 
 pub use bars::Bars;
 pub use document::{inline, svg};
+pub use frame::POINTS;
 pub use panel::{Band, Line, Panel, Stroke};
 pub use path::Path3;
 pub use strip::Strip;

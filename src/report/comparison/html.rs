@@ -2,15 +2,13 @@
 
 use super::drawing::drawing;
 use super::words::{answer, name, sentence, size, spaced};
+use crate::change::interval_95;
 use crate::diagnose::Owner;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::{significant, with_error};
 use crate::report::page::page;
 use crate::study::{Change, CompareStudy};
 use maud::{Markup, html};
-
-/// Standard errors of an interval that covers 95 %.
-const COVERING: f64 = 1.96;
 
 /// The report: one file, nothing loaded from anywhere.
 #[must_use]
@@ -52,8 +50,7 @@ fn changed(study: &CompareStudy) -> Markup {
 fn row(study: &CompareStudy, change: &Change) -> Vec<Cell> {
     let of = |(value, std)| with_error(value, std);
     let (parts, interval) = change.moved.map_or_else(Default::default, |moved| {
-        let (after, std) = (moved.after.0, moved.by.1);
-        let [low, high] = [-COVERING, COVERING].map(|by| significant(after + by * std, 3));
+        let [low, high] = interval_95((moved.after.0, moved.by.1)).map(|end| significant(end, 3));
         ([of(moved.before), of(moved.after), of(moved.by)], format!("{low} to {high}"))
     });
     let say: Vec<&str> =
@@ -82,7 +79,8 @@ fn unseen(study: &CompareStudy) -> Markup {
 fn flights(study: &CompareStudy) -> Markup {
     let rows = study.flights.iter().zip(&study.balance.flights).enumerate().map(|(place, (flight, of))| {
         let part = |axis: usize| {
-            number(with_error(of.lean[axis], study.balance.std(place, axis).hypot(of.wander[axis])))
+            let (lean, std) = study.balance.lean(place, axis);
+            number(with_error(lean, std))
         };
         let group = study
             .groups

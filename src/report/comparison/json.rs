@@ -164,9 +164,7 @@ fn flight(study: &CompareStudy, place: usize) -> FlightEntry {
     FlightEntry {
         input: of.input.clone(),
         group: study.groups.as_ref().map(|groups| if is_before(groups) { "before" } else { "after" }),
-        balance: std::array::from_fn(|axis| {
-            estimate((balance.lean[axis], study.balance.std(place, axis).hypot(balance.wander[axis])))
-        }),
+        balance: std::array::from_fn(|axis| estimate(study.balance.lean(place, axis))),
         legs: balance.legs,
         felt: balance.felt,
         own: OwnEntry {
@@ -184,6 +182,6 @@ fn track(of: &Track) -> TrackEntry {
         unit: of.unit,
         owner: if of.owner == Owner::Flight { "flight" } else { "vehicle" },
         values: (0..of.values.len()).map(|flight| of.alone(flight).map(estimate)).collect(),
-        together: of.together().map(estimate),
+        together: of.pooled().map(estimate),
     }
 }

@@ -60,8 +60,8 @@ fn flights(page: &mut String, study: &CompareStudy) {
     );
     for (place, (flight, of)) in study.flights.iter().zip(&study.balance.flights).enumerate() {
         let part = |axis: usize| {
-            let std = study.balance.std(place, axis).hypot(of.wander[axis]);
-            with_error(of.lean[axis], std)
+            let (lean, std) = study.balance.lean(place, axis);
+            with_error(lean, std)
         };
         let lift = of.lift.map_or_else(|| "-".to_owned(), |(lift, _)| significant(lift, 3));
         let volts = of.voltage_v.map_or_else(|| "-".to_owned(), |volts| format!("{volts:.1} V"));

@@ -41,7 +41,7 @@ impl AlongValue {
             name: track.name.clone(),
             unit: track.unit,
             owner: whose(track),
-            together: track.together().map(estimate),
+            together: track.pooled().map(estimate),
             values: (0..track.values.len()).map(|flight| track.alone(flight).map(estimate)).collect(),
         };
         Self {
@@ -73,11 +73,8 @@ pub(super) fn along_lines(page: &mut String, study: &ExplainStudy) {
     let Some(along) = &study.along else { return };
     page.push_str("\n  together, and each flight alone\n");
     for track in &along.tracks {
-        let together = if track.owner == Owner::Flight {
-            "each flight's own".to_owned()
-        } else {
-            said(track.together())
-        };
+        let together =
+            if track.owner == Owner::Flight { "each flight's own".to_owned() } else { said(track.pooled()) };
         let each: Vec<String> = (0..track.values.len()).map(|flight| said(track.alone(flight))).collect();
         let _ = writeln!(page, "    {:<22} {together:<22} {}  {}", track.name, each.join(", "), track.unit);
     }
@@ -123,7 +120,7 @@ pub(super) fn along_section(study: &ExplainStudy) -> Markup {
 
 fn row(track: &Track) -> Vec<Cell> {
     let together =
-        if track.owner == Owner::Flight { "each flight's own".to_owned() } else { said(track.together()) };
+        if track.owner == Owner::Flight { "each flight's own".to_owned() } else { said(track.pooled()) };
     let mut cells = vec![text(track.name.as_str()), text(track.unit), number(together)];
     cells.extend((0..track.values.len()).map(|flight| number(said(track.alone(flight)))));
     cells

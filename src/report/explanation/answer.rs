@@ -5,16 +5,11 @@ use crate::diagnose::wording::Words;
 use crate::diagnose::{Along, DetectionLimit, Named, Verdict, brief, called, clause, limit};
 use crate::report::number::significant;
 use crate::study::{ExplainStudy, Located, Predicted, ShownOn};
+use crate::vehicle::AXIS_NAMES;
 use std::fmt::Write;
 
 /// Largest number of effects that are listed with their sizes.
 const SIZED: usize = 4;
-/// An error that falls by less does not fall, percent: it would read as nothing.
-const FALLS_PERCENT: f64 = 0.5;
-/// An error that increases by more than this is mentioned, percent. Chosen; not measured.
-const WORSE_PERCENT: f64 = 2.0;
-/// A state that explains less of the misfit is not mentioned, percent. Chosen; not measured.
-const LEAST_STATE_PERCENT: f64 = 10.0;
 
 /// The answer in one sentence; what makes it doubtful comes first.
 #[must_use]
@@ -107,19 +102,17 @@ fn gain(study: &ExplainStudy) -> String {
         return String::new();
     };
     let shown = study.shown_on.words();
-    let Some((name, percent)) = pair.most() else {
+    if pair.most().is_none() {
         return format!("; on {shown} nothing could be predicted");
-    };
-    let worse = match pair.least() {
-        Some((name, percent)) if percent < -WORSE_PERCENT => {
-            format!(", that of {name} rises by {:.0} %", -percent)
+    }
+    let rises = pair.rises();
+    let worse =
+        rises.map_or_else(String::new, |(name, percent)| format!(", that of {name} rises by {percent:.0} %"));
+    match pair.falls() {
+        Some((name, percent)) => {
+            format!("; with {with} the 0.5 s {name} error on {shown} falls by {percent:.0} %{worse}")
         }
-        _ => String::new(),
-    };
-    if percent >= FALLS_PERCENT {
-        format!("; with {with} the 0.5 s {name} error on {shown} falls by {percent:.0} %{worse}")
-    } else {
-        format!("; with {with} the 0.5 s errors on {shown} do not fall{worse}")
+        None => format!("; with {with} the 0.5 s errors on {shown} do not fall{worse}"),
     }
 }
 
@@ -185,13 +178,10 @@ fn unexplained(study: &ExplainStudy) -> String {
         format!("; {} comes closest but does not explain it", closest.join(" with "))
     };
     let term = study.empirical.as_ref().map_or_else(String::new, |term| {
-        let most = study.holdout.as_ref().and_then(Predicted::most);
-        let gain = most.filter(|(_, percent)| *percent >= FALLS_PERCENT).map_or_else(
-            String::new,
-            |(name, percent)| {
-                format!(" and lowers the 0.5 s {name} error on {} by {percent:.0} %", study.shown_on.words())
-            },
-        );
+        let falls = study.holdout.as_ref().and_then(Predicted::falls);
+        let gain = falls.map_or_else(String::new, |(name, percent)| {
+            format!(" and lowers the 0.5 s {name} error on {} by {percent:.0} %", study.shown_on.words())
+        });
         format!(
             "; an empirical force that depends on {}, without a mechanism, replaces it{gain}",
             spoken_along(term.along)
@@ -225,9 +215,7 @@ fn whereabouts(located: &Located) -> String {
         let what =
             axis.axis.replace("force_", "a force along body ").replace("torque_", "a torque about body ");
         let mut words = format!("mainly {what} ({:.0} %)", axis.share_percent);
-        // a state that explains little of it leads nowhere
-        let state = located.state.first().filter(|state| state.share_percent > LEAST_STATE_PERCENT);
-        if let Some(state) = state {
+        if let Some(state) = located.leading_state() {
             let _ = write!(words, " that follows {}", spoken_state(&state.variable));
         }
         parts.push(words);
@@ -277,9 +265,8 @@ fn joined(parts: &[String], word: &str) -> String {
 
 /// The quantity on which an empirical term depends, in words.
 fn spoken_along(along: Along) -> String {
-    const AXES: [&str; 3] = ["x", "y", "z"];
     match along {
-        Along::Position(axis) => format!("world {}", AXES[axis.min(2)]),
-        Along::Velocity(axis) => format!("the velocity along body {}", AXES[axis.min(2)]),
+        Along::Position(axis) => format!("world {}", AXIS_NAMES[axis.min(2)]),
+        Along::Velocity(axis) => format!("the velocity along body {}", AXIS_NAMES[axis.min(2)]),
     }
 }

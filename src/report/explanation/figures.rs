@@ -2,15 +2,13 @@
 
 use crate::diagnose::locate::{Bin, Followed as State, Portrait};
 use crate::diagnose::{CHANNEL_NAMES, Line as HarmonicLine, called};
-use crate::report::chart::{Band, Bars, Line, Panel, Path3, Strip, Stroke};
+use crate::report::chart::{Band, Bars, Line, POINTS, Panel, Path3, Strip, Stroke};
 use crate::report::vehicle_drawing::motor_words;
 use crate::study::{
     AxisResidual, ExplainStudy, FlownPath, Followed, Harmonics, Heat, LeftAlongTime, RecordedAndSimulated,
 };
-use crate::vehicle::Vehicle;
+use crate::vehicle::{AXIS_NAMES, Vehicle};
 
-/// Largest number of points of a line: a chart is about 440 dots wide.
-const POINTS: usize = 900;
 /// Colours of the model before and after.
 const BEFORE: usize = 1;
 const AFTER: usize = 2;
@@ -42,7 +40,7 @@ pub(super) fn recorded_and_simulated(of: &RecordedAndSimulated, after: &str) -> 
     let (unit, quantity) =
         if of.axis < 3 { ("m/s^2", "specific force") } else { ("rad/s^2", "angular acceleration") };
     Panel {
-        title: format!("{quantity} along body {}, flight {}", ["x", "y", "z"][of.axis % 3], of.flight + 1),
+        title: format!("{quantity} along body {}, flight {}", AXIS_NAMES[of.axis % 3], of.flight + 1),
         x_label: "time (s)".to_owned(),
         y_label: unit.to_owned(),
         lines: vec![
@@ -93,11 +91,10 @@ fn in_words(axis: &str) -> String {
 }
 
 fn state_in_words(state: State, vehicle: &Vehicle) -> String {
-    const AXES: [&str; 3] = ["x", "y", "z"];
     match state {
         State::Altitude => "height".to_owned(),
-        State::Airspeed(axis) => format!("airspeed along body {}", AXES[axis.min(2)]),
-        State::Rate(axis) => format!("rate about body {}", AXES[axis.min(2)]),
+        State::Airspeed(axis) => format!("airspeed along body {}", AXIS_NAMES[axis.min(2)]),
+        State::Rate(axis) => format!("rate about body {}", AXIS_NAMES[axis.min(2)]),
         State::Rotor(place) => {
             let motor = vehicle.rotors.get(place).map(|rotor| motor_words(rotor, place));
             format!("thrust of {}", motor.unwrap_or_default())

@@ -3,6 +3,7 @@
 use crate::compare::SIGNALS;
 use crate::diagnose::holdout::{AtEnd, Compared, HoldoutFit, OpenLoop};
 use crate::diagnose::{AXES, CHANNEL_NAMES};
+use crate::note::Note;
 use crate::study::{ExplainStudy, Predicted, QUANTITIES, ShownOn};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -132,7 +133,7 @@ pub(super) fn fit_values(study: &ExplainStudy) -> FitValues {
 
 fn pair(predicted: Option<&Predicted>) -> PairValue {
     let half = predicted.map(Predicted::half_second);
-    let windows = predicted.and_then(|of| OpenLoop::half_second(&of.open_loop).map(|of| of.windows));
+    let windows = predicted.and_then(|of| of.at_half_second().map(|of| of.windows));
     let each = |pick: &dyn Fn(&Compared) -> Option<f64>| {
         let [position_m, velocity_m_s, attitude_rad, rates_rad_s] =
             half?.map(|of| of.as_ref().and_then(pick));
@@ -199,7 +200,7 @@ fn shown(of: &HoldoutFit) -> ShownValue {
             })
             .collect(),
         other_vehicle: of.other_vehicle.as_ref().map(|other| other.reason.clone()),
-        notes: of.notes.clone(),
+        notes: of.notes.iter().map(Note::sentence).collect(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The section on the fit before and after, and on the hold-out.
 
 use crate::compare::SIGNALS;
-use crate::diagnose::holdout::{AtEnd, Compared, HoldoutFit};
+use crate::diagnose::holdout::{AtEnd, Compared, HoldoutFit, OpenLoop};
 use crate::diagnose::{AXES, CHANNEL_NAMES};
 use crate::report::html::{Cell, note, number, section, table, text, warning};
 use crate::report::number::{percent, significant, spoken, with_error};
@@ -11,9 +11,6 @@ use maud::{Markup, html};
 const COMPARED: [&str; 6] = ["", "before|", "after|", "noise alone|", "better by|", "unit"];
 const PREDICTED: [&str; 7] = ["", "unchanged|", "before|", "after|", "noise alone|", "better by|", "unit"];
 const AT_END: [&str; 5] = ["", "unchanged|", "before|", "after|", "unit"];
-
-/// The horizon that the answer speaks of, s.
-const HORIZON_S: f64 = 0.5;
 
 /// Errors of a prediction over half a second, before and after, on the flights that were not used if there are such.
 pub(super) fn hold_out(study: &ExplainStudy) -> Markup {
@@ -35,7 +32,7 @@ pub(super) fn hold_out(study: &ExplainStudy) -> Markup {
 }
 
 fn at_horizon(on: &str, predicted: &Predicted) -> Markup {
-    let (rows, _) = rows(predicted, |window_s| (window_s - HORIZON_S).abs() < 1e-9);
+    let (rows, _) = rows(predicted.at_half_second());
     table(&format!("Prediction error, rms, {on}{}", mean(predicted)), &PREDICTED, &rows)
 }
 
@@ -52,7 +49,7 @@ pub(super) fn hold_out_details(study: &ExplainStudy) -> Markup {
             (weak_form(shown))
             (closed_loop(shown))
             (agreement(shown))
-            @for said in &shown.notes { (note(said)) }
+            @for said in &shown.notes { (note(&said.sentence())) }
         }
     };
     section("Fit before and after", &content)
@@ -70,9 +67,9 @@ fn compared_row(name: &str, unit: &str, of: &Compared) -> Vec<Cell> {
 }
 
 /// Rows of the errors over windows, and of those at their ends.
-fn rows(predicted: &Predicted, is_meant: impl Fn(f64) -> bool) -> (Vec<Vec<Cell>>, Vec<Vec<Cell>>) {
+fn rows<'a>(windows: impl IntoIterator<Item = &'a OpenLoop>) -> (Vec<Vec<Cell>>, Vec<Vec<Cell>>) {
     let (mut rows, mut at_end) = (Vec::new(), Vec::new());
-    for of in predicted.open_loop.iter().filter(|of| is_meant(of.window_s)) {
+    for of in windows {
         for (compared, (name, unit)) in of.quantities().iter().zip(QUANTITIES) {
             let Some(compared) = compared else { continue };
             let mut row = compared_row(&format!("{name}, {} s", of.window_s), unit, compared);
@@ -99,7 +96,7 @@ fn mean(predicted: &Predicted) -> String {
 }
 
 fn prediction(on: &str, predicted: &Predicted) -> Markup {
-    let (rows, at_end) = rows(predicted, |_| true);
+    let (rows, at_end) = rows(&predicted.open_loop);
     html! {
         (table(&format!("Prediction error, rms, {on}{}", mean(predicted)), &PREDICTED, &rows))
         (table(&format!("Error at the horizon, mean, {on}"), &AT_END, &at_end))

@@ -13,6 +13,7 @@ use crate::report::page::page;
 use crate::report::quality::data_quality;
 use crate::report::vehicle_drawing::motor_words;
 use crate::study::{ExplainStudy, TriedAs};
+use crate::vehicle::AXIS_NAMES;
 use maud::{Markup, html};
 
 /// The report: one file, nothing loaded from anywhere. The answer, what shows it, where, how much, how much better, what else
@@ -159,7 +160,7 @@ fn rate_law(law: &RateLaw) -> Markup {
     let row = |axis: usize| {
         let values = [law.share[axis], law.decay_1_s[axis], law.offset_rad_s2[axis]];
         let values = values.map(|value| number(significant(value, 3)));
-        std::iter::once(text(["x", "y", "z"][axis])).chain(values).collect()
+        std::iter::once(text(AXIS_NAMES[axis])).chain(values).collect()
     };
     let rows: Vec<Vec<Cell>> = (0..3).map(row).collect();
     let head = ["about body", "share of the torque|", "decay (1/s)|", "constant (rad/s^2)|"];

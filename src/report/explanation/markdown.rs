@@ -8,9 +8,6 @@ use crate::report::vehicle_drawing::motor_words;
 use crate::study::{ExplainStudy, Predicted, QUANTITIES};
 use std::fmt::Write;
 
-/// The horizon that the answer speaks of, s.
-const HORIZON_S: f64 = 0.5;
-
 /// The summary.
 #[must_use]
 pub fn explanation_markdown(study: &ExplainStudy) -> String {
@@ -94,24 +91,23 @@ fn better(page: &mut String, study: &ExplainStudy) {
     };
     let rows = predicted.map_or_else(Vec::new, rows_of);
     if !rows.is_empty() {
-        let _ = write!(page, "\nError of a prediction over {HORIZON_S} s ({}):\n", escaped(&on));
+        let _ = write!(page, "\nError of a prediction over 0.5 s ({}):\n", escaped(&on));
     }
     table(page, &["", "rigid body", "model found", "better by", "unit"], &rows);
 }
 
 fn rows_of(predicted: &Predicted) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
-    for of in predicted.open_loop.iter().filter(|of| (of.window_s - HORIZON_S).abs() < 1e-9) {
-        for (compared, (name, unit)) in of.quantities().iter().zip(QUANTITIES) {
-            let Some(compared) = compared else { continue };
-            rows.push(vec![
-                name.to_owned(),
-                significant(compared.before.value, 3),
-                significant(compared.after.value, 3),
-                percent(&compared.improvement_percent),
-                unit.to_owned(),
-            ]);
-        }
+    let Some(of) = predicted.at_half_second() else { return rows };
+    for (compared, (name, unit)) in of.quantities().iter().zip(QUANTITIES) {
+        let Some(compared) = compared else { continue };
+        rows.push(vec![
+            name.to_owned(),
+            significant(compared.before.value, 3),
+            significant(compared.after.value, 3),
+            percent(&compared.improvement_percent),
+            unit.to_owned(),
+        ]);
     }
     rows
 }

@@ -32,10 +32,8 @@ fn known(study: &ExplainStudy) -> String {
 /// What the designed flight separates.
 fn brought(next: &NextFlight) -> String {
     let seconds = format!("A further flight of {:.0} s would", next.seconds);
-    let sigma = |pair: &Pair| {
-        let both = pair.now.hypot(pair.after);
-        format!("now {:.1}, with it {both:.1} standard deviations", pair.now)
-    };
+    let sigma =
+        |pair: &Pair| format!("now {:.1}, with it {:.1} standard deviations", pair.now, pair.with_next());
     let pairs = next.pairs.iter().map(|pair| match pair.other {
         Some(other) => {
             format!("{seconds} tell {} from {} ({})", called(pair.named), called(other), sigma(pair))

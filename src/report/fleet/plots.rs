@@ -1,12 +1,10 @@
 //! The history of a vehicle as charts.
 
+use crate::change::interval_95;
 use crate::fleet::ReportedVehicle;
 use crate::report::chart::{Band, Line, Panel, Stroke, inline};
 use crate::study::Track;
 use maud::Markup;
-
-/// Standard errors of an interval that covers 95 %.
-const COVERING: f64 = 1.96;
 
 /// One line along the flights, with its intervals.
 struct Along {
@@ -40,9 +38,8 @@ fn balance(vehicle: &ReportedVehicle) -> Markup {
         label: label.to_owned(),
         values: (0..study.flights.len())
             .map(|place| {
-                let flight = &study.balance.flights[place];
-                let std = study.balance.std(place, axis).hypot(flight.wander[axis]);
-                Some((arm * flight.lean[axis], arm * std))
+                let (lean, std) = study.balance.lean(place, axis);
+                Some((arm * lean, arm * std))
             })
             .collect(),
     };
@@ -63,17 +60,18 @@ fn chart(vehicle: &ReportedVehicle, (title, unit): (&str, &str), lines: &[Along]
     let study = &vehicle.history.study;
     let (mut drawn, mut bands) = (Vec::new(), Vec::new());
     for (colour, along) in lines.iter().enumerate() {
-        let known: Vec<(f64, f64, f64)> = (1_u32..)
+        let known: Vec<(f64, (f64, f64))> = (1_u32..)
             .zip(&along.values)
-            .filter_map(|(flight, value)| value.map(|(value, std)| (f64::from(flight), value, std)))
+            .filter_map(|(flight, value)| Some((f64::from(flight), (*value)?)))
             .collect();
         let x: Vec<f64> = known.iter().map(|(x, ..)| *x).collect();
-        let end = |sign: f64| known.iter().map(|(_, value, std)| value + sign * COVERING * std).collect();
-        bands.push(Band { x: x.clone(), low: end(-1.0), high: end(1.0), colour });
+        let (low, high) =
+            known.iter().map(|(_, value)| interval_95(*value)).map(|[low, high]| (low, high)).unzip();
+        bands.push(Band { x: x.clone(), low, high, colour });
         drawn.push(Line {
             label: along.label.clone(),
             x,
-            y: known.iter().map(|(_, value, _)| *value).collect(),
+            y: known.iter().map(|(_, (value, _))| *value).collect(),
             stroke: Stroke::Solid,
             colour: Some(colour),
         });

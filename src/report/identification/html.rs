@@ -5,7 +5,7 @@ use super::words::verdict;
 use crate::diagnose::called;
 use crate::diagnose::joint::{EffectFound, Found};
 use crate::estimate::{Finding, NAMES, theta_of};
-use crate::report::chart::{Line, Panel, inline};
+use crate::report::chart::{Line, POINTS, Panel, inline};
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::{significant, spoken, with_error};
 use crate::report::page::page;
@@ -15,8 +15,6 @@ use crate::study::{COMPONENTS, Correlation, IdentifyStudy, RotorsAndMotion};
 use crate::vehicle::Anchor;
 use maud::{Markup, html};
 
-/// Largest number of points of a line: a chart is about 440 dots wide.
-const POINTS: usize = 900;
 /// Parameters whose estimates along the flight are drawn: mass and the moments of inertia.
 const DRAWN: [usize; 4] = [0, 1, 4, 6];
 

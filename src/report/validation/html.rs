@@ -6,11 +6,8 @@ use crate::report::html::{self, Cell, figure, note, number, section, table, text
 use crate::report::number::significant;
 use crate::report::page::page;
 use crate::report::quality::data_quality;
-use crate::study::{ErrorTable, Prediction, ValidateStudy, ValidatedFlight};
+use crate::study::{ErrorTable, Rank, ValidateStudy, ValidatedFlight};
 use maud::{Markup, html};
-
-/// Models that differ by less than this in the mean predict equally well, percent. Chosen; not measured.
-const ALIKE_PERCENT: f64 = 0.5;
 
 /// The report: one file, nothing loaded from anywhere.
 #[must_use]
@@ -33,10 +30,6 @@ fn prediction(study: &ValidateStudy) -> Markup {
     if rows.is_empty() {
         return Markup::default();
     }
-    let ratio = |row: &Prediction, model: usize| match (row.rms[0], row.rms[model]) {
-        (Some(first), Some(rms)) if first > 0.0 => rms / first,
-        _ => f64::NAN,
-    };
     let first = study.models.first().map_or("the first", |model| model.name.as_str());
     let models = study.models.iter().enumerate();
     let bars = Bars {
@@ -44,7 +37,9 @@ fn prediction(study: &ValidateStudy) -> Markup {
         unit: String::new(),
         names: rows.iter().map(|row| row.name.clone()).collect(),
         series: models
-            .map(|(model, of)| (of.name.clone(), model, rows.iter().map(|row| ratio(row, model)).collect()))
+            .map(|(model, of)| {
+                (of.name.clone(), model, rows.iter().map(|row| row.over_first(model)).collect())
+            })
             .collect(),
     };
     let caption = "Open-loop prediction from the measured state with the recorded actuators, over windows of 0.5 s; \
@@ -97,15 +92,12 @@ fn answer(study: &ValidateStudy) -> String {
         let how = if percent < 0.0 { "larger" } else { "smaller" };
         format!("{:.0} % {how} in {name}", percent.abs())
     });
-    let mean = study.mean_gain(best);
-    let verdict = if mean < -ALIKE_PERCENT {
-        format!("No model predicts better than {first}; the next best is {}, whose", names[best])
-    } else if mean < ALIKE_PERCENT {
-        format!("{} predicts as well as {first}: its", names[best])
-    } else if names.len() > 2 {
-        format!("{} predicts best of {} models: against {first} its", names[best], names.len())
-    } else {
-        format!("{} predicts better than {first}: its", names[best])
+    let name = names[best];
+    let verdict = match (study.rank(best), names.len()) {
+        (Rank::Worse, _) => format!("No model predicts better than {first}; the next best is {name}, whose"),
+        (Rank::Alike, _) => format!("{name} predicts as well as {first}: its"),
+        (Rank::Better, 0..=2) => format!("{name} predicts better than {first}: its"),
+        (Rank::Better, count) => format!("{name} predicts best of {count} models: against {first} its"),
     };
     format!("{verdict} 0.5 s errors are {}.", list(changes.collect()))
 }

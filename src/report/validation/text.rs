@@ -57,6 +57,7 @@ pub fn error_table_text(table: &ErrorTable) -> String {
 mod tests {
     use super::*;
     use crate::compare::{Fit, TenSignals};
+    use crate::note::{About, Note};
     use crate::study::{closed_loop_table, playback_table};
 
     #[test]
@@ -75,7 +76,7 @@ mod tests {
             &[("a".to_owned(), none()), ("b".to_owned(), none())],
             (0.0, 1.0),
         );
-        table.notes.push("controller: a PID".to_owned());
+        table.notes.push(Note::remark(About::Errors, "controller: a PID"));
         assert_eq!(error_table_text(&table), "Again: none\n  a, b: no setpoints\n");
     }
 }

@@ -1,5 +1,6 @@
 //! ArduPilot's format: messages that begin with a marker and their number, defined by messages of the same kind.
 
+use super::ulog_topics::SECONDS_A_MINUTE;
 use std::time::Duration;
 
 use super::bytes::Kind;
@@ -10,13 +11,11 @@ use super::dataflash_forms::{
 use super::frames::euler_deg;
 use super::moment::Moment;
 use super::schedule::Schedule;
-use crate::autopilot::Release;
+use crate::autopilot::{DATAFLASH_MARKER, Release};
 use crate::physics::MAX_ROTORS;
 use crate::sitl::parameters::Parameters;
 use crate::sitl::{Firmware, Mode};
 
-const MARKER: [u8; 2] = [0xa3, 0x95];
-const SECONDS_A_MINUTE: f64 = 60.0;
 /// Channels of RCOU.
 const CHANNELS: usize = 14;
 /// LogEvent: armed, disarmed, landed, airborne.
@@ -70,11 +69,11 @@ fn length(form: &Form) -> usize {
             stored.len()
         })
     };
-    MARKER.len() + 1 + form.format.chars().map(bytes).sum::<usize>()
+    DATAFLASH_MARKER.len() + 1 + form.format.chars().map(bytes).sum::<usize>()
 }
 
 fn put(into: &mut Vec<u8>, form: &Form, values: &[Value<'_>]) {
-    into.extend(MARKER);
+    into.extend(DATAFLASH_MARKER);
     into.push(form.number);
     for (letter, value) in form.format.chars().zip(values) {
         match (letters(letter), value) {

@@ -6,7 +6,7 @@ use super::bytes::Kind;
 use super::moment::Moment;
 use super::schedule::{Every, Schedule};
 use super::ulog_topics::{ESC_FIELDS, ESC_REPORT, Field, STATES, TOPICS};
-use crate::autopilot::ParameterType;
+use crate::autopilot::{ParameterType, ULOG_FLAG_BYTES};
 use crate::sitl::parameters::Parameters;
 
 /// Magic and version 1.
@@ -21,8 +21,6 @@ mod letter {
     pub(super) const DATA: u8 = b'D';
     pub(super) const TEXT: u8 = b'L';
 }
-/// Bytes of the message with the flags; none is set.
-const FLAG_BYTES: usize = 40;
 
 /// How a field of this type is stored.
 fn kind(name: &str) -> Kind {
@@ -106,7 +104,7 @@ impl UlogWriter {
         self.told = None;
         into.extend(BEGIN);
         Kind::U64.put(into, time_us);
-        message(into, letter::FLAGS, &[0; FLAG_BYTES]);
+        message(into, letter::FLAGS, &[0; ULOG_FLAG_BYTES]);
         information(into, "char[3]", "sys_name", b"PX4");
         information(into, "char[10]", "ver_hw", b"MAVID_SITL");
         let release = [255, 0, software.minor, software.major];

@@ -19,7 +19,7 @@ pub(super) const ESC_FIELDS: &[Field] = &[
 ];
 /// Number of the output function of motor 1.
 const FIRST_MOTOR: f64 = 101.0;
-const SECONDS_A_MINUTE: f64 = 60.0;
+pub(super) const SECONDS_A_MINUTE: f64 = 60.0;
 /// The first field of every topic: microseconds since boot.
 const STAMP: &[Field] = &[("uint64_t", 1, "timestamp")];
 

@@ -104,7 +104,7 @@ fn flights(
     let Prepared { recordings, signals, inputs, .. } = prepare(log, (&vehicle, &origin), &settings)?;
     let why_not = match (request.depth, is_known) {
         (Depth::Explain, true) if off_mixer => {
-            Some("an output left the mixer: the log shows the cause itself")
+            Some("a motor output does not follow the controllers: the log itself shows the cause")
         }
         (Depth::Explain, true) => None,
         (Depth::Explain, false) => Some("neither mass nor lengths of the vehicle are known"),

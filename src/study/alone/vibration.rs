@@ -3,7 +3,7 @@
 use crate::recording::{Quantity, Recording, Stream};
 use crate::signals::{best, white_level};
 
-/// s of a block. Chosen; not measured.
+/// s of a block. Only what is shown depends on it.
 const BLOCK_S: f64 = 5.0;
 
 /// White part of the accelerometer's samples in the air, the root of the sum of squares over the axes, m/s^2: mean over blocks of 5 s,

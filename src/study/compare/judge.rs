@@ -26,7 +26,7 @@ impl Judge<'_> {
     #[must_use]
     pub fn history(&self, order: &[usize], least_sigmas: f64) -> Vec<Step<Compared>> {
         steps(order.len(), &|groups: &Groups| {
-            let compared = self.compared(&flown(groups, order));
+            let compared = self.compared(&flight_groups(groups, order));
             let strongest = compared.strongest();
             (strongest > 0.0 && strongest >= least_sigmas).then_some((strongest, compared))
         })
@@ -37,7 +37,7 @@ impl Judge<'_> {
     #[must_use]
     pub fn strongest(&self, order: &[usize]) -> Option<(f64, Vec<usize>)> {
         let at = |from| {
-            let groups = flown(&Groups::split(order.len(), from), order);
+            let groups = flight_groups(&Groups::split(order.len(), from), order);
             (self.compared(&groups).strongest(), groups.before)
         };
         let all = (1..order.len()).map(at).filter(|(sigmas, _)| *sigmas > 0.0);
@@ -118,7 +118,7 @@ impl Judge<'_> {
 }
 
 /// Groups of places in an order as groups of flights.
-fn flown(groups: &Groups, order: &[usize]) -> Groups {
+fn flight_groups(groups: &Groups, order: &[usize]) -> Groups {
     let of = |places: &[usize]| places.iter().map(|place| order[*place]).collect();
     Groups { before: of(&groups.before), after: of(&groups.after) }
 }

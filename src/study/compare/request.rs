@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::study::explain::check_transient;
-use crate::study::{ReadSettings, StudyError, VehicleGiven};
+use crate::study::{ExplainRequest, ReadSettings, StudyError, VehicleGiven};
 
 /// Which flights are compared.
 #[derive(Debug, Clone, Default)]
@@ -24,7 +24,7 @@ pub struct CompareRequest {
 
 impl CompareRequest {
     /// Time left out at the beginning of each flight, s, unless asked otherwise.
-    pub const TRANSIENT_S: f64 = 1.0;
+    pub const TRANSIENT_S: f64 = ExplainRequest::TRANSIENT_S;
 
     /// Checks what can be checked before a file is read.
     ///

@@ -24,7 +24,7 @@ fn without(tracks: &[Track], flight: usize) -> Vec<(&str, f64)> {
     let others = |track: &Track| {
         let mut track = track.clone();
         track.values[flight] = None;
-        track.together().map(|(value, _)| value)
+        track.pooled().map(|(value, _)| value)
     };
     tracks.iter().filter_map(|track| Some((track.name.as_str(), others(track)?))).collect()
 }

@@ -2,6 +2,7 @@
 
 use crate::diagnose::locate::{Follow, Localisation};
 use crate::diagnose::{AXES, CHANNEL_NAMES, Explanation, SECOND, Verdict};
+use crate::vehicle::AXIS_NAMES;
 use serde::Serialize;
 
 /// An axis' share of the misfit.
@@ -56,9 +57,11 @@ pub struct Located {
     pub field: Option<Field>,
 }
 
-/// Axes and states below this share are not listed, percent. Chosen; not measured.
+/// Axes and states below this share are not listed, percent. Only the length of a table depends on it.
 const LEAST_SHARE_PERCENT: f64 = 1.0;
-const WORLD: [&str; 3] = ["x", "y", "z"];
+/// A state that explains less of the misfit leads nowhere, percent: nine tenths of it would be elsewhere. The tables list it all the
+/// same.
+const LEADING_PERCENT: f64 = 10.0;
 
 impl Located {
     /// The rigid body's misfit; nothing where nothing is missing.
@@ -94,6 +97,12 @@ impl Located {
             state: found.follows.iter().filter(|follow| follow.entered.is_some()).map(state).collect(),
             field: None,
         }
+    }
+
+    /// The state that the misfit follows most, if it leads anywhere.
+    #[must_use]
+    pub fn leading_state(&self) -> Option<&StateShare> {
+        self.state.first().filter(|state| state.share_percent > LEADING_PERCENT)
     }
 
     /// The channel of the axis with the largest share.
@@ -132,9 +141,9 @@ fn state(follow: &Follow) -> StateShare {
 fn field(explanation: &Explanation) -> Option<Field> {
     let found = explanation.field.as_ref().filter(|field| field.certain)?;
     Some(Field {
-        force_along: WORLD[found.component.min(2)],
+        force_along: AXIS_NAMES[found.component.min(2)],
         force_n: found.force_n,
-        changes_along: WORLD[found.along.min(2)],
+        changes_along: AXIS_NAMES[found.along.min(2)],
         at_m: found.where_m,
         extent_m: found.extent_m,
     })

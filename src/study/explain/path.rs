@@ -4,7 +4,7 @@ use super::result::ExplainStudy;
 use crate::diagnose::AXES;
 use crate::stats::quantile;
 
-/// Least residual with the last colour: what is left after is one. Chosen; not measured.
+/// Least residual with the last colour: what is left after is one. Only colours depend on it.
 const LEAST_FULL: f64 = 2.0;
 
 /// Where the first flight was, and how much the models miss there.

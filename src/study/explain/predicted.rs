@@ -12,11 +12,36 @@ pub struct Predicted {
     pub improvement_percent: Option<Interval>,
 }
 
+/// An error that falls by less does not fall, percent: rounded to whole percents it reads as nothing.
+const FALLS_PERCENT: f64 = 0.5;
+/// An error that rises by more is told beside the one that falls, percent. Only words depend on it: with a larger share a reader
+/// would not hear of the loss, with a smaller one of chance.
+const RISES_PERCENT: f64 = 2.0;
+
 impl Predicted {
-    /// Errors over windows of 0.5 s.
+    /// The errors over windows of 0.5 s, of which the answer speaks.
+    #[must_use]
+    pub fn at_half_second(&self) -> Option<&OpenLoop> {
+        OpenLoop::half_second(&self.open_loop)
+    }
+
+    /// The same by quantity.
     #[must_use]
     pub fn half_second(&self) -> [Option<Compared>; 4] {
-        OpenLoop::half_second(&self.open_loop).map_or([None; 4], OpenLoop::quantities)
+        self.at_half_second().map_or([None; 4], OpenLoop::quantities)
+    }
+
+    /// The quantity whose error falls most, and by how much, percent; `None` where none falls.
+    #[must_use]
+    pub fn falls(&self) -> Option<(&'static str, f64)> {
+        self.most().filter(|(_, percent)| *percent >= FALLS_PERCENT)
+    }
+
+    /// The quantity whose error rises most with the effects, and by how much, percent; `None` where none rises.
+    #[must_use]
+    pub fn rises(&self) -> Option<(&'static str, f64)> {
+        let (name, percent) = self.least()?;
+        (percent < -RISES_PERCENT).then_some((name, -percent))
     }
 
     /// The quantity whose error falls most, and by how much, percent.
@@ -33,8 +58,7 @@ impl Predicted {
 
     /// The quantity whose error the effects lower least, or raise, and by how much of the rigid body's, percent. That a state which does
     /// not change predicts better is no work of theirs.
-    #[must_use]
-    pub fn least(&self) -> Option<(&'static str, f64)> {
+    fn least(&self) -> Option<(&'static str, f64)> {
         self.half_second()
             .into_iter()
             .zip(QUANTITIES)
@@ -49,7 +73,7 @@ impl Predicted {
     /// What a state that does not change predicts better over 0.5 s: for that the model is none.
     #[must_use]
     pub fn worse_than_unchanged(&self) -> Vec<&'static str> {
-        let worse = OpenLoop::half_second(&self.open_loop).map_or([false; 4], OpenLoop::worse_than_unchanged);
+        let worse = self.at_half_second().map_or([false; 4], OpenLoop::worse_than_unchanged);
         QUANTITIES.into_iter().zip(worse).filter(|(_, worse)| *worse).map(|((name, _), _)| name).collect()
     }
 

@@ -1,12 +1,15 @@
 //! The effects as readers want them: what is one thing to them is one entry, and what is two things are two.
 
+use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::{ALL, signature_of};
 use crate::diagnose::{Named, NamedParameter, Strength};
 
-/// Drag along the rotor axis within this share of that across it is one isotropic drag. Chosen; not measured.
+/// Drag along the rotor axis within this share of that across it is one isotropic drag. Only words depend on it: one
+/// drag, or drag and thrust that falls with climb; the model is the same.
 const ISOTROPIC: f64 = 0.35;
 
-/// Drag along the rotor axis exceeds that across it beyond this many standard errors. Chosen; not measured.
+/// Drag along the rotor axis exceeds that across it beyond this many standard errors. Only words depend on it: one
+/// drag, or drag and thrust that falls with climb; the model is the same.
 const TOLD_APART: f64 = 4.0;
 
 /// One drag where the search found it in two pieces: drag across the rotor axis, and thrust that falls with
@@ -25,17 +28,18 @@ pub fn for_readers(named: &[Named]) -> Vec<Named> {
 /// Takes out of a drag what it has along the rotor axis, if that is thrust that falls with climb.
 fn part_of_climb(drag: &mut Named) -> Option<Named> {
     let signature = ALL.iter().find(|of| of.role.axial_part_of.is_some_and(|whole| whole.id() == drag.id))?;
-    let value = |name: &str| drag.parameters.iter().find(|p| p.name == name).copied();
-    let (dx, dy, dz) = (value("dx")?, value("dy")?, value("dz")?);
+    let whole = Slots(signature_of(drag.id)?);
+    let (dx, dy, dz) = (whole.of(drag, 0)?, whole.of(drag, 1)?, whole.axial(drag)?);
     let across = 0.5 * (dx.value + dy.value);
     let beyond = dz.value - across;
     let std = dz.std.hypot(0.5 * dx.std.hypot(dy.std));
     // that of the body grows with no rotor's speed and acts at its centre
-    let of_body = ["at_hubs", "with_speed"].iter().any(|name| value(name).is_some_and(|of| of.value == 0.0));
+    let (first, last) = (whole.0.effect.parameters().len(), whole.0.role.with_speed?.0);
+    let of_body = (first..=last).any(|slot| whole.of(drag, slot).is_some_and(|of| of.value == 0.0));
     if of_body || across <= 0.0 || beyond < ISOTROPIC * across || beyond < TOLD_APART * std {
         return None;
     }
-    drag.parameters.retain(|parameter| parameter.name != "dz");
+    drag.parameters.retain(|parameter| parameter.name != dz.name);
     let own = signature.effect.parameters().first()?;
     let z = dz.value / dz.std.max(f64::MIN_POSITIVE);
     Some(Named {
@@ -51,26 +55,47 @@ fn merged(named: &[Named]) -> Vec<Named> {
     let mut out = named.to_vec();
     let axial_part_of = |named: &Named| signature_of(named.id)?.role.axial_part_of;
     let axial = named.iter().enumerate().find_map(|(place, of)| Some((place, axial_part_of(of)?)));
-    let Some((inflow, whole)) = axial else { return out };
+    let Some((part, whole)) = axial else { return out };
     let Some(drag) = named.iter().position(|effect| effect.id == whole.id()) else { return out };
-    let value = |effect: usize, name: &str| named[effect].parameters.iter().find(|p| p.name == name).copied();
-    let (Some(dx), Some(dy), Some(kz)) = (value(drag, "dx"), value(drag, "dy"), value(inflow, "kz")) else {
-        return out;
-    };
-    let across = 0.5 * (dx.value + dy.value);
-    if value(drag, "dz").is_some() || (kz.value - across).abs() > ISOTROPIC * across {
-        return out;
-    }
-    out[drag].parameters.push(NamedParameter { name: "dz", ..kz });
-    for confusable in &named[inflow].confusable_with {
+    let Some(added) = added(&named[drag], &named[part]) else { return out };
+    out[drag].parameters.push(added);
+    for confusable in &named[part].confusable_with {
         let known = out[drag].confusable_with.iter().any(|other| other.id == confusable.id);
         if !known && confusable.id != whole.id() {
             out[drag].confusable_with.push(*confusable);
         }
     }
-    out[drag].confusable_with.retain(|confusable| confusable.id != named[inflow].id);
-    out.remove(inflow);
+    out[drag].confusable_with.retain(|confusable| confusable.id != named[part].id);
+    out.remove(part);
     out
+}
+
+/// The drag's parameter along the rotor axis, by the effect that has the same law there, where both are one isotropic drag.
+fn added(drag: &Named, part: &Named) -> Option<NamedParameter> {
+    let (whole, own) = (Slots(signature_of(drag.id)?), Slots(signature_of(part.id)?));
+    let (dx, dy, kz) = (whole.of(drag, 0)?, whole.of(drag, 1)?, own.axial(part)?);
+    let across = 0.5 * (dx.value + dy.value);
+    let other = whole.axial(drag).is_some() || (kz.value - across).abs() > ISOTROPIC * across;
+    (!other).then_some(NamedParameter { name: whole.name(whole.0.role.axial?)?, ..kz })
+}
+
+/// The values of a named effect by the slots of its signature.
+struct Slots(&'static Signature);
+
+impl Slots {
+    fn name(&self, slot: usize) -> Option<&'static str> {
+        let effect = self.0.effect;
+        let mut all = effect.parameters().iter().chain(effect.finer_parameters());
+        Some(all.nth(slot)?.name)
+    }
+
+    fn of(&self, named: &Named, slot: usize) -> Option<NamedParameter> {
+        named.get(self.name(slot)?).copied()
+    }
+
+    fn axial(&self, named: &Named) -> Option<NamedParameter> {
+        self.of(named, self.0.role.axial?)
+    }
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ use crate::estimate::{
     scaling_mass, theta_of,
 };
 use crate::note::Note;
-use crate::physics::{ActiveEffect, Effect, effects::ThrustCurve};
+use crate::physics::ActiveEffect;
 use crate::signals::Quality;
 use crate::study::{Correlation, InputFile};
 use crate::text::significant;
@@ -220,7 +220,7 @@ impl ExplainStudy {
 
     /// An estimate with what a guessed thrust curve does to it, unless the fit has a curve of its own.
     fn guessing(&self, estimated: Estimated, fitted: &Fitted) -> Estimated {
-        let told = fitted.base.estimates(|term| term.id() == ThrustCurve.id());
+        let told = fitted.base.estimates_bend();
         let moved = self.given.by_guessed_curve.filter(|_| !told).map(|by| by.on(&estimated.theta));
         estimated.with_guessed_curve(moved)
     }
@@ -321,13 +321,13 @@ impl ExplainStudy {
     fn found(&self) -> Vec<ActiveEffect> {
         let base = &self.explanation.search.after.base;
         // one isotropic drag has taken the place of the part along body z
-        let merged = base.present.iter().find_map(|term| {
+        let merged = base.effects.iter().find_map(|term| {
             let whole = term.signature.role.axial_part_of?;
             let entry = self.effects.iter().find(|effect| effect.id == whole.id())?;
             Some((whole, entry.get("dz")?.value))
         });
         let mut out = Vec::new();
-        for present in &base.present {
+        for present in &base.effects {
             let mut values = present.values.clone();
             if let Some((whole, dz)) = merged {
                 if present.signature.role.axial_part_of.is_some() {

@@ -19,7 +19,7 @@ use crate::study::{Progress, Stage, StudyError, effects_of};
 use crate::text;
 use crate::vehicle::Vehicle;
 
-/// Share of the flight that may be saturated without a word. Chosen; not measured.
+/// Share of the flight that may be saturated without a word. Only a warning depends on it.
 const SATURATED: f64 = 0.3;
 /// What a recording without velocity cannot tell.
 const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar), or no attitude, is recorded: drag, wind and \
@@ -126,16 +126,16 @@ impl Task<'_> {
             transient_s: self.request.transient_s,
         };
         self.progress.stage(Stage::Predicting);
-        let study = self.shown(given, explanation, flights, (held, back, shown_on.clone()));
+        let study = self.evaluated(given, explanation, flights, (held, back, shown_on.clone()));
         let Some(why) = study.refuted_by_holdout() else { return Ok(study) };
         let ExplainStudy { given, explanation, .. } = study;
-        let mut study = self.shown(given, explanation.refuted(), flights, (held, back, shown_on));
+        let mut study = self.evaluated(given, explanation.refuted(), flights, (held, back, shown_on));
         study.notes.push(Note::warning(About::HoldOut, why));
         Ok(study)
     }
 
     /// An explanation with what it does on the flights explained and on those held out.
-    fn shown(
+    fn evaluated(
         &self,
         given: Given,
         explanation: Explanation,

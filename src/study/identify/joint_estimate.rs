@@ -4,7 +4,6 @@ use crate::diagnose::{ExplainError, ExplainSettings, Explanation, Verdict, brief
 use crate::estimate::{
     Estimated, Finding, MethodResult, Nominal, Recommendation, THETA, moved_by_guessed_curve,
 };
-use crate::physics::{Effect, effects::ThrustCurve};
 use crate::signals::Signals;
 use crate::study::explain::BY_CONTROL;
 use crate::vehicle::Vehicle;
@@ -42,7 +41,7 @@ pub(super) fn joint_estimate(
     let fitted = if unexplained { &found.search.before } else { &found.search.after };
     let mut estimated = fitted.with_stated_thrust(&vehicle.propulsion);
     estimated.by_wider_window = alone.by_wider_window;
-    if !fitted.base.estimates(|term| term.id() == ThrustCurve.id()) {
+    if !fitted.base.estimates_bend() {
         let moved = moved_by_guessed_curve(flights, vehicle).map(|by| by.on(&estimated.theta));
         estimated = estimated.with_guessed_curve(moved);
     }

@@ -5,5 +5,5 @@ mod result;
 mod run;
 
 pub use request::{Circle, PlannedSeries, PlanningRequest};
-pub use result::{Flown, PlanStudy};
+pub use result::{FlightExtremes, PlanStudy};
 pub use run::plan_flight;

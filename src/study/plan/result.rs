@@ -26,7 +26,7 @@ pub struct PlanStudy {
     /// from takeoff to the series and back; `None` where no transition keeps the limits
     pub transitions: Option<StoredTransitions>,
     /// of the whole flight from takeoff to landing; `None` where no transition keeps the limits
-    pub flown: Option<Flown>,
+    pub flown: Option<FlightExtremes>,
     /// the first bound that is broken
     pub first_violation: Option<String>,
     /// what is to be known of the files
@@ -35,7 +35,7 @@ pub struct PlanStudy {
 
 /// The box round a flight and its extremes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Flown {
+pub struct FlightExtremes {
     /// least x, y, z
     pub low_m: [f64; 3],
     /// greatest x, y, z
@@ -48,7 +48,7 @@ pub struct Flown {
     pub tilt_deg: f64,
 }
 
-impl Flown {
+impl FlightExtremes {
     pub(super) fn of(path: &FlightPath, vehicle: &Vehicle) -> Self {
         let extremes = Extremes::of(path, vehicle);
         Self {

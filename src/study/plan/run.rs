@@ -1,7 +1,7 @@
 //! Reads vehicle and limits, plans or assesses a series, and puts takeoff and landing around it.
 
 use super::request::{Circle, PlannedSeries, PlanningRequest};
-use super::result::{Flown, PlanStudy};
+use super::result::{FlightExtremes, PlanStudy};
 use crate::config::{StoredTransitions, read_limits, read_trajectory};
 use crate::note::{About, Note};
 use crate::plan::{
@@ -57,7 +57,7 @@ pub fn plan_flight(request: &PlanningRequest, progress: &dyn Progress) -> Result
     match calm.map_or_else(|| flight_path(&study.series, &flight, &bounds, &dynamics), Ok) {
         Ok(path) => {
             study.transitions = transitions(&path, &flight);
-            study.flown = Some(Flown::of(&path, &vehicle));
+            study.flown = Some(FlightExtremes::of(&path, &vehicle));
         }
         Err(error) => {
             study.first_violation.get_or_insert(error.to_string());

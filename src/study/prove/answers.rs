@@ -1,5 +1,6 @@
 //! The answers of a folder of cases, read only after every verdict is sealed.
 
+use crate::note::{About, Note};
 use crate::physics::effects::{ALL, by_id};
 use crate::study::StudyError;
 use crate::text;
@@ -36,7 +37,7 @@ pub(super) struct Answers {
     /// by the case's folder
     pub(super) cases: BTreeMap<String, Answer>,
     /// what was ignored
-    pub(super) notes: Vec<String>,
+    pub(super) notes: Vec<Note>,
 }
 
 /// Reads the answers.
@@ -55,7 +56,8 @@ pub(super) fn read(path: &Path) -> Result<Answers, StudyError> {
     Ok(answers)
 }
 
-fn parsed(name: &str, value: &Value, notes: &mut Vec<String>) -> Result<Answer, String> {
+fn parsed(name: &str, value: &Value, notes: &mut Vec<Note>) -> Result<Answer, String> {
+    let about = || About::Case(name.to_owned());
     let Value::Object(fields) = value else {
         return Err(format!("{name}: expected an object with `expect` and `effects`, got {value}"));
     };
@@ -78,7 +80,7 @@ fn parsed(name: &str, value: &Value, notes: &mut Vec<String>) -> Result<Answer, 
         ));
     }
     for key in fields.keys().filter(|key| !["expect", "effects", "vehicle"].contains(&key.as_str())) {
-        notes.push(format!("{name}: `{key}` of the answers is not used"));
+        notes.push(Note::loss(about(), format!("`{key}` of the answers is not used")));
     }
     let mut sizes = BTreeMap::new();
     if let Some(Value::Object(effects)) = fields.get("effects") {
@@ -87,8 +89,10 @@ fn parsed(name: &str, value: &Value, notes: &mut Vec<String>) -> Result<Answer, 
                 Some(size) => {
                     sizes.insert(id.clone(), size);
                 }
-                None => notes
-                    .push(format!("{name}: the size of `{id}` is not a number, a list or a table of them")),
+                None => {
+                    let text = format!("the size of `{id}` is not a number, a list or a table of them");
+                    notes.push(Note::loss(about(), text));
+                }
             }
         }
     }

@@ -7,6 +7,7 @@ use super::folders::{VEHICLE, logs};
 use crate::config::read_vehicle;
 use crate::diagnose::holdout::{Explained, HoldoutFit, HoldoutSettings, on_holdout};
 use crate::diagnose::{Empirical, ExplainSettings, Explanation, Named, explain};
+use crate::note::Note;
 use crate::signals::{ConditionSettings, ThrustPreference};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, shared};
 use crate::study::{ExplainRequest, ReadSettings, StudyError};
@@ -76,7 +77,7 @@ pub struct Gain {
     /// why the hold-out cannot be of this vehicle
     pub other_vehicle: Option<String>,
     /// what was not simply kept
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// Explains a case; whatever fails is part of the verdict.

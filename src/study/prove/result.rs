@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::case::CaseVerdict;
 use super::score::{ProofSummary, ScoredCase};
+use crate::note::Note;
 use serde::Serialize;
 
 /// What was found in all cases, sealed and scored; as JSON, the document of `prove`.
@@ -22,7 +23,7 @@ pub struct Proof {
     /// what was found where there are no answers
     pub unscored: Vec<CaseVerdict>,
     /// what of the answers was not used
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 impl Proof {

@@ -6,6 +6,7 @@ use super::answers::{self, Answers};
 use super::case::CaseVerdict;
 use super::result::Proof;
 use super::score::{ScoredCase, scored, summary};
+use crate::note::{About, Note};
 use crate::study::StudyError;
 use crate::text;
 
@@ -37,7 +38,8 @@ pub fn prove(
     let mut notes = found.notes;
     let has_folder = |name: &str| cases.iter().any(|case| case.case == name);
     let without = found.cases.keys().filter(|name| !has_folder(name));
-    notes.extend(without.map(|name| format!("{name}: has an answer, but no folder")));
+    let about = |name: &String| About::Case(name.clone());
+    notes.extend(without.map(|name| Note::loss(about(name), "has an answer, but no folder")));
     Ok(Proof {
         schema: 1,
         sealed_sha256,

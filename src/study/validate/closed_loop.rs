@@ -4,6 +4,7 @@ use super::comparisons::closed_loop_table;
 use super::error_table::ErrorTable;
 use super::model::Contender;
 use crate::compare::{TenSignals, autopilot_flight, divergence, recorded_tracking_m, resimulated};
+use crate::note::{About, Note};
 use crate::signals::{Signals, ThrustSource};
 use crate::simulate::pid::{PidFlightSettings, PidSettings};
 use crate::study::flight::Flight;
@@ -65,8 +66,8 @@ fn fly(flight: &Flight, model: &Contender, models: &[Contender], by_pid: bool) -
 }
 
 /// Who flew the simulations, and what that leaves in the errors.
-fn notes(by_pid: bool, nominal: &str, tracking_m: Option<[f64; 3]>) -> Vec<String> {
-    let mut notes = vec![if by_pid {
+fn notes(by_pid: bool, nominal: &str, tracking_m: Option<[f64; 3]>) -> Vec<Note> {
+    let controller = if by_pid {
         format!("controller: the paper's PID (28) to (32) with the mass of {nominal}, on exact states")
     } else {
         format!(
@@ -75,12 +76,12 @@ fn notes(by_pid: bool, nominal: &str, tracking_m: Option<[f64; 3]>) -> Vec<Strin
              affect every column. Force and torque distinguish models; position and attitude do so only as far as the \
              controller does not hold them"
         )
-    }];
-    notes.extend(tracking_m.map(|[x, y, z]| {
+    };
+    let tracking = tracking_m.map(|[x, y, z]| {
         format!(
             "the recorded flight itself was off its setpoints by {x:.3}, {y:.3}, {z:.3} m RMS in x, y, z, which no \
              model can correct"
         )
-    }));
-    notes
+    });
+    std::iter::once(controller).chain(tracking).map(|text| Note::remark(About::Errors, text)).collect()
 }

@@ -2,6 +2,7 @@
 
 use super::error_table::ErrorTable;
 use crate::compare::{Fit, SIGNALS, TenSignals};
+use crate::note::{About, Note};
 use crate::study::COMPONENTS;
 
 /// Table 4: errors of the ten signals between a flight and each simulation of it.
@@ -50,7 +51,8 @@ pub fn playback_table(window_s: f64, fits: &[(String, Result<Fit, String>)]) -> 
     let absent: Vec<&str> =
         ROWS.iter().map(|(name, _)| *name).filter(|name| shown.iter().all(|row| row.name != *name)).collect();
     if !absent.is_empty() {
-        table.notes.push(format!("not recorded (position needs velocity as well): {}", absent.join(", ")));
+        let text = format!("not recorded (position needs velocity as well): {}", absent.join(", "));
+        table.notes.push(Note::remark(About::Errors, text));
     }
     table
 }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::compare::improvement_percent;
+use crate::note::Note;
 
 /// RMS errors, one column a model; the first column is what the others are compared with.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -19,7 +20,7 @@ pub struct ErrorTable {
     /// models that are missing, and why
     pub missing: Vec<String>,
     /// what to know when reading it
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// One signal's errors.
@@ -81,8 +82,9 @@ impl ErrorTable {
     /// What is said below the rows: which models are missing and why, and, where there are rows, the notes.
     #[must_use]
     pub fn remarks(&self) -> Vec<&str> {
-        let notes: &[String] = if self.shown().is_empty() { &[] } else { &self.notes };
-        self.missing.iter().chain(notes).map(String::as_str).collect()
+        let notes: &[Note] = if self.shown().is_empty() { &[] } else { &self.notes };
+        let notes = notes.iter().map(|note| note.text.as_str());
+        self.missing.iter().map(String::as_str).chain(notes).collect()
     }
 }
 

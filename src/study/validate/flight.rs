@@ -1,5 +1,6 @@
 //! One flight against all models.
 
+use crate::diagnose::holdout::WINDOWS_S;
 use std::path::Path;
 
 use super::closed_loop::closed_loop;
@@ -14,9 +15,8 @@ use crate::signals::{Butterworth, ConditionSettings, Signals};
 use crate::study::StudyError;
 use crate::study::flight::Flight;
 
-/// Lengths of the playback's windows, s.
-const WINDOWS_S: [f64; 3] = [0.1, 0.5, 1.0];
-/// Cut-off of the low-pass under the regression models, Hz. Chosen; not measured.
+/// Cut-off of the low-pass under the regression models, Hz. All models are judged by the same signals; a higher one
+/// compares noise.
 pub(super) const CUTOFF_HZ: f64 = 5.0;
 
 pub(super) fn flight(

@@ -12,7 +12,7 @@ mod run;
 
 pub use comparisons::{closed_loop_table, playback_table, prediction_table};
 pub use error_table::{Column, ErrorRow, ErrorTable};
-pub use ranking::Prediction;
+pub use ranking::{Prediction, Rank};
 pub use request::ValidateRequest;
 pub use result::{ValidateStudy, ValidatedFlight, ValidatedModel};
 pub use run::validate;

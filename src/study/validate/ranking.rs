@@ -3,9 +3,7 @@
 use super::error_table::ErrorTable;
 use super::result::ValidateStudy;
 use crate::compare::improvement_percent;
-
-/// Window of the errors that models are ranked by, s.
-const WINDOW_S: f64 = 0.5;
+use crate::diagnose::holdout::HALF_S;
 
 /// Error of one quantity over windows of 0.5 s, root mean square over all flights.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,7 +16,42 @@ pub struct Prediction {
     pub rms: Vec<Option<f64>>,
 }
 
+/// Models that differ by less in the mean predict equally well, percent: rounded to whole percents their errors read alike.
+const ALIKE_PERCENT: f64 = 0.5;
+
+/// What the best model beside the first predicts against the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rank {
+    /// errors are smaller
+    Better,
+    /// there is no difference
+    Alike,
+    /// errors are larger
+    Worse,
+}
+
+impl Prediction {
+    /// Error of a model over that of the first; NaN where there is none.
+    #[must_use]
+    pub fn over_first(&self, model: usize) -> f64 {
+        match (self.rms[0], self.rms[model]) {
+            (Some(first), Some(rms)) if first > 0.0 => rms / first,
+            _ => f64::NAN,
+        }
+    }
+}
+
 impl ValidateStudy {
+    /// How a model predicts against the first, by [`Self::mean_gain`].
+    #[must_use]
+    pub fn rank(&self, model: usize) -> Rank {
+        match self.mean_gain(model) {
+            mean if mean < -ALIKE_PERCENT => Rank::Worse,
+            mean if mean < ALIKE_PERCENT => Rank::Alike,
+            _ => Rank::Better,
+        }
+    }
+
     /// Errors of all flights over windows of 0.5 s, one entry a quantity.
     #[must_use]
     pub fn half_second(&self) -> Vec<Prediction> {
@@ -26,7 +59,7 @@ impl ValidateStudy {
             .flights
             .iter()
             .flat_map(|flight| &flight.tables)
-            .filter(|table| table.window_s.is_some_and(|window_s| (window_s - WINDOW_S).abs() < 1e-9))
+            .filter(|table| table.window_s.is_some_and(|window_s| (window_s - HALF_S).abs() < 1e-9))
             .collect();
         let Some(first) = tables.first() else { return Vec::new() };
         let over_flights = |row: usize, model: usize| {

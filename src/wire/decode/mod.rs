@@ -19,4 +19,5 @@ mod vehicle;
 pub use decoder::Decoder;
 pub use report::DecodeReport;
 pub use source::Source;
+pub use text::STATUSTEXT_BYTES;
 pub use vehicle::Vehicle;

@@ -6,10 +6,8 @@ use crate::frames::{
 };
 use crate::recording::Quantity;
 use crate::wire::frame::Payload;
+use crate::wire::mav_frame::{BODY_NED, LOCAL_NED};
 
-/// MAV_FRAME values that ODOMETRY uses.
-const LOCAL_NED: u8 = 1;
-const BODY_NED: u8 = 8;
 const BODY_FRD: u8 = 12;
 
 /// Offset of ODOMETRY's frames and counter, behind its two covariances.

@@ -6,10 +6,9 @@ use super::source::Source;
 use crate::frames::{attitude_from_frd_ned, body_from_frd, world_from_ned, yaw_from_ned};
 use crate::recording::Quantity;
 use crate::wire::frame::{Payload, SystemId};
+use crate::wire::mav_frame::{FORCE_SET, LOCAL_NED};
 
-const LOCAL_NED: u8 = 1;
 /// Bits of POSITION_TARGET_TYPEMASK: three for each vector, then force instead of acceleration, yaw, yaw rate.
-const FORCE: u16 = 1 << 9;
 const IGNORE_YAW: u16 = 1 << 10;
 const IGNORE_YAW_RATE: u16 = 1 << 11;
 /// Bits of ATTITUDE_TARGET_TYPEMASK: three for the rates, then these.
@@ -40,7 +39,7 @@ fn position_target(payload: Payload<'_>, frame: u8, samples: &mut Samples<'_>) {
     let vectors = [
         (Quantity::PositionSetpoint, 4, mask & 0b111),
         (Quantity::VelocitySetpoint, 16, (mask >> 3) & 0b111),
-        (Quantity::AccelerationSetpoint, 28, if mask & FORCE == 0 { (mask >> 6) & 0b111 } else { 0b111 }),
+        (Quantity::AccelerationSetpoint, 28, if mask & FORCE_SET == 0 { (mask >> 6) & 0b111 } else { 0b111 }),
     ];
     for (quantity, offset, ignored) in vectors {
         let mut ned: [f64; 3] = payload.f32s(offset);

@@ -5,15 +5,15 @@ use crate::autopilot::Autopilot;
 use crate::recording::Quantity;
 use crate::units::{amperes_from_ca, volts_from_mv};
 use crate::wire::frame::Payload;
+use crate::wire::heartbeat::{ARMED, BASE_MODE_AT};
 
-const ARMED: u8 = 128;
 /// Centiamperes by which the autopilots say that they do not know: MAVLink's -1, and PX4's -1 A.
 const CURRENT_UNKNOWN_CA: [i16; 2] = [-1, -100];
 
 /// Read by its bytes: an enumeration value newer than the dialect must not hide the mode.
 pub(super) fn heartbeat(payload: Payload<'_>, samples: &mut Samples<'_>) {
     samples.give(Quantity::Mode, 0, &[payload.u32(0).into()]);
-    samples.give(Quantity::Armed, 0, &[if payload.u8(6) & ARMED == 0 { 0.0 } else { 1.0 }]);
+    samples.give(Quantity::Armed, 0, &[if payload.u8(BASE_MODE_AT) & ARMED == 0 { 0.0 } else { 1.0 }]);
 }
 
 pub(super) fn current_mode(payload: Payload<'_>, samples: &mut Samples<'_>) {

@@ -5,7 +5,7 @@ use crate::text;
 use crate::wire::frame::Payload;
 
 /// Bytes of text in one STATUSTEXT, by the message's definition.
-const CHUNK_BYTES: usize = 50;
+pub const STATUSTEXT_BYTES: usize = 50;
 /// No text has more, whatever a broken sender counts.
 const MAX_CHUNKS: u8 = 16;
 /// What stands where a chunk did not come.
@@ -32,7 +32,7 @@ impl Texts {
     /// Takes one message; gives out each text that it completes.
     pub(super) fn take(&mut self, payload: Payload<'_>, time_s: f64, sink: &mut impl FnMut(Event<'_>)) {
         let (id, chunk) = (payload.u16(51), payload.u8(53));
-        let bytes = payload.text_bytes(1, CHUNK_BYTES);
+        let bytes = payload.text_bytes(1, STATUSTEXT_BYTES);
         let continued = self.open.as_mut().filter(|open| id != 0 && open.id == id && chunk > 0);
         match continued {
             Some(open) => {
@@ -57,7 +57,7 @@ impl Texts {
             }
         }
         let full = self.open.as_ref().is_some_and(|open| open.chunks >= MAX_CHUNKS);
-        if id == 0 || bytes.len() < CHUNK_BYTES || chunk >= MAX_CHUNKS || full {
+        if id == 0 || bytes.len() < STATUSTEXT_BYTES || chunk >= MAX_CHUNKS || full {
             self.finish(sink);
         }
     }

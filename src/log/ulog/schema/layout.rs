@@ -1,5 +1,6 @@
 //! Where the fields of a message stand in its bytes.
 
+use crate::autopilot::ULOG_DEEPEST;
 use std::collections::HashMap;
 
 use super::definition::{Definition, FieldType};
@@ -7,8 +8,6 @@ use super::number::{NumberType, array};
 
 /// A message is no longer: its length is sixteen bits.
 const MOST_BYTES: usize = u16::MAX as usize;
-/// Messages in messages in messages.
-const DEEPEST: usize = 8;
 /// Name of the field that says when.
 const STAMP: &str = "timestamp";
 
@@ -61,7 +60,7 @@ impl Layout {
     /// The layout of a definition; `None` where one that it uses is missing, or it is longer than a message may be.
     pub(super) fn of(definition: &Definition, all: &HashMap<String, Definition>) -> Option<Self> {
         let mut spans = Vec::new();
-        let bytes = spread(definition, all, "", 0, DEEPEST, &mut spans)?;
+        let bytes = spread(definition, all, "", 0, ULOG_DEEPEST, &mut spans)?;
         let padding = definition.fields.last().filter(|last| last.is_padding()).and(spans.last());
         let bytes_without_padding = padding.map_or(bytes, |padding| padding.offset);
         let is_stamp =

@@ -66,13 +66,12 @@ proptest! {
         for effect in ALL {
             let theta = within_bounds(*effect, &shares);
             let mut seen = theta.clone();
-            match effect.id() {
-                "com_offset" => seen[1] = -theta[1],
-                "thrust_tilt" => seen[0] = -theta[0],
-                "weak_rotor" => seen[0] = [1.0, 0.0, 3.0, 2.0, 4.0, 5.0, 6.0, 7.0][
+            effect.sided().iter().for_each(|slot| seen[*slot] = -theta[*slot]);
+            // the number of a rotor: the one on the other side
+            if effect.id() == "weak_rotor" {
+                seen[0] = [1.0, 0.0, 3.0, 2.0, 4.0, 5.0, 6.0, 7.0][
                     (0..8_usize).find(|i| (*i as f64 - theta[0]).abs() < 0.5).unwrap_or(7)
-                ],
-                _ => {}
+                ];
             }
             let real = of(&state, &commands, *effect, &theta);
             let image = of(&mirrored, &swapped, *effect, &seen);
@@ -80,7 +79,7 @@ proptest! {
                 + (image.torque_nm - mirror_turn(real.torque_nm)).norm();
             prop_assert!(
                 difference < 1e-9 * (1.0 + size(&real)),
-                "{}: its mirror image is another force: if a parameter has a side, change its sign in `match` above",
+                "{}: its mirror image is another force: if a parameter has a side, name it in `sided`",
                 effect.id()
             );
         }

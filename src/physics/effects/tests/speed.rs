@@ -59,7 +59,7 @@ fn a_finer_form_is_given_from_its_first_value_on() {
 fn a_stated_time_constant_is_the_lag() {
     let stated = |time_constant_s, time_constant_down_s| {
         let propulsion = Propulsion { time_constant_s, time_constant_down_s, ..vehicle().propulsion };
-        MotorLag::stated(&propulsion).map(|lag| lag.parameters().to_vec())
+        ActiveEffect::stated_rotor_lag(&propulsion).map(|lag| lag.parameters().to_vec())
     };
     assert_eq!(stated(None, None), None);
     assert_eq!(stated(Some(0.0), None), None);

@@ -35,7 +35,7 @@ pub struct Manner {
 
 /// A flight that is over.
 #[derive(Debug)]
-pub struct Flown {
+pub struct FlightRun {
     /// what was flown
     pub record: Record,
     /// the vehicle's own log, where it was fetched
@@ -50,11 +50,11 @@ pub struct Flown {
 ///
 /// # Errors
 /// The arguments cannot be used, or the vehicle or the machine failed before the flight.
-pub fn flown(
+pub fn one_flight(
     (stderr, work): (&StandardError, &Work),
     args: &FlyArgs,
     manner: Manner,
-) -> Result<Flown, CommandError> {
+) -> Result<FlightRun, CommandError> {
     let drawn = !args.plain && is_attended();
     if stderr.is_quiet() && !drawn && asks_for_the_word(args) {
         let expected =
@@ -99,5 +99,5 @@ pub fn flown(
     let fetching = if record.outcome.ending == Ending::Landed { Fetching::of(args) } else { Fetching::Not };
     // each line when it is due: how long a download takes is said before it
     let onboard = log::after_flight((args, work), record.system, fetching, &mut |note| said.say(vec![note]));
-    Ok(Flown { record, onboard, said, view })
+    Ok(FlightRun { record, onboard, said, view })
 }
