@@ -129,7 +129,7 @@ fn the_same_story_with_a_vehicle_and_by_identify() {
             };
             let refusal = identify(&request, &Silent).err().unwrap().to_string();
             let words = match why.as_str() {
-                "its messages have no time stamps" => "no time",
+                "its messages carry no time" => "no time",
                 other => other.trim_start_matches("it is "),
             };
             assert!(refusal.contains(words), "{}: {refusal}", fact.file);

@@ -135,10 +135,10 @@ impl Evidence<'_> {
     /// Why nothing at all can be identified.
     pub(super) fn nothing(&self) -> Option<String> {
         if let Some(kind) = self.kind.filter(|kind| *kind != VehicleKind::Multirotor) {
-            return Some(format!("it is the log of a {}, and only multirotors are identified", kind.name()));
+            return Some(format!("it is of a {}, and a multirotor is needed", kind.name()));
         }
         if !self.timed && !self.undefined {
-            return Some("its messages have no time stamps of the vehicle".into());
+            return Some("its messages carry no time of the vehicle's".into());
         }
         if self.undefined {
             return Some("its messages are not defined in it: its beginning is missing".into());
@@ -147,7 +147,7 @@ impl Evidence<'_> {
             return Some("it ends before its first sample".into());
         }
         if self.streams.is_empty() {
-            return Some("it holds no stream that can be used".into());
+            return Some("it holds no stream that is known here".into());
         }
         if let Some(count) = self.steps_back {
             return Some(format!("its messages are out of order, their stamps run back {count} times"));
