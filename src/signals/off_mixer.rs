@@ -199,7 +199,7 @@ mod tests {
         assert!(
             found[0]
                 .to_string()
-                .starts_with("output 3 left the mixer at 15.0 s, stuck at 1500, and stopped at 17.0 s")
+                .starts_with("motor output 3 does not follow the controllers from 15.0 s on: it stays at 1500, and stops at 17.0 s")
         );
     }
 
