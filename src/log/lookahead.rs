@@ -74,24 +74,6 @@ impl<R: Read> LookAhead<R> {
         self.base + self.at as u64
     }
 
-    /// Hands over the `bytes` bytes before those in sight, so that they stay while it goes on; `room` is for what it reads next. Where
-    /// they begin in what is given.
-    pub(super) fn hand_over(&mut self, bytes: usize, mut room: Vec<u8>) -> (Vec<u8>, usize) {
-        let begin = self.at.saturating_sub(bytes);
-        let left = self.filled - self.at;
-        if left > self.at - begin {
-            room.clear();
-            room.extend_from_slice(&self.buffer[begin..self.at]);
-            return (room, 0);
-        }
-        // what is left is less than what would be copied
-        room.resize(room.len().max(self.buffer.len()), 0);
-        room[..left].copy_from_slice(&self.buffer[self.at..self.filled]);
-        self.base += self.at as u64;
-        (self.at, self.filled) = (0, left);
-        (std::mem::replace(&mut self.buffer, room), begin)
-    }
-
     /// Goes on by `bytes` bytes, at most to the end of what is in sight.
     pub(super) fn skip(&mut self, bytes: usize) {
         self.at = (self.at + bytes).min(self.filled);

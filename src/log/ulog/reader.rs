@@ -15,8 +15,6 @@ use crate::log::lookahead::LookAhead;
 const LOOK_BYTES: usize = 2 * MOST_BYTES + HEADER_BYTES + 256;
 /// In sight at once of a log that is read whole.
 const WHOLE_CHUNK_BYTES: usize = 4 << 20;
-/// Length, letter and topic's number before the fields of a data message.
-const DATA_PREFIX_BYTES: usize = PREFIX_BYTES + 2;
 /// Messages of numbers that are not known, one behind the other, that speak for each other.
 const WITNESSES: usize = 3;
 /// Offsets of data that were appended after the file had been closed; a file has room for three.
@@ -128,39 +126,36 @@ impl<R: Read> UlogReader<R> {
     }
 
     /// Gives `take` the data in sight that follow on each other from here on, as [`Self::next_message`] would give them one by
-    /// one: the number of the topic, the stamp, the fields, and how far behind the first message these begin. It ends before the
-    /// first one that `take` does not want. Returns the bytes of all of them, in the place of `room`, and where they begin there.
+    /// one: the number of the topic, the stamp, and the fields. It ends before the first one that `take` does not want.
     ///
     /// # Errors
     /// The reader beneath fails.
     pub(super) fn run(
         &mut self,
-        room: Vec<u8>,
-        take: &mut impl FnMut(u16, Option<u64>, &[u8], usize) -> bool,
-    ) -> Result<(Vec<u8>, usize), LogError> {
+        take: &mut impl FnMut(u16, Option<u64>, &[u8]) -> bool,
+    ) -> Result<(), LogError> {
         self.bytes.skip(std::mem::take(&mut self.given));
         self.bytes.look(LOOK_BYTES)?;
         let least = if self.bytes.is_all() { 0 } else { LOOK_BYTES };
-        let sight = self.bytes.sight();
-        let mut taken = 0;
-        while let Some(bytes) = self.following.filter(|_| sight.len() - taken >= least) {
-            let next = sight[taken..].split_at_checked(bytes).and_then(|(message, rest)| {
+        let mut sight = self.bytes.sight();
+        while let Some(bytes) = self.following.filter(|_| sight.len() >= least) {
+            let next = sight.split_at_checked(bytes).and_then(|(message, rest)| {
                 let [_, _, _, low, high, body @ ..] = message else { return None };
-                Some((data_bytes(rest, &self.schema)?, u16::from_le_bytes([*low, *high]), body))
+                let id = u16::from_le_bytes([*low, *high]);
+                let stamp_us = self.schema.stamp_us(id, body);
+                Some((data_bytes(rest, &self.schema)?, id, stamp_us, body, rest))
             });
-            let Some((following, id, body)) = next else { break };
-            let stamp_us = self.schema.stamp_us(id, body);
-            if !take(id, stamp_us, body, taken + DATA_PREFIX_BYTES) {
+            let Some((following, id, stamp_us, body, rest)) = next else { break };
+            if !take(id, stamp_us, body) {
                 break;
             }
             self.report.messages += 1;
             self.report.note_data(id, stamp_us);
             self.following = Some(following);
-            taken += bytes;
+            self.given += bytes;
+            sight = rest;
         }
-        self.bytes.skip(taken);
-        self.report.bytes = self.bytes.offset();
-        Ok(self.bytes.hand_over(taken, room))
+        Ok(())
     }
 
     /// What was met so far; complete once `next_message` has returned `None`.

@@ -22,17 +22,15 @@ struct Gathered {
     /// times at which the estimate jumped, s
     jumps_s: Vec<f64>,
     by_topic: Vec<Run>,
-    /// what they stand in, and where the first begins there
-    bytes: Vec<u8>,
-    begin: usize,
 }
 
 /// Messages of one topic, all of the same length.
 #[derive(Debug, Default)]
 struct Run {
-    /// stamps, microseconds, and where the fields are behind the first of all gathered messages
-    messages: Vec<(u64, usize)>,
-    /// of the fields of one
+    /// number among the gathered, and stamp, microseconds
+    stamps: Vec<(usize, u64)>,
+    bytes: Vec<u8>,
+    /// of one message
     length: usize,
 }
 
@@ -109,29 +107,20 @@ impl Scan<'_> {
     fn gather<R: Read>(mut self, reader: &mut UlogReader<R>, into: &mut Gathered) -> Result<(), LogError> {
         into.clock = self.clock.clone();
         into.by_topic.resize_with(self.topics.len().max(into.by_topic.len()), Run::default);
-        let room = std::mem::take(&mut into.bytes);
-        let taken =
-            reader.run(room, &mut |id, stamp_us, bytes, at| self.take(id.into(), stamp_us, (bytes, at), into));
-        (into.bytes, into.begin) = taken?;
-        Ok(())
+        reader.run(&mut |id, stamp_us, bytes| self.take(id.into(), stamp_us, bytes, into))
     }
 
     /// `false` for a message that has to be looked at by itself.
     #[inline]
-    fn take(
-        &mut self,
-        slot: usize,
-        stamp_us: Option<u64>,
-        (bytes, at): (&[u8], usize),
-        into: &mut Gathered,
-    ) -> bool {
+    fn take(&mut self, slot: usize, stamp_us: Option<u64>, bytes: &[u8], into: &mut Gathered) -> bool {
+        let order = into.count;
         let (Some(Some(topic)), Some(stamp_us)) = (self.topics.get_mut(slot), stamp_us) else {
             into.count += 1;
             return true;
         };
         let Some(run) = into.by_topic.get_mut(slot) else { return false };
         let follows = topic.is_alone && self.may_follow && self.clock.goes_on(stamp_us, topic.last_us);
-        if !follows || !run.messages.is_empty() && bytes.len() != run.length {
+        if !follows || !run.stamps.is_empty() && bytes.len() != run.length {
             return false;
         }
         self.clock.go_on(stamp_us);
@@ -141,7 +130,8 @@ impl Scan<'_> {
         }
         into.count += 1;
         run.length = bytes.len();
-        run.messages.push((stamp_us, at));
+        run.stamps.push((order, stamp_us));
+        run.bytes.extend_from_slice(bytes);
         true
     }
 }
@@ -150,7 +140,10 @@ impl Gathered {
     fn clear(&mut self) {
         self.count = 0;
         self.jumps_s.clear();
-        self.by_topic.iter_mut().for_each(|run| run.messages.clear());
+        for run in &mut self.by_topic {
+            run.stamps.clear();
+            run.bytes.clear();
+        }
     }
 
     /// Gives what the messages say to `builder`.
@@ -162,28 +155,22 @@ impl Gathered {
         builder.fill(|place, growing| {
             let (slot, index) = places.get(place).copied()??;
             let (run, bound) = (self.by_topic.get(slot)?, streams.get(slot)?.get(index)?);
-            let (at, time_s) = run.decode(self.bytes.get(self.begin..)?, &self.clock, bound, growing)?;
-            Some((at * MOST_STREAMS + index, time_s))
+            let (order, time_s) = run.decode(&self.clock, bound, growing)?;
+            Some((order * MOST_STREAMS + index, time_s))
         });
     }
 }
 
 impl Run {
-    /// Adds one stream's samples; the place of the message and the time, s, of the last one.
-    fn decode(
-        &self,
-        bytes: &[u8],
-        clock: &Clock,
-        bound: &Bound,
-        growing: &mut Growing,
-    ) -> Option<(usize, f64)> {
+    /// Adds one stream's samples; the order of the message and the time, s, of the last one.
+    fn decode(&self, clock: &Clock, bound: &Bound, growing: &mut Growing) -> Option<(usize, f64)> {
         let mut last = None;
-        for (stamp_us, at) in &self.messages {
-            let Some(message) = bytes.get(*at..*at + self.length) else { continue };
-            let Some(time_s) = time_s(clock, bound, message, *stamp_us) else { continue };
-            bound.sample(message, |values| {
+        for ((order, stamp_us), bytes) in self.stamps.iter().zip(self.bytes.chunks_exact(self.length.max(1)))
+        {
+            let Some(time_s) = time_s(clock, bound, bytes, *stamp_us) else { continue };
+            bound.sample(bytes, |values| {
                 growing.push(time_s, values);
-                last = Some((*at, time_s));
+                last = Some((*order, time_s));
             });
         }
         last
