@@ -132,7 +132,8 @@ mod tests {
     fn what_is_said_of_several_files_is_said_once_with_their_names() {
         let of = |name: &str, text: &str| Note::warning(About::File(name.to_owned()), text);
         let rest = Note::remark(About::Vehicle, "short");
-        let notes = vec![of("a", "slow"), of("b", "slow"), of("b", "cut"), of("a", "slow"), rest.clone(), rest];
+        let notes =
+            vec![of("a", "slow"), of("b", "slow"), of("b", "cut"), of("a", "slow"), rest.clone(), rest];
         let told: Vec<String> = said_once(notes).iter().map(ToString::to_string).collect();
         assert_eq!(told, ["warning: a, b: slow", "warning: b: cut", "short"]);
         let many = (0..9).map(|index| of(&index.to_string(), "slow")).collect();

@@ -61,7 +61,8 @@ fn real_quadrotors_of_the_default_profile_give_no_inertia() {
 fn simulated_flights_of_px4s_default_profile_have_the_right_sign_or_none() {
     let Some(shared) = support::shared() else { return };
     let folder = shared.join("onboard/sitl");
-    for (flight, vehicle) in [("px02", "px4-v1"), ("px03", "px4-v1"), ("px06", "px4-v1"), ("px08", "px4-v1")] {
+    for (flight, vehicle) in [("px02", "px4-v1"), ("px03", "px4-v1"), ("px06", "px4-v1"), ("px08", "px4-v1")]
+    {
         let vehicle = VehicleGiven::File(folder.join(format!("{vehicle}.toml")));
         let study = identified(folder.join(format!("{flight}.ulg")), vehicle).unwrap();
         let stated = study.vehicle.body.inertia_kg_m2;
@@ -78,7 +79,9 @@ fn simulated_flights_of_px4s_default_profile_have_the_right_sign_or_none() {
 fn inertia_cannot_come_from_ardupilots_default_log_and_what_to_set_is_said() {
     let Some(shared) = support::shared() else { return };
     let folder = shared.join("onboard/sitl");
-    for (flight, vehicle) in [("ap02", "ardupilot-quad-a"), ("ap04", "ardupilot-quad-a"), ("ap06", "ardupilot-hexa-b")] {
+    for (flight, vehicle) in
+        [("ap02", "ardupilot-quad-a"), ("ap04", "ardupilot-quad-a"), ("ap06", "ardupilot-hexa-b")]
+    {
         let log = folder.join(format!("{flight}.bin"));
         let (status, reason, set) = inertia(&inspected(&log));
         assert_eq!(status, "no", "{flight}: {reason}");

@@ -91,7 +91,10 @@ impl Stack {
                 || self.logging.to_owned(),
                 |since| {
                     let (name, parameter) = (self.name, first.parameter);
-                    format!("update {name} to {since} or later, which brings {parameter}, and {}", self.logging)
+                    format!(
+                        "update {name} to {since} or later, which brings {parameter}, and {}",
+                        self.logging
+                    )
                 },
             );
         };
@@ -109,7 +112,8 @@ impl Stack {
             names if names.is_empty() => format!("{} = {}", change.parameter, change.wanted),
             names => format!("{} = {} (adds {names})", change.parameter, change.wanted),
         };
-        let restart = if changes.iter().any(|change| change.restarts) { " and restart the autopilot" } else { "" };
+        let restart =
+            if changes.iter().any(|change| change.restarts) { " and restart the autopilot" } else { "" };
         format!("set {}{restart}", changes.iter().map(set).collect::<Vec<_>>().join(", "))
     }
 

@@ -261,10 +261,7 @@ pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Findin
     let (guessed, by_curve) = (nominal.guessed(index), estimated.moved_by_curve(index));
     if guessed.hypot(by_curve / size) > LARGEST_RELATIVE_STD {
         let of_curve = (by_curve > 0.0).then(|| {
-            format!(
-                "{CURVE_IS_A_GUESS}, one standard error of it moves this by {}",
-                percent(by_curve / size)
-            )
+            format!("{CURVE_IS_A_GUESS}, one standard error of it moves this by {}", percent(by_curve / size))
         });
         let why: Vec<String> = nominal.guesses(index).into_iter().chain(of_curve).collect();
         return Finding::NotDetermined { reason: why.join(" and ") };

@@ -56,7 +56,11 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
         return "Nothing can be identified with this vehicle: its thrust contradicts the log. See the advice.".into();
     }
     if let Some(nothing) = evidence.nothing() {
-        let next = if evidence.is_of_other_kind() { String::new() } else { format!(" {}", instead_of_nothing(evidence)) };
+        let next = if evidence.is_of_other_kind() {
+            String::new()
+        } else {
+            format!(" {}", instead_of_nothing(evidence))
+        };
         return format!("Nothing can be identified from this log: {nothing}.{next}");
     }
     let flight = &evidence.assessment.flight;

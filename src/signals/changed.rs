@@ -163,7 +163,9 @@ pub fn other_settings(flights: &[Recording]) -> Vec<Note> {
     let note = |(differs, numbers): (String, Vec<usize>)| {
         let who = match numbers.as_slice() {
             [one] => format!("flight {one} was"),
-            all => format!("flights {} were", all.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
+            all => {
+                format!("flights {} were", all.iter().map(usize::to_string).collect::<Vec<_>>().join(", "))
+            }
         };
         let text =
             format!("{who} flown with other settings than flight 1: {differs}: is it the same vehicle?");
@@ -291,7 +293,8 @@ mod tests {
         let told = |flights: &[Recording]| {
             other_settings(flights).into_iter().map(|note| note.text).collect::<Vec<_>>()
         };
-        let differs = "flown with other settings than flight 1: THR_MDL_FAC 0.3 in place of 0: is it the same vehicle?";
+        let differs =
+            "flown with other settings than flight 1: THR_MDL_FAC 0.3 in place of 0: is it the same vehicle?";
         assert_eq!(told(&[one.clone(), other.clone()]), [format!("flight 2 was {differs}")]);
         let four = [one.clone(), other.clone(), one.clone(), other];
         assert_eq!(told(&four), [format!("flights 2, 4 were {differs}")]);

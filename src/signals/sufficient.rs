@@ -182,10 +182,7 @@ mod tests {
         let mut late = stream(1.0, 60.0);
         late.time_s.extend(stream(100.0, 20.0).time_s.iter().map(|time_s| 60.5 + time_s));
         let fast_enough = Sufficiency { torques: true, note: None };
-        assert_eq!(
-            check(&[needed("body rates", &late)], &[(60.5, 80.0)], None).unwrap(),
-            fast_enough
-        );
+        assert_eq!(check(&[needed("body rates", &late)], &[(60.5, 80.0)], None).unwrap(), fast_enough);
         assert!(check(&[needed("body rates", &late)], &[(5.0, 50.0)], None).is_err());
         assert_eq!(check(&[outputs], &[], None).unwrap(), fast_enough);
         // slow, but not hopeless: said

@@ -47,7 +47,9 @@ fn said(quantity: &QuantitySummary, above: Option<&QuantitySummary>) -> String {
         "partly" if expected.is_empty() => format!("partly; {reason}"),
         "partly" => format!("partly, to {expected}{better}; {reason}"),
         // an error beyond what is looked for is no accuracy
-        _ if quantity.expected.iter().any(|one| one.std_relative > 1.0) => format!("no, not determined: {reason}"),
+        _ if quantity.expected.iter().any(|one| one.std_relative > 1.0) => {
+            format!("no, not determined: {reason}")
+        }
         _ if !expected.is_empty() => format!("no, only to {expected}{better}; {reason}"),
         _ if is_as_above(|above, this| above.reason == this.reason && above.expected.is_empty()) => {
             "no, likewise".to_owned()

@@ -117,7 +117,10 @@ pub(super) const ROWS: &[Row] = &[
     row(
         ESTIMATE,
         Quantity::Position,
-        &[Way { fields: POSITION_ARRAY, turn: Turn::HalfTurn }, Way { fields: POSITION, turn: Turn::HalfTurn }],
+        &[
+            Way { fields: POSITION_ARRAY, turn: Turn::HalfTurn },
+            Way { fields: POSITION, turn: Turn::HalfTurn },
+        ],
         NED,
         Moment::Sampled,
     ),
@@ -128,15 +131,30 @@ pub(super) const ROWS: &[Row] = &[
         &[When::Is("velocity_frame", 1.0)],
         Moment::Sampled,
     ),
-    row(ESTIMATE, Quantity::Attitude, &[Way { fields: ATTITUDE, turn: Turn::By(attitude) }], NED, Moment::Sampled),
     row(
-        POSES,
-        Quantity::Position,
-        &[Way { fields: POSITION_ARRAY, turn: Turn::HalfTurn }, Way { fields: POSITION, turn: Turn::HalfTurn }],
+        ESTIMATE,
+        Quantity::Attitude,
+        &[Way { fields: ATTITUDE, turn: Turn::By(attitude) }],
         NED,
         Moment::Sampled,
     ),
-    row(POSES, Quantity::Attitude, &[Way { fields: ATTITUDE, turn: Turn::By(attitude) }], NED, Moment::Sampled),
+    row(
+        POSES,
+        Quantity::Position,
+        &[
+            Way { fields: POSITION_ARRAY, turn: Turn::HalfTurn },
+            Way { fields: POSITION, turn: Turn::HalfTurn },
+        ],
+        NED,
+        Moment::Sampled,
+    ),
+    row(
+        POSES,
+        Quantity::Attitude,
+        &[Way { fields: ATTITUDE, turn: Turn::By(attitude) }],
+        NED,
+        Moment::Sampled,
+    ),
     // motion capture until 1.8
     row(
         &["att_pos_mocap", "vehicle_vision_position"],

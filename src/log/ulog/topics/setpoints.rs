@@ -9,8 +9,10 @@ const TRAJECTORY: &[&str] = &["trajectory_setpoint", "vehicle_local_position_set
 const ATTITUDE: &[&str] = &["vehicle_attitude_setpoint"];
 const RATES: &[&str] = &["vehicle_rates_setpoint"];
 
-const THRUST: &[Way] =
-    &[Way { fields: &["thrust_body[2]"], turn: Turn::By(upward) }, Way { fields: &["thrust"], turn: Turn::By(same) }];
+const THRUST: &[Way] = &[
+    Way { fields: &["thrust_body[2]"], turn: Turn::By(upward) },
+    Way { fields: &["thrust"], turn: Turn::By(same) },
+];
 
 const fn published(
     topics: &'static [&'static str],
@@ -50,7 +52,12 @@ pub(super) const ROWS: &[Row] = &[
         &[],
     ),
     published(TRAJECTORY, Quantity::YawSetpoint, &[Way { fields: &["yaw"], turn: Turn::By(yaw) }], &[]),
-    published(TRAJECTORY, Quantity::YawRateSetpoint, &[Way { fields: &["yawspeed"], turn: Turn::By(yaw) }], &[]),
+    published(
+        TRAJECTORY,
+        Quantity::YawRateSetpoint,
+        &[Way { fields: &["yawspeed"], turn: Turn::By(yaw) }],
+        &[],
+    ),
     published(
         ATTITUDE,
         Quantity::AttitudeSetpoint,
