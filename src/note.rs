@@ -98,6 +98,35 @@ impl Serialize for Note {
     }
 }
 
+/// Names that are told of several files of which the same is said.
+const NAMED: usize = 4;
+
+/// Notes of which each is said once: what several files have in common, with their names.
+#[must_use]
+pub fn said_once(notes: Vec<Note>) -> Vec<Note> {
+    let mut once: Vec<(Note, Vec<String>)> = Vec::new();
+    for note in notes {
+        let file = if let About::File(name) = &note.about { Some(name.clone()) } else { None };
+        let is_same = |(other, files): &&mut (Note, Vec<String>)| {
+            (other.severity, &other.text) == (note.severity, &note.text)
+                && if file.is_some() { !files.is_empty() } else { other.about == note.about }
+        };
+        match once.iter_mut().find(is_same) {
+            Some((_, files)) => files.extend(file.filter(|file| !files.contains(file))),
+            None => once.push((note, file.into_iter().collect())),
+        }
+    }
+    let named = |(note, files): (Note, Vec<String>)| match files.len() {
+        0 | 1 => note,
+        count => {
+            let told = files.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
+            let more = if count > NAMED { format!(" and {} more", count - NAMED) } else { String::new() };
+            Note { about: About::File(format!("{told}{more}")), ..note }
+        }
+    };
+    once.into_iter().map(named).collect()
+}
+
 /// As it is printed: a warning says that it is one.
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -117,5 +146,17 @@ mod tests {
         assert_eq!(Note::remark(of(), "short").to_string(), "a.tlog: short");
         assert_eq!(Note::loss(About::Sensors, "cut").to_string(), "cut");
         assert!(Severity::Remark < Severity::Warning && Severity::Warning < Severity::Loss);
+    }
+
+    #[test]
+    fn what_is_said_of_several_files_is_said_once_with_their_names() {
+        let of = |name: &str, text: &str| Note::warning(About::File(name.to_owned()), text);
+        let rest = Note::remark(About::Vehicle, "short");
+        let notes =
+            vec![of("a", "slow"), of("b", "slow"), of("b", "cut"), of("a", "slow"), rest.clone(), rest];
+        let told: Vec<String> = said_once(notes).iter().map(ToString::to_string).collect();
+        assert_eq!(told, ["warning: a, b: slow", "warning: b: cut", "short"]);
+        let many = (0..9).map(|index| of(&index.to_string(), "slow")).collect();
+        assert_eq!(said_once(many)[0].sentence(), "0, 1, 2, 3 and 5 more: slow");
     }
 }

@@ -155,3 +155,17 @@ fn both_logs_of_px4_are_one_flight_and_the_better_streams_of_each_are_used() {
         "{told}"
     );
 }
+
+#[test]
+fn logs_of_two_autopilots_are_refused_at_once() {
+    let fixture = |name: &str| format!("{}/fixtures/{name}", env!("CARGO_MANIFEST_DIR"));
+    let logs = [fixture("px4_baseline_40_46s.tlog"), fixture("ap_baseline_70_79s.tlog")];
+    for verb in ["explain", "identify"] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_mavid"));
+        command.arg(verb).args(&logs).args(["--mass", "1", "--size", "0.5"]);
+        let Output { status, stderr, .. } = command.output().unwrap();
+        let said = String::from_utf8_lossy(&stderr);
+        let is_told = said.contains("got a log of ArduPilot beside one of PX4");
+        assert!(status.code() == Some(2) && is_told, "{verb}: {said}");
+    }
+}

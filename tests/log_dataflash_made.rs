@@ -189,6 +189,27 @@ fn what_was_disarmed_was_armed_since_its_first_sample() {
 }
 
 #[test]
+fn why_a_vehicle_will_not_arm_says_that_it_is_not_armed() {
+    let mut log = begun();
+    let outputs = |log: &mut DataflashLog, us: f64| {
+        log.add("RCOU", &[us, 1000.0, 1000.0, 1000.0, 1000.0, 0.0, 0.0].map(Value::from));
+    };
+    outputs(&mut log, 41e6);
+    log.add("MSG", &[41.5e6.into(), "PreArm: Compass not healthy".into()]);
+    outputs(&mut log, 43e6);
+    let said = |log: &DataflashLog| {
+        let Opened { recording, .. } = open(&log.binary).unwrap();
+        stream(&recording, Quantity::Armed, "EV", 0).values.clone()
+    };
+    let never = said(&log);
+    assert!(!never.is_empty() && never.iter().all(|armed| *armed == 0.0), "{never:?}");
+    // and then it arms
+    log.add("EV", &[44e6.into(), 10.0.into()]);
+    outputs(&mut log, 45e6);
+    assert_eq!(said(&log).last(), Some(&1.0));
+}
+
+#[test]
 fn what_is_lost_is_counted_to_the_byte() {
     let mut log = begun();
     let first = log.binary.len();

@@ -2,8 +2,9 @@
 //!
 //! `cargo bench --bench onboard [-- LOG]`: whole messages of the log (`.bin` or `.ulg`) are repeated, their times shifted,
 //! until the file has 500 MB; it is written to `target/`. Without a path, a simulated flight of each autopilot of
-//! `../shared` is taken where it is there. `MAVID_PYTHON` names a Python that has both packages (default `python3`); it
-//! reads the log itself, which is short.
+//! `../shared` is taken where it is there. `MAVID_PYTHON` names a Python that has both packages (default `python3`). pyulog
+//! reads the same long file, three times, of which the fastest counts; pymavlink reads the log itself, which is short: it would
+//! hold the long one's messages in more memory than most computers have.
 
 mod dataflash;
 mod ulog;
@@ -32,6 +33,8 @@ struct Kind {
     repeated: fn(&[u8]) -> Vec<u8>,
     /// another reader of the same logs, and the script in `tests/peers` that times it
     peer: (&'static str, &'static str),
+    /// it reads the long file, and not the log itself
+    peer_reads_long: bool,
 }
 
 const KINDS: [Kind; 2] = [
@@ -41,6 +44,7 @@ const KINDS: [Kind; 2] = [
         walk: dataflash::walk,
         repeated: dataflash::repeated,
         peer: ("pymavlink", "read_dataflash_with_pymavlink.py"),
+        peer_reads_long: false,
     },
     Kind {
         ending: "ulg",
@@ -48,6 +52,7 @@ const KINDS: [Kind; 2] = [
         walk: ulog::walk,
         repeated: ulog::repeated,
         peer: ("pyulog", "read_ulog_with_pyulog.py"),
+        peer_reads_long: true,
     },
 ];
 
@@ -73,6 +78,7 @@ fn measure(kind: &Kind, log: &Path) -> Result<(), Box<dyn Error>> {
     }
     let long = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/bench-onboard").with_extension(kind.ending);
     let bytes = (kind.repeated)(&std::fs::read(log)?);
+    long.parent().map_or(Ok(()), std::fs::create_dir_all)?;
     std::fs::write(&long, &bytes)?;
     let megabytes = bytes.len() as f64 * 1e-6;
     drop(bytes);
@@ -83,9 +89,10 @@ fn measure(kind: &Kind, log: &Path) -> Result<(), Box<dyn Error>> {
     for (what, seconds) in [("messages", raw), ("samples, streamed", streamed), ("whole recording", held)] {
         writeln!(out, "{what:<20} {:>8.0} MB/s", megabytes / seconds)?;
     }
-    std::fs::remove_file(&long)?;
     let (name, script) = kind.peer;
-    match peer(script, log) {
+    let theirs = peer(script, if kind.peer_reads_long { &long } else { log });
+    std::fs::remove_file(&long)?;
+    match theirs {
         Ok(theirs) => {
             let times = megabytes / held / theirs;
             writeln!(

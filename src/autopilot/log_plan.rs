@@ -77,6 +77,46 @@ impl Stack {
         plan
     }
 
+    /// What to set so that its own log holds what an identification needs, as the end of a sentence that begins with what to do: by
+    /// the parameters that a log has (`None`: not in it).
+    #[must_use]
+    pub fn logging_by(&self, value: impl Fn(&str) -> Option<f64>) -> String {
+        let settings = self.log_settings.settings;
+        let Some((first, found)) = settings.first().map(|first| (first, value(first.parameter))) else {
+            return self.logging.to_owned();
+        };
+        let Some(found) = found else {
+            let since = first.since.filter(|_| value(self.log_settings.of_all).is_some());
+            return since.map_or_else(
+                || self.logging.to_owned(),
+                |since| {
+                    let (name, parameter) = (self.name, first.parameter);
+                    format!(
+                        "update {name} to {since} or later, which brings {parameter}, and {}",
+                        self.logging
+                    )
+                },
+            );
+        };
+        let changes = self.log_plan(value).changes;
+        if changes.is_empty() {
+            return format!("have the autopilot publish it: {} = {found} logs it already", first.parameter);
+        }
+        let added = |change: &LogChange| {
+            let of = settings.iter().find(|setting| setting.parameter == change.parameter);
+            let new = bits(change.wanted) & !bits(change.found);
+            let names = of.into_iter().flat_map(|of| of.bits).filter(|(bit, _)| new >> bit & 1 == 1);
+            names.map(|(_, name)| *name).collect::<Vec<_>>().join(", ")
+        };
+        let set = |change: &LogChange| match added(change) {
+            names if names.is_empty() => format!("{} = {}", change.parameter, change.wanted),
+            names => format!("{} = {} (adds {names})", change.parameter, change.wanted),
+        };
+        let restart =
+            if changes.iter().any(|change| change.restarts) { " and restart the autopilot" } else { "" };
+        format!("set {}{restart}", changes.iter().map(set).collect::<Vec<_>>().join(", "))
+    }
+
     /// Of the parameters that did not answer, those on which the rates of the log depend: without them nothing is prepared.
     #[must_use]
     pub fn rates_unknown(&self, plan: &LogPlan) -> Vec<&'static str> {
@@ -136,6 +176,26 @@ mod tests {
         let names: Vec<_> = plan.changes.iter().map(|change| (change.parameter, change.wanted)).collect();
         assert_eq!(names, [("LOG_BITMASK", 438_271.0), ("LOG_FILE_RATEMAX", 0.0)]);
         assert_eq!(plan.logs.len(), 3);
+    }
+
+    #[test]
+    fn advice_for_the_next_log_is_by_what_the_log_says_of_this_one() {
+        let px4 = |profile: Option<f64>, of_all: Option<f64>| {
+            PX4.logging_by(|name| match name {
+                "SDLOG_PROFILE" => profile,
+                "SDLOG_UTC_OFFSET" => of_all,
+                _ => None,
+            })
+        };
+        assert_eq!(px4(None, None), "set SDLOG_PROFILE = 9 and restart the autopilot");
+        let old = px4(None, Some(0.0));
+        assert!(old.starts_with("update PX4 to 1.8 or later, which brings SDLOG_PROFILE, and set"), "{old}");
+        let added = "set SDLOG_PROFILE = 11 (adds system identification) and restart the autopilot";
+        assert_eq!(px4(Some(3.0), Some(0.0)), added);
+        assert!(px4(Some(9.0), Some(0.0)).ends_with("SDLOG_PROFILE = 9 logs it already"));
+        let ardupilot = ARDUPILOT.logging_by(|name| (name == "LOG_BITMASK").then_some(176_126.0));
+        assert_eq!(ardupilot, "set LOG_BITMASK = 438271 (adds fast attitude, fast IMU)");
+        assert_eq!(ARDUPILOT.logging_by(|_| None), ARDUPILOT.logging);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! What an autopilot logs of a flight, by its parameters, and what an identification needs of it.
 
+use super::release::Release;
+
 /// What a parameter of logging has to be for an identification.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LogNeed {
@@ -49,10 +51,14 @@ pub struct LogSetting {
     pub off: LogOff,
     /// releases that lack it write to a file whatever is set
     pub optional: bool,
+    /// the release that brought it, where older ones write logs without it
+    pub since: Option<Release>,
     /// the autopilot takes it only when it starts
     pub restarts: bool,
     /// what it does, as the end of a sentence
     pub words: &'static str,
+    /// what some of its bits log, in a word or two
+    pub bits: &'static [(u32, &'static str)],
 }
 
 /// What of a log depends on a bit of a parameter: what is logged with it, and without it.
@@ -73,6 +79,8 @@ pub struct LogRate {
 pub struct Logging {
     /// parameters, the most important first
     pub settings: &'static [LogSetting],
+    /// a parameter that every release has: one that has it and not the first of the settings lacks that
+    pub of_all: &'static str,
     /// what is logged at which rate
     pub rates: &'static [LogRate],
 }
@@ -85,26 +93,33 @@ pub(super) const PX4: Logging = Logging {
             need: LogNeed::Bits(1 | 1 << 3),
             off: LogOff::Never,
             optional: false,
+            since: Some(Release::new(1, 8)),
             restarts: true,
             words: "bit 0 logs what PX4 logs by default, bit 3 adds what an identification needs",
+            bits: &[(0, "default"), (3, "system identification")],
         },
         LogSetting {
             parameter: "SDLOG_MODE",
             need: LogNeed::OneOf(&[0.0, 1.0, 2.0, 4.0]),
             off: LogOff::At(-1.0),
             optional: false,
+            since: None,
             restarts: true,
             words: "0 logs while the vehicle is armed",
+            bits: &[],
         },
         LogSetting {
             parameter: "SDLOG_BACKEND",
             need: LogNeed::Bits(1),
             off: LogOff::WithoutBit(0),
             optional: true,
+            since: None,
             restarts: true,
             words: "bit 0 writes the log to a file",
+            bits: &[],
         },
     ],
+    of_all: "SDLOG_UTC_OFFSET",
     rates: &[LogRate {
         parameter: "SDLOG_PROFILE",
         bit: 3,
@@ -121,26 +136,33 @@ pub(super) const ARDUPILOT: Logging = Logging {
             need: LogNeed::Bits(1 | 1 << 10 | 1 << 18),
             off: LogOff::Never,
             optional: false,
+            since: None,
             restarts: false,
             words: "bit 0 is the fast attitude and rate controller, 10 the outputs, 18 the fast inertial unit",
+            bits: &[(0, "fast attitude"), (10, "RC output"), (18, "fast IMU")],
         },
         LogSetting {
             parameter: "LOG_BACKEND_TYPE",
             need: LogNeed::Bits(1),
             off: LogOff::WithoutBit(0),
             optional: false,
+            since: None,
             restarts: true,
             words: "bit 0 writes the log to a file",
+            bits: &[],
         },
         LogSetting {
             parameter: "LOG_FILE_RATEMAX",
             need: LogNeed::OneOf(&[0.0]),
             off: LogOff::Never,
             optional: false,
+            since: None,
             restarts: false,
             words: "0 does not limit the rate of any message",
+            bits: &[],
         },
     ],
+    of_all: "LOG_BITMASK",
     rates: &[
         LogRate {
             parameter: "LOG_BITMASK",

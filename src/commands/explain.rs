@@ -118,12 +118,5 @@ fn check_targets(args: &ExplainArgs) -> Result<(), CommandError> {
     if let Some(folder) = &args.out {
         output::folder(folder)?;
     }
-    let parent = args.next.as_deref().and_then(Path::parent);
-    if let Some(parent) = parent.filter(|parent| !parent.as_os_str().is_empty() && !parent.is_dir()) {
-        return Err(CommandError::Input(format!(
-            "--next: expected a file in a folder that exists, {} does not",
-            text::path(&parent)
-        )));
-    }
-    Ok(())
+    args.next.as_deref().map_or(Ok(()), output::folder_of)
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use mavid::note::{About, Note, said_once};
 use mavid::report::{
     IdentificationDocument, history_charts, identification_html, identification_text, identified_model, svg,
 };
@@ -83,16 +84,18 @@ pub fn make(stderr: &StandardError, args: &IdentifyArgs) -> Result<(IdentifyStud
     Ok((study, targets))
 }
 
-/// Says what is to be known of the logs, and what of them was lost.
+/// Says what is to be known of the logs, and what of them was lost; the same of several once.
 pub fn tell<'a>(inputs: impl Iterator<Item = &'a InputFile>) -> Outcome {
-    let mut outcome = Outcome::Done;
+    let (mut outcome, mut notes) = (Outcome::Done, Vec::new());
     for input in inputs {
-        input.remarks().iter().for_each(|remark| output::message(&format!("{}: {remark}", input.path)));
+        let about = || About::File(input.path.clone());
+        notes.extend(input.remarks().into_iter().map(|remark| Note::remark(about(), remark)));
         let losses = input.losses();
         if !losses.is_empty() {
-            output::message(&format!("{}: {}", input.path, losses.join("; ")));
+            notes.push(Note::loss(about(), losses.join("; ")));
             outcome = Outcome::DoneWithLoss;
         }
     }
+    said_once(notes).iter().for_each(|note| output::message(&note.sentence()));
     outcome
 }

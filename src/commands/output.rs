@@ -97,6 +97,7 @@ pub fn file(path: &Path, text: &str) -> Result<(), CommandError> {
 
 /// The same of bytes.
 pub fn bytes(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
+    folder_of(path)?;
     write_whole(path, bytes)
         .map_err(|error| CommandError::Input(format!("cannot write {}: {error}", text::path(&path))))
 }
@@ -123,10 +124,20 @@ fn line(mut out: impl Write, text: &str) -> Result<(), CommandError> {
     }
 }
 
-/// Makes a folder for results.
+/// Makes a folder for results where there is none, and says so.
 pub fn folder(path: &Path) -> Result<(), CommandError> {
+    if path.as_os_str().is_empty() || path.is_dir() {
+        return Ok(());
+    }
     std::fs::create_dir_all(path)
-        .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", text::path(&path))))
+        .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", text::path(&path))))?;
+    message(&format!("made the folder {}", text::path(&path)));
+    Ok(())
+}
+
+/// The same of the folder of a file that is to be written.
+pub fn folder_of(file: &Path) -> Result<(), CommandError> {
+    file.parent().map_or(Ok(()), folder)
 }
 
 /// Both name one file, however they are written.

@@ -1,7 +1,6 @@
 //! `mavid plan VEHICLE`: plans an excitation trajectory, or checks one.
 
 use mavid::config::trajectory_to_toml;
-use mavid::files::write_whole;
 use mavid::plan::{Criterion, PlanRequest, StartPlace};
 use mavid::report::{PlanDocument, plan_text};
 use mavid::study::{Circle, PlanStudy, PlannedSeries, PlanningRequest, plan_flight};
@@ -31,8 +30,7 @@ pub fn make(stderr: &StandardError, args: &PlanArgs) -> Result<PlanStudy, Comman
     let study = plan_flight(&request(args)?, &Steps::new(stderr, "planning {bar:30} {pos}/{len} descents"))?;
     if let Some(path) = &args.out {
         let text = trajectory_to_toml(&study.stored())?;
-        write_whole(path, text.as_bytes())
-            .map_err(|error| CommandError::Failure(format!("cannot write {}: {error}", text::path(&path))))?;
+        output::file(path, &text)?;
         output::message(&format!("wrote {}", text::path(&path)));
     }
     Ok(study)

@@ -58,7 +58,7 @@ fn sealed(args: &ProveArgs, verdicts: &[CaseVerdict]) -> Result<String, CommandE
     let failed = |path: &PathBuf, error: std::io::Error| {
         CommandError::Failure(format!("cannot write {}: {error}", text::path(path)))
     };
-    std::fs::create_dir_all(&args.out).map_err(|error| failed(&args.out, error))?;
+    output::folder(&args.out)?;
     for (name, text) in &sealed.files {
         let path = args.out.join(name);
         write_whole(&path, text.as_bytes()).map_err(|error| failed(&path, error))?;

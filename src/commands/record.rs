@@ -98,6 +98,7 @@ async fn record(
     signing: Option<Signing>,
 ) -> Result<Outcome, CommandError> {
     let address = network::address("--connect", &args.connect)?;
+    output::folder_of(&args.out)?;
     let recorder = Recorder::create(&args.out, args.force).map_err(|error| refused(&error))?;
     let options = LinkOptions { recorder: Some(recorder.clone()), signing, ..LinkOptions::default() };
     let opened = network::open(&address, options).await;

@@ -111,6 +111,7 @@ fn settings(args: &SimulateArgs, vehicle: &Vehicle, duration_s: f64) -> FlightSe
 /// Returns the number of frames.
 fn write(path: &Path, recording: &Recording) -> Result<u64, CommandError> {
     let failed = |error| CommandError::Failure(format!("cannot write {}: {error}", text::path(&path)));
+    output::folder_of(path)?;
     let file = BufWriter::new(File::create(path).map_err(failed)?);
     write_recording(recording, file, START_US).map_err(failed)
 }

@@ -4,7 +4,7 @@
 //! difference of the commands. Another curve gives another inertia from the same flight, and no residual shows it.
 
 use super::compensate::take_out;
-use super::result::{CURVE_IS_A_GUESS, Estimated};
+use super::result::{CURVE_IS_A_GUESS, Estimated, percent};
 use super::theta::{NAMES, Theta};
 use super::weak::solve_weak;
 use crate::note::{About, Note};
@@ -78,7 +78,7 @@ pub fn rests_on_guessed_curve(estimated: &Estimated) -> Option<Note> {
     let those: Vec<String> = [1, 4, 6]
         .into_iter()
         .filter(moved)
-        .map(|index| format!("{} by {:.0} %", NAMES[index], 100.0 * share(index)))
+        .map(|index| format!("{} by {}", NAMES[index], percent(share(index))))
         .collect();
     let text = format!(
         "{CURVE_IS_A_GUESS}, and one standard error of it moves {}: that is in the standard errors. `identify --with {}` has the \

@@ -182,6 +182,11 @@ fn axes_of(index: usize) -> &'static [usize] {
     }
 }
 
+/// A share in words: how much more than all of it says nothing.
+pub(super) fn percent(share: f64) -> String {
+    if share > 1.0 { "more than 100 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
+}
+
 /// The reason if the rigid body does not explain the torque of one of the parameter's axes.
 fn unexplained(estimated: &Estimated, index: usize) -> Option<String> {
     let shares = estimated.explained?;
@@ -239,7 +244,7 @@ pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Findin
             format!("fly more angular acceleration about {}", axes.join(" and "))
         };
         return Finding::NotDetermined {
-            reason: format!("standard error {:.0} % of its size; {fly}", 100.0 * relative),
+            reason: format!("standard error {} of its size; {fly}", percent(relative)),
         };
     }
     if let Some(reason) = unexplained(estimated, index) {
@@ -257,10 +262,7 @@ pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Findin
     let (guessed, by_curve) = (nominal.guessed(index), estimated.moved_by_curve(index));
     if guessed.hypot(by_curve / size) > LARGEST_RELATIVE_STD {
         let of_curve = (by_curve > 0.0).then(|| {
-            format!(
-                "{CURVE_IS_A_GUESS}, one standard error of it moves this by {:.0} %",
-                100.0 * by_curve / size
-            )
+            format!("{CURVE_IS_A_GUESS}, one standard error of it moves this by {}", percent(by_curve / size))
         });
         let why: Vec<String> = nominal.guesses(index).into_iter().chain(of_curve).collect();
         return Finding::NotDetermined { reason: why.join(" and ") };

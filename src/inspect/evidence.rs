@@ -41,9 +41,9 @@ pub(super) struct Evidence<'a> {
     /// how much of it is damaged, in words, where streams may be gone with it
     pub damage: Option<&'a str>,
     /// how to make the vehicle log more, where it wrote the log
-    pub logging: Option<&'static str>,
+    pub logging: Option<&'a str>,
     /// how to make it log more on board, where the log is of a link
-    pub own_log: Option<&'static str>,
+    pub own_log: Option<&'a str>,
 }
 
 impl Evidence<'_> {
@@ -90,6 +90,11 @@ impl Evidence<'_> {
         self.assessment.excitation.as_ref()?.angular_acceleration_rms_rad_s2.map(|rms| rms[axis])
     }
 
+    /// The vehicle is no multirotor: nothing that a multirotor's owner could do helps.
+    pub(super) fn is_of_other_kind(&self) -> bool {
+        self.kind.is_some_and(|kind| kind != VehicleKind::Multirotor)
+    }
+
     /// There are streams, and they have times.
     pub(super) fn holds_streams(&self) -> bool {
         self.timed && !self.undefined && !self.streams.is_empty()
@@ -134,8 +139,8 @@ impl Evidence<'_> {
 
     /// Why nothing at all can be identified.
     pub(super) fn nothing(&self) -> Option<String> {
-        if let Some(kind) = self.kind.filter(|kind| *kind != VehicleKind::Multirotor) {
-            return Some(format!("it is of a {}, and a multirotor is needed", kind.name()));
+        if let Some(kind) = self.kind.filter(|_| self.is_of_other_kind()) {
+            return Some(format!("it is of a {}, and mavid identifies multirotors", kind.name()));
         }
         if !self.timed && !self.undefined {
             return Some("its messages carry no time of the vehicle's".into());

@@ -112,8 +112,10 @@ impl Need {
             Self::Voltage => "BATTERY_STATUS or SYS_STATUS",
         };
         match (self, evidence.logging, evidence.own_log) {
-            (Self::Voltage, Some(_), _) => "a battery monitor in the autopilot".to_owned(),
-            (Self::Velocity, Some(_), _) => "a position estimate: GPS, or optical flow".to_owned(),
+            (Self::Voltage, Some(_), _) => "fit a battery monitor to the autopilot".to_owned(),
+            (Self::Velocity, Some(_), _) => {
+                "give the vehicle a position estimate: GPS, or optical flow".to_owned()
+            }
             (_, Some(logging), _) => logging.to_owned(),
             (Self::Velocity | Self::Voltage, None, _) | (_, None, None) => {
                 format!("request {request} at {WANTED_HZ} Hz")

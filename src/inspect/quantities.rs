@@ -6,7 +6,6 @@ use super::inspection::Outlook;
 use super::missing_streams::{Lack, Need, lack, remedy};
 use super::outlook::judged;
 use super::quantity::{ExpectedParameter, QuantitySummary};
-use crate::autopilot::VehicleKind;
 use crate::diagnose::signatures::{ToldBy, WANTED, Wanted};
 use crate::diagnose::{Expected, ExpectedError, LEAST_FLIGHT_S, Shown};
 
@@ -84,7 +83,7 @@ impl Outcome<'_> {
             fly: None,
             set: None,
         };
-        if evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor) || !evidence.holds_streams() {
+        if evidence.is_of_other_kind() || !evidence.holds_streams() {
             return QuantitySummary { reason: evidence.nothing(), ..none };
         }
         if let Some(reason) = evidence.nothing().filter(|_| evidence.steps_back.is_some()) {
@@ -181,10 +180,11 @@ impl Outcome<'_> {
                 let is_told = std_relative <= TOLD && shown.is_none();
                 // what stands out is in the errors of all, and which effect it is only a search tells
                 let holds = beyond(shown, errors.iter().any(ExpectedError::stands_out));
-                let reason = format!(
-                    "an effect of usual size would be {:.1} standard errors{holds}",
-                    std_relative.recip()
-                );
+                let size = match std_relative.recip() {
+                    within if within < 1.0 => "less than one standard error".to_owned(),
+                    errors => format!("{errors:.1} standard errors"),
+                };
+                let reason = format!("an effect of usual size would be {size}{holds}");
                 let not = if shown.is_some() { "partly" } else { "no" };
                 QuantitySummary {
                     status: if is_told { "yes" } else { not },

@@ -197,7 +197,7 @@ impl Pass {
             ends_early: self.report.ends_early(),
             steps_back: self.report.out_of_order(),
             damage: self.report.damage(),
-            logging: logging(&self.report, self.tally.autopilot),
+            is_onboard: self.report.onboard().is_some(),
         };
         found.inspection(self.tally, self.assessment, vehicle)
     }
@@ -236,7 +236,7 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         ends_early: report.ends_early(),
         steps_back: report.out_of_order(),
         damage: report.damage(),
-        logging: logging(report, recording.autopilot),
+        is_onboard: report.onboard().is_some(),
     };
     found.inspection(tally, assessor.finish(), vehicle)
 }
@@ -263,13 +263,8 @@ struct Found {
     steps_back: Option<u64>,
     /// how much of it is damaged, in words, where streams may be gone with it
     damage: Option<String>,
-    /// of a log that the vehicle wrote: how to make it log more
-    logging: Option<&'static str>,
-}
-
-/// How to make the vehicle log what identification needs; `None` of a log that it did not write.
-fn logging(report: &ReadReport, autopilot: Autopilot) -> Option<&'static str> {
-    report.onboard().and(autopilot.stack()).map(|stack| stack.logging)
+    /// the vehicle wrote it
+    is_onboard: bool,
 }
 
 impl Found {
@@ -304,6 +299,10 @@ impl Found {
         if self.kind.is_some_and(|kind| !kind.flies()) {
             assessment.flight = FlightSummary::on_the_ground();
         }
+        if self.kind.is_some_and(|kind| kind != VehicleKind::Multirotor) {
+            // a VTOL plane's rotors stand still by design once its wings carry it
+            assessment.off_mixer.clear();
+        }
         if self.steps_back.is_some() {
             // then no time in the air is known
             assessment.flight = FlightSummary::out_of_order();
@@ -311,10 +310,11 @@ impl Found {
         flown_s
     }
 
-    /// Whose names of modes hold: a plane's are others than a multirotor's of the same number.
+    /// Whose names of modes hold: those of ArduPilot's planes are others than a multirotor's of the same number, PX4's are of all.
     fn modes_of(&self) -> Autopilot {
-        let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter].map(VehicleKind::name);
-        let is_known = self.vehicle.kind.is_none_or(|kind| rotors.contains(&kind));
+        let rotors = [VehicleKind::Multirotor, VehicleKind::Helicopter];
+        let is_known =
+            self.autopilot == Autopilot::Px4 || self.kind.is_none_or(|kind| rotors.contains(&kind));
         if is_known { self.autopilot } else { Autopilot::Unknown }
     }
 
@@ -328,6 +328,8 @@ impl Found {
         let clock = std::mem::take(&mut tally.clock).summary();
         let modes = self.modes_of();
         let foreseen = self.foreseen(&tally, &mut assessment, vehicle);
+        let parameter = |name: &str| tally.parameters.values().get(name).copied();
+        let logging = self.autopilot.stack().map(|stack| stack.logging_by(parameter));
         let evidence = Evidence {
             streams: &self.streams,
             assessment: &assessment,
@@ -344,8 +346,8 @@ impl Found {
             undefined: self.undefined,
             ends_early: self.ends_early,
             damage: self.damage.as_deref(),
-            logging: self.logging,
-            own_log: self.autopilot.stack().map(|stack| stack.logging),
+            logging: logging.as_deref().filter(|_| self.is_onboard),
+            own_log: logging.as_deref(),
         };
         let identifiability = outlook(&evidence);
         let most_s = assessment.liveliest.as_ref().map_or(0.0, |(usable_s, _)| *usable_s);
@@ -357,7 +359,9 @@ impl Found {
         });
         let (verdict, mut advice) = verdict(&evidence, &identifiability, &self.vehicle);
         advice.splice(0..0, assessment.off_mixer.iter().map(OffMixer::advice));
-        advice.extend(tally.parameters.notes(self.autopilot, &flown_s).iter().map(ToString::to_string));
+        if !evidence.is_of_other_kind() {
+            advice.extend(tally.parameters.notes(self.autopilot, &flown_s).iter().map(ToString::to_string));
+        }
         Inspection {
             verdict,
             unflown: unflown(&evidence),

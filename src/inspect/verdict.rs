@@ -4,7 +4,6 @@ use super::evidence::Evidence;
 use super::inspection::{Outlook, Unflown, VehicleSummary};
 use super::missing_streams::{Need, SOUND_COPY, WANTED_HZ, lack};
 use super::outlook::{AXIS_NAMES, LEAST_ANGULAR_ACCELERATION};
-use crate::autopilot::VehicleKind;
 use crate::diagnose::LEAST_FLIGHT_S;
 use crate::estimate::{POOR, RIGID_BODY_ALONE, contradicts_file, rescaled, rests_on_guessed_curve};
 use crate::note::About;
@@ -23,10 +22,13 @@ pub(super) fn verdict(
     outlook: &[Outlook],
     vehicle: &VehicleSummary,
 ) -> (String, Vec<String>) {
-    let known = evidence.holds_streams();
-    let mut advice = if known { missing(evidence) } else { Vec::new() };
-    advice.extend(flying(evidence));
-    advice.extend(remarks(evidence, vehicle));
+    let mut advice = several_vehicles(vehicle);
+    if !evidence.is_of_other_kind() {
+        let known = evidence.holds_streams();
+        advice.splice(0..0, flying(evidence));
+        advice.splice(0..0, if known { missing(evidence) } else { Vec::new() });
+        advice.extend(remarks(evidence, vehicle));
+    }
     (sentence(evidence, outlook), advice)
 }
 
@@ -52,8 +54,11 @@ fn sentence(evidence: &Evidence<'_>, outlook: &[Outlook]) -> String {
         return "Nothing can be identified with this vehicle: its thrust contradicts the log. See the advice.".into();
     }
     if let Some(nothing) = evidence.nothing() {
-        let is_other = evidence.kind.is_some_and(|kind| kind != VehicleKind::Multirotor);
-        let next = if is_other { String::new() } else { format!(" {}", instead_of_nothing(evidence)) };
+        let next = if evidence.is_of_other_kind() {
+            String::new()
+        } else {
+            format!(" {}", instead_of_nothing(evidence))
+        };
         return format!("Nothing can be identified from this log: {nothing}.{next}");
     }
     let flight = &evidence.assessment.flight;
@@ -307,17 +312,22 @@ fn flying(evidence: &Evidence<'_>) -> Vec<String> {
     advice
 }
 
+/// Which of several vehicles it is.
+fn several_vehicles(vehicle: &VehicleSummary) -> Vec<String> {
+    if vehicle.others.is_empty() {
+        return Vec::new();
+    }
+    let others: Vec<String> = vehicle.others.iter().map(ToString::to_string).collect();
+    vec![format!(
+        "Several vehicles: this is system {}; --system-id chooses another (also there: {}).",
+        vehicle.system.unwrap_or(0),
+        others.join(", ")
+    )]
+}
+
 /// What limits the result beside that.
 fn remarks(evidence: &Evidence<'_>, vehicle: &VehicleSummary) -> Vec<String> {
     let mut advice = Vec::new();
-    if !vehicle.others.is_empty() {
-        let others: Vec<String> = vehicle.others.iter().map(ToString::to_string).collect();
-        advice.push(format!(
-            "Several vehicles: this is system {}; --system-id chooses another (also there: {}).",
-            vehicle.system.unwrap_or(0),
-            others.join(", ")
-        ));
-    }
     if vehicle.without_heartbeat && vehicle.system.is_some() {
         advice.push("No HEARTBEAT: which autopilot flew, and when it was armed, is not known.".into());
     }

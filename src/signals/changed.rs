@@ -147,13 +147,35 @@ pub fn changes_in_the_air(
     notes
 }
 
-/// A note on the parameters of the way from command to thrust, and of the vehicle's build, that differ between two flights,
-/// told by their numbers.
+/// Notes on the parameters of the way from command to thrust, and of the vehicle's build, that are others in later flights than in the
+/// first: those that differ alike are told together, by their numbers.
 #[must_use]
-pub fn other_settings(
-    (one, number): (&Recording, usize),
-    (other, other_number): (&Recording, usize),
-) -> Option<Note> {
+pub fn other_settings(flights: &[Recording]) -> Vec<Note> {
+    let Some((first, others)) = flights.split_first() else { return Vec::new() };
+    let mut alike: Vec<(String, Vec<usize>)> = Vec::new();
+    for (index, other) in others.iter().enumerate() {
+        let Some(differs) = differences(first, other) else { continue };
+        match alike.iter_mut().find(|(same, _)| *same == differs) {
+            Some((_, numbers)) => numbers.push(index + 2),
+            None => alike.push((differs, vec![index + 2])),
+        }
+    }
+    let note = |(differs, numbers): (String, Vec<usize>)| {
+        let who = match numbers.as_slice() {
+            [one] => format!("flight {one} was"),
+            all => {
+                format!("flights {} were", all.iter().map(usize::to_string).collect::<Vec<_>>().join(", "))
+            }
+        };
+        let text =
+            format!("{who} flown with other settings than flight 1: {differs}: is it the same vehicle?");
+        Note::warning(About::Actuators, text)
+    };
+    alike.into_iter().map(note).collect()
+}
+
+/// What of these differs between two flights of one autopilot, with both values.
+fn differences(one: &Recording, other: &Recording) -> Option<String> {
     let outputs = &one.autopilot.stack().filter(|_| one.autopilot == other.autopilot)?.outputs;
     let differs = |(name, value): &(&String, &f64)| {
         let there = other.parameters.get(*name)?;
@@ -164,11 +186,8 @@ pub fn other_settings(
     };
     let all: Vec<String> = one.parameters.iter().filter_map(|pair| differs(&pair)).collect();
     let more = if all.len() > TOLD { format!(" and {} more", all.len() - TOLD) } else { String::new() };
-    let text = format!(
-        "flight {other_number} was flown with other settings than flight {number}: {}{more}: is it the same vehicle?",
-        all.iter().take(TOLD).cloned().collect::<Vec<_>>().join(", ")
-    );
-    (!all.is_empty()).then(|| Note::warning(About::Actuators, text))
+    let told = all.iter().take(TOLD).cloned().collect::<Vec<_>>().join(", ");
+    (!all.is_empty()).then(|| format!("{told}{more}"))
 }
 
 /// Values in single precision that differ by less, as a share, are the same.
@@ -271,12 +290,15 @@ mod tests {
         };
         let one = flown(&[("THR_MDL_FAC", 0.0), ("MPC_THR_HOVER", 0.5), ("CA_ROTOR_COUNT", 4.0)]);
         let other = flown(&[("THR_MDL_FAC", 0.3), ("MPC_THR_HOVER", 0.4), ("CA_ROTOR_COUNT", 4.0)]);
-        let text = other_settings((&one, 1), (&other, 2)).unwrap().text;
-        assert_eq!(
-            text,
-            "flight 2 was flown with other settings than flight 1: THR_MDL_FAC 0.3 in place of 0: is it the same vehicle?"
-        );
-        assert_eq!(other_settings((&one, 1), (&one, 2)), None);
+        let told = |flights: &[Recording]| {
+            other_settings(flights).into_iter().map(|note| note.text).collect::<Vec<_>>()
+        };
+        let differs =
+            "flown with other settings than flight 1: THR_MDL_FAC 0.3 in place of 0: is it the same vehicle?";
+        assert_eq!(told(&[one.clone(), other.clone()]), [format!("flight 2 was {differs}")]);
+        let four = [one.clone(), other.clone(), one.clone(), other];
+        assert_eq!(told(&four), [format!("flights 2, 4 were {differs}")]);
+        assert!(told(&[one.clone(), one]).is_empty());
     }
 
     #[test]

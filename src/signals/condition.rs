@@ -91,7 +91,8 @@ pub fn condition(
     let kernel = WeakKernel::new(settings.weak_half_width_s, step_s);
     let airborne_s = airborne_spans(recording, &actuation, vehicle);
     too_little(recording, &actuation, vehicle).filter(|_| airborne_s.is_empty()).map_or(Ok(()), Err)?;
-    let sufficiency = sufficient::check(&needed(&chosen, &actuation), &airborne_s, recording.autopilot)?;
+    let sufficiency =
+        sufficient::check(&needed(&chosen, &actuation), &airborne_s, sufficient::logging_of(recording))?;
     if grid.count >= Grid::LONGEST {
         return Err(SignalsError::TooLong { span_s: step_s * grid.count as f64 });
     }

@@ -41,12 +41,12 @@ pub enum SignalsError {
     )]
     NoMotion,
     /// sampled too slowly
-    #[error("sampled too slowly to identify from: {slow}. 100 Hz of each is good: {}", faster(*logging))]
+    #[error("sampled too slowly to identify from: {slow}. 100 Hz of each is good: {}", faster(logging.as_deref()))]
     TooSlow {
         /// each slow stream, its rate, and the rate that was expected
         slow: String,
         /// what to set for more in the vehicle's own log; `None` of a table, which says nothing of its autopilot
-        logging: Option<&'static str>,
+        logging: Option<String>,
     },
     /// streams do not share a span
     #[error("motion and actuator streams overlap for {overlap_s:.2} s only; at least 1 s is needed")]

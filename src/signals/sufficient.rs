@@ -9,9 +9,8 @@
 //! beside body rates tells from 5 Hz on; accelerometer and velocity do not tell down to that.
 
 use super::SignalsError;
-use crate::autopilot::Autopilot;
 use crate::note::{About, Note};
-use crate::recording::Stream;
+use crate::recording::{Recording, Stream};
 use crate::stats::median;
 
 /// Least rate of rotor speeds, commands, or force and torque without a warning, Hz: 40 Hz with some lost frames.
@@ -73,14 +72,21 @@ pub(super) struct Sufficiency {
     pub(super) note: Option<Note>,
 }
 
-/// Judges the rates in the air. Refuses a flight with a stream that is too slow for any identification.
+/// What to set for more in the log that the vehicle writes itself, by the parameters that a recording has; `None` of a table, which
+/// says nothing of its autopilot.
+pub(super) fn logging_of(recording: &Recording) -> Option<String> {
+    let parameter = |name: &str| recording.parameters.get(name).copied();
+    recording.autopilot.stack().map(|stack| stack.logging_by(parameter))
+}
+
+/// Judges the rates in the air; `logging` is what to set for more in the vehicle's own log. Refuses a flight with a stream that is too slow for any identification.
 ///
 /// # Errors
 /// [`SignalsError::TooSlow`], which names each of those streams with its rate.
 pub(super) fn check(
     needed: &[Needed<'_>],
     airborne_s: &[(f64, f64)],
-    autopilot: Autopilot,
+    logging: Option<String>,
 ) -> Result<Sufficiency, SignalsError> {
     let in_air: Vec<(&str, &str, f64, f64)> = needed
         .iter()
@@ -89,7 +95,6 @@ pub(super) fn check(
         })
         .collect();
     let slowest_hz = in_air.iter().fold(f64::INFINITY, |slowest, (_, _, rate_hz, _)| slowest.min(*rate_hz));
-    let logging = autopilot.stack().map(|stack| stack.logging);
     let below = |least_hz: f64| -> String {
         let slow = in_air.iter().filter(|(_, _, rate_hz, _)| *rate_hz < least_hz);
         let told = slow.map(|(what, message, rate_hz, _)| format!("{what} ({message}) at {rate_hz:.1} Hz"));
@@ -99,7 +104,7 @@ pub(super) fn check(
         return Err(SignalsError::TooSlow { slow: below(LEAST_FORCE_HZ), logging });
     }
     if slowest_hz < LEAST_TORQUE_HZ {
-        let note = Some(forces_note(&below(LEAST_TORQUE_HZ), logging));
+        let note = Some(forces_note(&below(LEAST_TORQUE_HZ), logging.as_deref()));
         return Ok(Sufficiency { torques: false, note });
     }
     let slow = in_air.iter().filter(|(_, _, rate_hz, good_hz)| rate_hz < good_hz);
@@ -154,7 +159,9 @@ mod tests {
         let needed = |rates: &'static str, stream| (rates, "ATTITUDE", stream, LEAST_BODY_RATE_HZ);
         let outputs = ("actuator outputs", "SERVO_OUTPUT_RAW", &slow, LEAST_ACTUATOR_HZ);
         let flight = [(10.0, 50.0)];
-        let found = check(&[needed("body rates", &good), outputs], &flight, Autopilot::Px4).unwrap();
+        let px4 = Recording { autopilot: crate::autopilot::Autopilot::Px4, ..Recording::default() };
+        let logging = logging_of(&px4).unwrap();
+        let found = check(&[needed("body rates", &good), outputs], &flight, Some(logging.clone())).unwrap();
         let said = found.note.unwrap().text;
         assert!(!found.torques && said.contains("torques averaged over seconds"), "{said}");
         assert!(
@@ -165,7 +172,7 @@ mod tests {
         assert!(said.contains("set SDLOG_PROFILE = 9"), "{said}");
         let slower = stream(7.0, 60.0);
         let outputs_slower = ("actuator outputs", "SERVO_OUTPUT_RAW", &slower, LEAST_ACTUATOR_HZ);
-        let error = check(&[outputs_slower], &flight, Autopilot::Px4).unwrap_err().to_string();
+        let error = check(&[outputs_slower], &flight, Some(logging.clone())).unwrap_err().to_string();
         assert!(
             error.contains("actuator outputs (SERVO_OUTPUT_RAW) at 7.0 Hz; 8 Hz are the least"),
             "{error}"
@@ -175,15 +182,12 @@ mod tests {
         let mut late = stream(1.0, 60.0);
         late.time_s.extend(stream(100.0, 20.0).time_s.iter().map(|time_s| 60.5 + time_s));
         let fast_enough = Sufficiency { torques: true, note: None };
-        assert_eq!(
-            check(&[needed("body rates", &late)], &[(60.5, 80.0)], Autopilot::Unknown).unwrap(),
-            fast_enough
-        );
-        assert!(check(&[needed("body rates", &late)], &[(5.0, 50.0)], Autopilot::Unknown).is_err());
-        assert_eq!(check(&[outputs], &[], Autopilot::Unknown).unwrap(), fast_enough);
+        assert_eq!(check(&[needed("body rates", &late)], &[(60.5, 80.0)], None).unwrap(), fast_enough);
+        assert!(check(&[needed("body rates", &late)], &[(5.0, 50.0)], None).is_err());
+        assert_eq!(check(&[outputs], &[], None).unwrap(), fast_enough);
         // slow, but not hopeless: said
         let thin = stream(25.0, 60.0);
-        let found = check(&[needed("body rates", &thin)], &flight, Autopilot::Unknown).unwrap();
+        let found = check(&[needed("body rates", &thin)], &flight, None).unwrap();
         assert!(found.torques);
         let said = found.note.unwrap().text;
         assert!(said.contains("body rates (ATTITUDE) at 25.0 Hz, expected 38 Hz at least"), "{said}");

@@ -17,6 +17,7 @@ mod flight;
 mod flights;
 mod identify;
 mod input;
+mod one_vehicle;
 mod plan;
 mod progress;
 mod prove;

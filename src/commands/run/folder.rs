@@ -8,7 +8,7 @@ use mavid::text;
 use mavid::wire::SystemId;
 use serde::Deserialize;
 
-use crate::commands::{CommandError, leftover};
+use crate::commands::{CommandError, leftover, output};
 
 /// Endings of the logs that a vehicle writes itself.
 const ONBOARD: [&str; 2] = ["ulg", "bin"];
@@ -37,8 +37,7 @@ impl Folder {
             let got = text::path(&place);
             return Err(CommandError::Input(format!("--out: expected a folder, {got} is a file")));
         }
-        fs::create_dir_all(&place)
-            .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", text::path(&place))))?;
+        output::folder(&place)?;
         Ok(Self(place))
     }
 

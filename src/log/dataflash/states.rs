@@ -18,6 +18,14 @@ const EVENTS: &[(f64, Meaning)] = &[
     (62.0, Meaning::Jump),
 ];
 
+/// Beginnings of texts by which a vehicle that is not armed says why it will not arm.
+const REFUSALS: [&str; 2] = ["PreArm: ", "Arm: "];
+
+/// Whether a text is one of a vehicle that is not armed.
+pub(super) fn is_refusal_to_arm(text: &str) -> bool {
+    REFUSALS.iter().any(|beginning| text.starts_with(beginning))
+}
+
 /// What an event means.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Meaning {

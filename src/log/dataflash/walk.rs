@@ -11,7 +11,7 @@ use super::message::{Kept, Message};
 use super::outlet::Outlet;
 use super::routes::{AllRoutes, Route, Routes};
 use super::special::Special;
-use super::states::{Meaning, States, meaning};
+use super::states::{Meaning, States, is_refusal_to_arm, meaning};
 use super::tally::Tally;
 use super::topics::{Demand, Part};
 use super::values::Values;
@@ -257,6 +257,9 @@ impl Walk<'_, '_> {
             Special::Text => {
                 let text = text(0);
                 self.walked.identity.text(&text);
+                if is_refusal_to_arm(&text) {
+                    self.state(Quantity::Armed, 0.0, time_s, false);
+                }
                 self.out.give(Event::Text { time_s, severity: INFORMATION, text: &text });
             }
             Special::Event => match meaning(number(0)) {

@@ -143,7 +143,7 @@ impl<R: Read> UlogReader<R> {
             let next = sight.split_at_checked(bytes).and_then(|(message, rest)| {
                 let [_, _, _, low, high, body @ ..] = message else { return None };
                 let id = u16::from_le_bytes([*low, *high]);
-                let stamp_us = self.schema.subscription(id)?.layout.stamp_us(body);
+                let stamp_us = self.schema.stamp_us(id, body);
                 Some((data_bytes(rest, &self.schema)?, id, stamp_us, body, rest))
             });
             let Some((following, id, stamp_us, body, rest)) = next else { break };

@@ -7,6 +7,9 @@ use crate::text::significant;
 pub(super) fn lines(inspection: &Inspection) -> Vec<(String, String)> {
     let mut above: Option<&QuantitySummary> = None;
     let mut lines = Vec::new();
+    if let Some(reason) = of_all(&inspection.quantities) {
+        return vec![("nothing".to_owned(), reason.to_owned())];
+    }
     for quantity in &inspection.quantities {
         lines.push((quantity.name.replace('_', " "), said(quantity, above)));
         above = Some(quantity);
@@ -16,6 +19,15 @@ pub(super) fn lines(inspection: &Inspection) -> Vec<(String, String)> {
         lines.push(("errors are".to_owned(), how));
     }
     lines
+}
+
+/// The one reason why there is nothing of all quantities, and nothing to do about it.
+fn of_all(quantities: &[QuantitySummary]) -> Option<&str> {
+    let reason = quantities.first()?.reason.as_deref()?;
+    let is_alike = |one: &QuantitySummary| {
+        one.status == "no" && one.reason.as_deref() == Some(reason) && one.fly.is_none() && one.set.is_none()
+    };
+    quantities.iter().all(is_alike).then_some(reason)
 }
 
 fn said(quantity: &QuantitySummary, above: Option<&QuantitySummary>) -> String {
@@ -34,6 +46,10 @@ fn said(quantity: &QuantitySummary, above: Option<&QuantitySummary>) -> String {
         "possible" => "yes, by its streams and motion; --vehicle adds the accuracy".to_owned(),
         "partly" if expected.is_empty() => format!("partly; {reason}"),
         "partly" => format!("partly, to {expected}{better}; {reason}"),
+        // an error beyond what is looked for is no accuracy
+        _ if quantity.expected.iter().any(|one| one.std_relative > 1.0) => {
+            format!("no, not determined: {reason}")
+        }
         _ if !expected.is_empty() => format!("no, only to {expected}{better}; {reason}"),
         _ if is_as_above(|above, this| above.reason == this.reason && above.expected.is_empty()) => {
             "no, likewise".to_owned()

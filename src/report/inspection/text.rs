@@ -16,6 +16,7 @@ pub fn inspection_text(file: &str, inspection: &Inspection) -> String {
     let mut page = String::new();
     line(&mut page, file);
     line(&mut page, &inspection.verdict);
+    line(&mut page, whose(inspection));
     heading(&mut page, "what it will tell");
     for (name, said) in quantities::lines(inspection) {
         row(&mut page, &name, said);
@@ -40,6 +41,19 @@ pub fn inspection_text(file: &str, inspection: &Inspection) -> String {
     page
 }
 
+/// Of what the log is, as far as it says: kind of vehicle, length, seconds armed and in the air.
+fn whose(inspection: &Inspection) -> String {
+    let (first_s, last_s) = inspection.clock.span_s;
+    let armed_s: f64 = inspection.timeline.armed_s.iter().map(|(from_s, to_s)| to_s - from_s).sum();
+    let parts = [
+        inspection.vehicle.kind.map(str::to_owned),
+        (first_s.is_finite() && last_s.is_finite()).then(|| format!("{:.0} s of log", last_s - first_s)),
+        (armed_s > 0.0).then(|| format!("armed for {armed_s:.0} s")),
+        Some(format!("in the air for {:.0} s", inspection.flight.airborne_s)),
+    ];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
 /// Writing to a String cannot fail.
 fn line(page: &mut String, text: impl Display) {
     let _ = writeln!(page, "{text}");
@@ -55,6 +69,12 @@ fn heading(page: &mut String, text: &str) {
 
 fn parameters_table(page: &mut String, inspection: &Inspection) {
     heading(page, "mass and inertia");
+    let of_all = inspection.identifiability.first();
+    if let Some(reason) = of_all.and_then(|one| one.reason.as_ref()).filter(|reason| {
+        inspection.identifiability.iter().all(|one| one.std.is_none() && one.reason.as_ref() == Some(*reason))
+    }) {
+        return row(page, "none of them", reason);
+    }
     for outlook in &inspection.identifiability {
         row(page, outlook.name, expectation(outlook));
     }

@@ -2,10 +2,10 @@
 
 mod judge;
 mod motion;
+mod other_flight;
 mod request;
 mod result;
 mod run;
-mod same_vehicle;
 
 pub use judge::Judge;
 pub(super) use motion::is_compared;

@@ -2,16 +2,17 @@
 
 use super::judge::Judge;
 use super::motion::tracks;
+use super::other_flight::refuse_same_flight;
 use super::request::CompareRequest;
 use super::result::{CompareStudy, ComparedFlight};
-use super::same_vehicle::{refuse_others, refuse_same_flight, settings_notes};
 use crate::change::Groups;
 use crate::config::LoadedVehicle;
 use crate::draft::Given;
-use crate::note::{About, Note};
+use crate::note::{About, Note, said_once};
 use crate::recording::{Quantity, Recording};
-use crate::signals::{ConditionSettings, Signals, ThrustPreference, best};
+use crate::signals::{ConditionSettings, Signals, ThrustPreference, best, other_settings};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins};
+use crate::study::one_vehicle::refuse_others;
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{InputFile, Progress, Stage, StudyError, VehicleGiven};
@@ -57,7 +58,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     flights.recordings.extend(later.recordings);
     flights.inputs.extend(later.inputs);
     flights.signals.extend(later.signals);
-    notes.extend(settings_notes(&flights.recordings));
+    notes.extend(other_settings(&flights.recordings));
     notes.extend(doubts(&flights));
     let balance = balance(&legs_of(&flights, &vehicle)?);
     progress.stage(Stage::Explaining);
@@ -92,7 +93,7 @@ fn doubts(flights: &Prepared) -> Vec<Note> {
         let doubts = signals.quality.notes.iter().filter(|note| note.is_warning());
         doubts.map(|doubt| Note::warning(About::File(input.path.clone()), doubt.text.as_str())).collect()
     };
-    flights.each().flat_map(of).collect()
+    said_once(flights.each().flat_map(of).collect())
 }
 
 fn each_compared(flights: &Prepared, reasons: Vec<Option<String>>) -> Vec<ComparedFlight> {

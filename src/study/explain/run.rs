@@ -10,9 +10,10 @@ use crate::diagnose::experiment::{NextSettings, design};
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{ExplainSettings, Explanation, Trace, Verdict};
 use crate::estimate::{Contradiction, inertia_by_wider_window, moved_by_guessed_curve};
-use crate::note::{About, Note};
-use crate::signals::{ConditionSettings, Signals, ThrustPreference};
+use crate::note::{About, Note, said_once};
+use crate::signals::{ConditionSettings, Signals, ThrustPreference, other_settings};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, names, prepare, refuse_off_mixer, refuse_twins};
+use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{Progress, Stage, StudyError, effects_of};
@@ -43,6 +44,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let next_limits = request.next_limits.as_deref().map(read_limits).transpose()?;
     progress.stage(Stage::Reading);
     let logs = load_all(&request.logs, &request.read, &EXPLAINED)?;
+    refuse_other_builds(logs.iter().flatten())?;
     let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
     let known = request.vehicle.of_flights(known, &logs).map_err(or_unflown)?;
     let mut notes = of_vehicle(&known)?;
@@ -53,6 +55,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     };
     let held = load_all(&request.holdout, &request.read, &EXPLAINED).map_err(of_holdout)?;
     refuse_twins(logs.iter().chain(&held))?;
+    refuse_other_builds(logs.iter().chain(&held).flatten())?;
     refuse_off_mixer(logs.iter().chain(&held))?;
     progress.stage(Stage::Conditioning);
     let settings = ConditionSettings {
@@ -75,6 +78,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
         (true, false) => hold_back(&mut flights),
         (false, _) => (ShownOn::Flights(held.inputs.clone()), None),
     };
+    notes.extend(other_settings(&flights.recordings));
     notes.extend(of_data(&flights, &held));
     let task = Task { request, vehicle: &vehicle, notes: &notes, winds_m_s: &winds_m_s, progress };
     progress.stage(Stage::Explaining);
@@ -220,7 +224,7 @@ fn of_data(flights: &Prepared, held: &Prepared) -> Vec<Note> {
     for (input, _) in flights.each().filter(|(_, signals)| lacks(signals)) {
         notes.push(Note::warning(About::File(input.path.clone()), NO_VELOCITY));
     }
-    notes
+    said_once(notes)
 }
 
 /// The part held back is another's, or what is left of the part explained drifts with time.

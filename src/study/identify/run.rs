@@ -4,11 +4,10 @@ use super::request::IdentifyRequest;
 use super::result::{IdentifyStudy, WithEffects};
 use crate::diagnose::ExplainSettings;
 use crate::diagnose::joint::{RequestedEffects, identify_jointly};
-use crate::note::Note;
-use crate::recording::Recording;
 use crate::signals::{ConditionSettings, Signals, other_settings};
 use crate::study::flight::Flight;
 use crate::study::flights::{IDENTIFIED, Prepared, load_all, names, prepare, refuse_twins};
+use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{InputFile, Progress, Stage, StudyError, effects_of};
@@ -27,6 +26,7 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     progress.stage(Stage::Reading);
     let logs = load_all(&request.logs, &request.read, &IDENTIFIED)?;
     refuse_twins(logs.iter())?;
+    refuse_other_builds(logs.iter().flatten())?;
     let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
     let known = request.vehicle.of_flights(known, &logs).map_err(or_unflown)?;
     let mut notes = known.notes();
@@ -38,7 +38,7 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     let explained = conditioned(&logs, vehicle, &request.conditioning_beside()).unwrap_or_default();
     let Prepared { recordings, signals, inputs, .. } =
         prepare(logs, vehicle, &request.conditioning()).map_err(or_unflown)?;
-    let apart = settings_apart(&recordings);
+    let apart = other_settings(&recordings);
     apart.iter().for_each(|note| progress.note(note));
     notes.extend(apart);
     // memory for the work that begins
@@ -48,13 +48,6 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
         IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings(), &explained)
             .map_err(|error| StudyError::of_estimate(error, &lost))?;
     Ok(IdentifyStudy { with, notes, drafted: known.draft, ..study })
-}
-
-/// Flights with other settings than the first.
-fn settings_apart(flights: &[Recording]) -> Vec<Note> {
-    let Some((first, others)) = flights.split_first() else { return Vec::new() };
-    let others = others.iter().enumerate();
-    others.filter_map(|(index, other)| other_settings((first, 1), (other, index + 2))).collect()
 }
 
 /// The flights that can be used. The first reason where a log has none.

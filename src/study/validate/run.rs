@@ -6,6 +6,7 @@ use super::request::ValidateRequest;
 use super::result::{ValidateStudy, ValidatedFlight};
 use crate::study::flight::Flight;
 use crate::study::flights::{IDENTIFIED, load_all, ready, refuse_twins};
+use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::unflown::unflown_first;
 use crate::study::{Progress, Stage, StudyError};
 use rayon::prelude::*;
@@ -28,6 +29,7 @@ pub fn validate(request: &ValidateRequest, progress: &dyn Progress) -> Result<Va
         models.insert(0, drafted);
     }
     refuse_twins(logs.iter())?;
+    refuse_other_builds(logs.iter().flatten())?;
     progress.stage(Stage::Predicting);
     let one = |log| ready(log, |of: &Flight| flight(of, &models, request.transient_s));
     let done: Vec<_> = logs.into_par_iter().map(one).collect();

@@ -79,6 +79,11 @@ impl Layout {
         (self.bytes_without_padding, self.bytes)
     }
 
+    /// Where the stamp begins; `None` where there is none.
+    pub(super) fn stamp_offset(&self) -> Option<usize> {
+        self.stamp_offset
+    }
+
     /// The number of a path such as `esc[0].esc_rpm` or `xyz[2]`.
     #[must_use]
     pub fn cell(&self, path: &str) -> Option<Cell> {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::definition::{Definition, parse};
 use super::layout::Layout;
+use super::number::array;
 
 /// Entries that all layouts of one log may take together; PX4's logs have about 10 000.
 const MOST_SPANS: usize = 1 << 20;
@@ -22,14 +23,33 @@ pub struct Subscription {
     pub layout: Arc<Layout>,
 }
 
+/// What messages of one number look like.
+#[derive(Debug, Clone, Copy)]
+struct Kind {
+    /// bytes, least and most
+    least: usize,
+    most: usize,
+    /// where the stamp is; beyond all of it where there is none
+    stamp_at: usize,
+}
+
+impl Kind {
+    const UNKNOWN: Self = Self { least: 1, most: 0, stamp_at: usize::MAX };
+
+    fn of(layout: &Layout) -> Self {
+        let (least, most) = layout.lengths();
+        Self { least, most, stamp_at: layout.stamp_offset().unwrap_or(usize::MAX) }
+    }
+}
+
 /// All definitions of a log so far.
 #[derive(Debug, Default)]
 pub(in crate::log::ulog) struct Schema {
     definitions: HashMap<String, Definition>,
     layouts: HashMap<String, Arc<Layout>>,
     subscriptions: Vec<Option<Subscription>>,
-    /// least and most bytes of each number's messages, in one place for a judgement of every message
-    lengths: Vec<Option<(usize, usize)>>,
+    /// what a judgement of every message needs of each number, in one place
+    kinds: Vec<Kind>,
     spans: usize,
 }
 
@@ -53,9 +73,9 @@ impl Schema {
         let slot = usize::from(id);
         if slot >= self.subscriptions.len() {
             self.subscriptions.resize(slot + 1, None);
-            self.lengths.resize(slot + 1, None);
+            self.kinds.resize(slot + 1, Kind::UNKNOWN);
         }
-        self.lengths[slot] = Some(layout.lengths());
+        self.kinds[slot] = Kind::of(&layout);
         self.subscriptions[slot] = Some(Subscription { id, topic: name.into(), instance, layout });
         self.subscriptions[slot].as_ref()
     }
@@ -69,8 +89,14 @@ impl Schema {
     /// Whether a message of this number can have so many bytes behind its number; `None` for a number that is not known.
     #[inline]
     pub(in crate::log::ulog) fn fits(&self, id: u16, bytes: usize) -> Option<bool> {
-        let (least, most) = (*self.lengths.get(usize::from(id))?)?;
-        Some((least..=most).contains(&bytes))
+        let kind = self.kinds.get(usize::from(id)).filter(|kind| kind.least <= kind.most)?;
+        Some((kind.least..=kind.most).contains(&bytes))
+    }
+
+    /// The stamp of a message of this number, microseconds; `None` where it has none.
+    #[inline]
+    pub(in crate::log::ulog) fn stamp_us(&self, id: u16, message: &[u8]) -> Option<u64> {
+        array(message, self.kinds.get(usize::from(id))?.stamp_at).map(u64::from_le_bytes)
     }
 
     fn layout(&mut self, name: &str) -> Option<Arc<Layout>> {

@@ -1,7 +1,7 @@
 //! What drives the vehicle: motor commands, outputs, rotor speeds, battery.
 
 use super::row::{Moment, Row, Way, When};
-use super::turns::{body, channels, not_negative, outputs, positive, speeds, speeds_by_motor, thrust};
+use super::turns::{Turn, channels, not_negative, outputs, positive, speeds, speeds_by_motor, thrust};
 use crate::recording::Quantity;
 
 const BATTERY: &[&str] = &["battery_status"];
@@ -12,7 +12,7 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         topics: &["actuator_motors"],
         quantity: Quantity::ActuatorCommand,
-        ways: &[Way { fields: &["control[*]"], turn: channels }],
+        ways: &[Way { fields: &["control[*]"], turn: Turn::By(channels) }],
         when: &[],
         moment: Moment::Published,
     },
@@ -20,7 +20,7 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         topics: &["actuator_outputs"],
         quantity: Quantity::ActuatorCommand,
-        ways: &[Way { fields: &["noutputs", "output[*]"], turn: outputs }],
+        ways: &[Way { fields: &["noutputs", "output[*]"], turn: Turn::By(outputs) }],
         when: &[],
         moment: Moment::Published,
     },
@@ -30,9 +30,9 @@ pub(super) const ROWS: &[Row] = &[
         ways: &[
             Way {
                 fields: &["esc_count", "esc_online_flags", "esc[*].esc_rpm", "esc[*].actuator_function"],
-                turn: speeds_by_motor,
+                turn: Turn::By(speeds_by_motor),
             },
-            Way { fields: &["esc_count", "esc[*].esc_rpm"], turn: speeds },
+            Way { fields: &["esc_count", "esc[*].esc_rpm"], turn: Turn::By(speeds) },
         ],
         when: &[],
         moment: Moment::Published,
@@ -40,14 +40,14 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         topics: BATTERY,
         quantity: Quantity::BatteryVoltage,
-        ways: &[Way { fields: &["voltage_v"], turn: positive }],
+        ways: &[Way { fields: &["voltage_v"], turn: Turn::By(positive) }],
         when: CONNECTED,
         moment: Moment::Published,
     },
     Row {
         topics: BATTERY,
         quantity: Quantity::BatteryCurrent,
-        ways: &[Way { fields: &["current_a"], turn: not_negative }],
+        ways: &[Way { fields: &["current_a"], turn: Turn::By(not_negative) }],
         when: CONNECTED,
         moment: Moment::Published,
     },
@@ -55,14 +55,14 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         topics: &["vehicle_torque_setpoint"],
         quantity: Quantity::TorqueSetpoint,
-        ways: &[Way { fields: &["xyz[0]", "xyz[1]", "xyz[2]"], turn: body }],
+        ways: &[Way { fields: &["xyz[0]", "xyz[1]", "xyz[2]"], turn: Turn::HalfTurn }],
         when: &[],
         moment: Moment::Published,
     },
     Row {
         topics: &["vehicle_thrust_setpoint"],
         quantity: Quantity::ThrustVectorSetpoint,
-        ways: &[Way { fields: &["xyz[0]", "xyz[1]", "xyz[2]"], turn: body }],
+        ways: &[Way { fields: &["xyz[0]", "xyz[1]", "xyz[2]"], turn: Turn::HalfTurn }],
         when: &[],
         moment: Moment::Published,
     },
@@ -70,14 +70,14 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         topics: &["actuator_controls_0"],
         quantity: Quantity::TorqueSetpoint,
-        ways: &[Way { fields: &["control[0]", "control[1]", "control[2]"], turn: body }],
+        ways: &[Way { fields: &["control[0]", "control[1]", "control[2]"], turn: Turn::HalfTurn }],
         when: &[],
         moment: Moment::Published,
     },
     Row {
         topics: &["actuator_controls_0"],
         quantity: Quantity::ThrustVectorSetpoint,
-        ways: &[Way { fields: &["control[3]"], turn: thrust }],
+        ways: &[Way { fields: &["control[3]"], turn: Turn::By(thrust) }],
         when: &[],
         moment: Moment::Published,
     },

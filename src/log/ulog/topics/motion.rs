@@ -1,7 +1,7 @@
 //! How the vehicle moves: sensors, and the estimator's state.
 
 use super::row::{Moment, Row, Way, When};
-use super::turns::{attitude, body, body_over_time, same, world};
+use super::turns::{Turn, attitude, body_over_time, same};
 use crate::recording::Quantity;
 
 const ATTITUDE: &[&str] = &["q[0]", "q[1]", "q[2]", "q[3]"];
@@ -34,7 +34,7 @@ pub(super) const ROWS: &[Row] = &[
     row(
         &["vehicle_attitude"],
         Quantity::Attitude,
-        &[Way { fields: ATTITUDE, turn: attitude }],
+        &[Way { fields: ATTITUDE, turn: Turn::By(attitude) }],
         &[],
         Moment::Sampled,
     ),
@@ -42,28 +42,28 @@ pub(super) const ROWS: &[Row] = &[
     row(
         &["vehicle_attitude"],
         Quantity::AngularRate,
-        &[Way { fields: &["rollspeed", "pitchspeed", "yawspeed"], turn: body }],
+        &[Way { fields: &["rollspeed", "pitchspeed", "yawspeed"], turn: Turn::HalfTurn }],
         &[],
         Moment::Sampled,
     ),
     row(
         &["vehicle_angular_velocity"],
         Quantity::AngularRate,
-        &[Way { fields: XYZ, turn: body }],
+        &[Way { fields: XYZ, turn: Turn::HalfTurn }],
         &[],
         Moment::Sampled,
     ),
     row(
         &["vehicle_acceleration"],
         Quantity::SpecificForce,
-        &[Way { fields: XYZ, turn: body }],
+        &[Way { fields: XYZ, turn: Turn::HalfTurn }],
         &[],
         Moment::Sampled,
     ),
     row(
         &["sensor_combined"],
         Quantity::AngularRate,
-        &[Way { fields: &["gyro_rad[0]", "gyro_rad[1]", "gyro_rad[2]"], turn: body }],
+        &[Way { fields: &["gyro_rad[0]", "gyro_rad[1]", "gyro_rad[2]"], turn: Turn::HalfTurn }],
         &[],
         Moment::MeanOver("gyro_integral_dt"),
     ),
@@ -72,7 +72,7 @@ pub(super) const ROWS: &[Row] = &[
         Quantity::SpecificForce,
         &[Way {
             fields: &["accelerometer_m_s2[0]", "accelerometer_m_s2[1]", "accelerometer_m_s2[2]"],
-            turn: body,
+            turn: Turn::HalfTurn,
         }],
         &[],
         Moment::LaterMeanOver {
@@ -85,7 +85,7 @@ pub(super) const ROWS: &[Row] = &[
         Quantity::AngularRate,
         &[Way {
             fields: &["delta_angle[0]", "delta_angle[1]", "delta_angle[2]", "delta_angle_dt"],
-            turn: body_over_time,
+            turn: Turn::By(body_over_time),
         }],
         &[],
         Moment::MeanOver("delta_angle_dt"),
@@ -95,7 +95,7 @@ pub(super) const ROWS: &[Row] = &[
         Quantity::SpecificForce,
         &[Way {
             fields: &["delta_velocity[0]", "delta_velocity[1]", "delta_velocity[2]", "delta_velocity_dt"],
-            turn: body_over_time,
+            turn: Turn::By(body_over_time),
         }],
         &[],
         Moment::MeanOver("delta_velocity_dt"),
@@ -103,66 +103,84 @@ pub(super) const ROWS: &[Row] = &[
     row(
         &["vehicle_local_position"],
         Quantity::Position,
-        &[Way { fields: POSITION, turn: world }],
+        &[Way { fields: POSITION, turn: Turn::HalfTurn }],
         &[When::Set("xy_valid"), When::Set("z_valid")],
         Moment::Sampled,
     ),
     row(
         &["vehicle_local_position"],
         Quantity::Velocity,
-        &[Way { fields: VELOCITY, turn: world }],
+        &[Way { fields: VELOCITY, turn: Turn::HalfTurn }],
         &[When::Set("v_xy_valid"), When::Set("v_z_valid")],
         Moment::Sampled,
     ),
     row(
         ESTIMATE,
         Quantity::Position,
-        &[Way { fields: POSITION_ARRAY, turn: world }, Way { fields: POSITION, turn: world }],
+        &[
+            Way { fields: POSITION_ARRAY, turn: Turn::HalfTurn },
+            Way { fields: POSITION, turn: Turn::HalfTurn },
+        ],
         NED,
         Moment::Sampled,
     ),
     row(
         ESTIMATE,
         Quantity::Velocity,
-        &[Way { fields: VELOCITY_ARRAY, turn: world }],
+        &[Way { fields: VELOCITY_ARRAY, turn: Turn::HalfTurn }],
         &[When::Is("velocity_frame", 1.0)],
         Moment::Sampled,
     ),
-    row(ESTIMATE, Quantity::Attitude, &[Way { fields: ATTITUDE, turn: attitude }], NED, Moment::Sampled),
     row(
-        POSES,
-        Quantity::Position,
-        &[Way { fields: POSITION_ARRAY, turn: world }, Way { fields: POSITION, turn: world }],
+        ESTIMATE,
+        Quantity::Attitude,
+        &[Way { fields: ATTITUDE, turn: Turn::By(attitude) }],
         NED,
         Moment::Sampled,
     ),
-    row(POSES, Quantity::Attitude, &[Way { fields: ATTITUDE, turn: attitude }], NED, Moment::Sampled),
+    row(
+        POSES,
+        Quantity::Position,
+        &[
+            Way { fields: POSITION_ARRAY, turn: Turn::HalfTurn },
+            Way { fields: POSITION, turn: Turn::HalfTurn },
+        ],
+        NED,
+        Moment::Sampled,
+    ),
+    row(
+        POSES,
+        Quantity::Attitude,
+        &[Way { fields: ATTITUDE, turn: Turn::By(attitude) }],
+        NED,
+        Moment::Sampled,
+    ),
     // motion capture until 1.8
     row(
         &["att_pos_mocap", "vehicle_vision_position"],
         Quantity::Position,
-        &[Way { fields: POSITION, turn: world }],
+        &[Way { fields: POSITION, turn: Turn::HalfTurn }],
         &[When::Set("xy_valid"), When::Set("z_valid")],
         Moment::Sampled,
     ),
     row(
         &["att_pos_mocap", "vehicle_vision_attitude"],
         Quantity::Attitude,
-        &[Way { fields: ATTITUDE, turn: attitude }],
+        &[Way { fields: ATTITUDE, turn: Turn::By(attitude) }],
         &[],
         Moment::Sampled,
     ),
     row(
         RECEIVERS,
         Quantity::GpsVelocity,
-        &[Way { fields: GPS_VELOCITY, turn: world }],
+        &[Way { fields: GPS_VELOCITY, turn: Turn::HalfTurn }],
         &[When::Set("vel_ned_valid")],
         Moment::Sampled,
     ),
     row(
         &["vehicle_air_data"],
         Quantity::BarometricHeight,
-        &[Way { fields: &["baro_alt_meter"], turn: same }],
+        &[Way { fields: &["baro_alt_meter"], turn: Turn::By(same) }],
         &[],
         Moment::Sampled,
     ),
@@ -170,7 +188,7 @@ pub(super) const ROWS: &[Row] = &[
     row(
         &["sensor_combined"],
         Quantity::BarometricHeight,
-        &[Way { fields: &["baro_alt_meter"], turn: same }],
+        &[Way { fields: &["baro_alt_meter"], turn: Turn::By(same) }],
         &[],
         Moment::LaterMeanOver { later: "baro_timestamp_relative", over: "none" },
     ),

@@ -1,6 +1,6 @@
 //! One stream of a topic: which fields become what.
 
-use super::turns::{MOST_CELLS, Turn};
+use super::turns::{MOST_CELLS, Turn, half_turn};
 use crate::log::ulog::schema::{Cell, Layout, NumberType};
 use crate::recording::{Quantity, StreamKey};
 use crate::units::seconds_from_us;
@@ -9,7 +9,10 @@ use crate::units::seconds_from_us;
 const MOST_ELEMENTS: usize = 16;
 /// Numbers that most samples are made of, at most; a turn has room for so many.
 const FEW_CELLS: usize = 4;
+/// Numbers of one array, at most.
+const SOME_CELLS: usize = MOST_ELEMENTS;
 const FLOAT_BYTES: usize = 4;
+const VECTOR: usize = 3;
 /// A sample that lies further from its message's stamp has no stamp of its own, microseconds.
 const SAMPLED_BEFORE_US: u64 = 1_000_000;
 
@@ -66,6 +69,8 @@ pub(in crate::log::ulog) struct Bound {
     cells: Vec<Cell>,
     /// where they begin, where they are single-precision numbers one behind the other
     floats_at: Option<usize>,
+    /// the same, where they are a vector that is turned and nothing else is asked: what most of a log is
+    vector_at: Option<usize>,
     turn: Turn,
     when: Vec<(Cell, Option<f64>)>,
     sampled: Option<Cell>,
@@ -96,7 +101,10 @@ impl Row {
         };
         let key = StreamKey { quantity: self.quantity, source, instance };
         let floats_at = floats_at(&cells);
-        Some(Bound { key, cells, floats_at, turn, when: when.collect(), sampled, later, over })
+        let when: Vec<_> = when.collect();
+        let is_vector = matches!(turn, Turn::HalfTurn) && cells.len() == VECTOR && when.is_empty();
+        let vector_at = floats_at.filter(|_| is_vector);
+        Some(Bound { key, cells, floats_at, vector_at, turn, when, sampled, later, over })
     }
 }
 
@@ -118,6 +126,16 @@ fn cells(fields: &[&str], layout: &Layout) -> Option<Vec<Cell>> {
         }
     }
     (cells.len() <= MOST_CELLS).then_some(cells)
+}
+
+/// Single-precision numbers one behind the other.
+#[inline]
+fn floats<const N: usize, const BYTES: usize>(bytes: &[u8; BYTES]) -> [f64; N] {
+    let mut floats = [0.0; N];
+    for (float, bytes) in floats.iter_mut().zip(bytes.as_chunks::<FLOAT_BYTES>().0) {
+        *float = f32::from_le_bytes(*bytes).into();
+    }
+    floats
 }
 
 /// Where cells begin that are single-precision numbers one behind the other.
@@ -154,6 +172,14 @@ impl Bound {
     /// Gives the values of a message's sample to `take`, if there are any.
     #[inline]
     pub(in crate::log::ulog) fn sample(&self, message: &[u8], take: impl FnOnce(&[f64])) {
+        if let Some(at) = self.vector_at {
+            let Some(bytes) = message.get(at..).and_then(|bytes| bytes.first_chunk()) else { return };
+            let sample = half_turn(floats::<VECTOR, { VECTOR * FLOAT_BYTES }>(bytes));
+            if sample.iter().any(|value| value.is_finite()) {
+                take(&sample);
+            }
+            return;
+        }
         let holds = |(cell, wanted): &(Cell, Option<f64>)| {
             let value = cell.read(message);
             wanted.map_or(value != 0.0, |wanted| value == wanted)
@@ -164,6 +190,8 @@ impl Bound {
         // most have few, and room for many costs as much as the rest
         if self.cells.len() <= FEW_CELLS {
             self.turned(message, &mut [0.0; FEW_CELLS], take);
+        } else if self.cells.len() <= SOME_CELLS {
+            self.turned(message, &mut [0.0; SOME_CELLS], take);
         } else {
             self.turned(message, &mut [0.0; MOST_CELLS], take);
         }
@@ -173,7 +201,7 @@ impl Bound {
     fn turned<const N: usize>(&self, message: &[u8], values: &mut [f64; N], take: impl FnOnce(&[f64])) {
         let count = self.cells.len().min(N);
         self.read(message, &mut values[..count]);
-        let given = (self.turn)(&mut values[..count.max(FEW_CELLS)], count);
+        let given = self.turn.turn(&mut values[..count.max(FEW_CELLS)], count);
         let sample = &values[..given.min(N)];
         if sample.iter().any(|value| value.is_finite()) {
             take(sample);

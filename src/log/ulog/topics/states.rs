@@ -1,7 +1,7 @@
 //! What state the vehicle is in.
 
 use super::row::{Moment, Row, Way};
-use super::turns::{armed, landed, mode};
+use super::turns::{Turn, armed, landed, mode};
 use crate::recording::Quantity;
 
 const STATUS: &[&str] = &["vehicle_status"];
@@ -10,21 +10,21 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         topics: STATUS,
         quantity: Quantity::Armed,
-        ways: &[Way { fields: &["arming_state"], turn: armed }],
+        ways: &[Way { fields: &["arming_state"], turn: Turn::By(armed) }],
         when: &[],
         moment: Moment::Published,
     },
     Row {
         topics: STATUS,
         quantity: Quantity::Mode,
-        ways: &[Way { fields: &["nav_state"], turn: mode }],
+        ways: &[Way { fields: &["nav_state"], turn: Turn::By(mode) }],
         when: &[],
         moment: Moment::Published,
     },
     Row {
         topics: &["vehicle_land_detected"],
         quantity: Quantity::LandedState,
-        ways: &[Way { fields: &["landed"], turn: landed }],
+        ways: &[Way { fields: &["landed"], turn: Turn::By(landed) }],
         when: &[],
         moment: Moment::Published,
     },

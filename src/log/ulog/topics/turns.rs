@@ -1,15 +1,37 @@
 //! From the values of fields to a sample: frames, units, and what a field says that it is not.
 
 use crate::autopilot::{PX4, px4_mode_of_state};
-use crate::frames::{attitude_from_frd_ned, body_from_frd, world_from_ned, yaw_from_ned};
+use crate::frames::{attitude_from_frd_ned, body_from_frd, yaw_from_ned};
 use crate::units::{rad_s_from_rpm, seconds_from_us, whole, whole_unsigned};
 
 /// Numbers that one sample is made of, at most: two of each of 16 channels, and what all have in common.
 pub(super) const MOST_CELLS: usize = 36;
 
-/// Turns the first `count` values, in place, into a sample; how many values it has, 0 for none. There is room for four at
-/// least.
-pub(super) type Turn = fn(&mut [f64], usize) -> usize;
+/// How values become a sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Turn {
+    /// a vector by half a turn about its first axis: body axes forward, right, down to forward, left, up; and those of the world
+    /// north, east, down to north, west, up
+    HalfTurn,
+    /// turns the first so many values, in place, into a sample; how many values it has, 0 for none. There is room for four at least
+    By(fn(&mut [f64], usize) -> usize),
+}
+
+impl Turn {
+    #[inline]
+    pub(super) fn turn(self, values: &mut [f64], count: usize) -> usize {
+        match self {
+            Self::HalfTurn => put(values, half_turn(triple(values))),
+            Self::By(turn) => turn(values, count),
+        }
+    }
+}
+
+/// See [`Turn::HalfTurn`].
+#[inline]
+pub(super) fn half_turn(vector: [f64; 3]) -> [f64; 3] {
+    body_from_frd(vector).0.into()
+}
 
 /// `vehicle_status.arming_state` of an armed vehicle.
 const ARMED: f64 = 2.0;
@@ -28,16 +50,6 @@ fn triple(values: &[f64]) -> [f64; 3] {
 /// As it is.
 pub(super) fn same(_: &mut [f64], count: usize) -> usize {
     count
-}
-
-/// Forward, right, down to forward, left, up.
-pub(super) fn body(values: &mut [f64], _: usize) -> usize {
-    put(values, body_from_frd(triple(values)).0.into())
-}
-
-/// North, east, down to north, west, up.
-pub(super) fn world(values: &mut [f64], _: usize) -> usize {
-    put(values, world_from_ned(triple(values)).0.into())
 }
 
 /// A body vector summed over a time, the fourth value, microseconds: its mean.
