@@ -17,7 +17,7 @@ fn fixture(name: &str) -> String {
 }
 
 fn temporary(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).join("explain_command").join(name)
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("explain_command-{name}"))
 }
 
 fn stdout(output: &Output) -> String {

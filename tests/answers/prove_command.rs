@@ -13,7 +13,7 @@ fn mavid(arguments: &[&str]) -> Output {
 }
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("prove_command").join(name);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("prove_command-{name}"));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     folder

@@ -8,7 +8,7 @@ fn config(name: &str) -> String {
 }
 
 fn folder(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fly_command").join(name);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("fly_command-{name}"));
     let _ = std::fs::remove_dir_all(&path);
     path
 }

@@ -16,7 +16,7 @@ const EVIL: &str = "x\u{1b}[31m\nmavid: all is well\r\u{9b}2J\u{7}\u{202e} <scri
                     \"quoted\" 'single' \"\"\" \\ % {0} \u{2028}";
 
 fn folder(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("foreign").join(name);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("foreign-{name}"));
     let _ = std::fs::remove_dir_all(&path);
     std::fs::create_dir_all(&path).unwrap();
     path

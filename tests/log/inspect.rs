@@ -16,7 +16,7 @@ use mavid::wire::SystemId;
 use support::{header, heartbeat, record, tlog, v2};
 
 fn scratch(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).join("inspect").join(name)
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("inspect-{name}"))
 }
 
 fn written(name: &str, bytes: &[u8]) -> PathBuf {

@@ -21,7 +21,7 @@ fn fixture(name: &str) -> PathBuf {
 
 /// A file of this test alone.
 fn written(name: &str, bytes: &[u8]) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("log_flights").join(name);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("log_flights-{name}"));
     std::fs::write(&path, bytes).unwrap();
     path
 }

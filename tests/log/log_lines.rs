@@ -24,7 +24,7 @@ fn stderr(output: &Output) -> String {
 
 /// A file of this test alone.
 fn written(name: &str, text: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("log_lines").join(name);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("log_lines-{name}"));
     std::fs::write(&path, text).unwrap();
     path
 }

@@ -21,7 +21,7 @@ fn log() -> String {
 }
 
 fn target(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("vehicle_init").join(name);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("vehicle_init-{name}"));
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     let _ = std::fs::remove_file(&path);
     path

@@ -9,7 +9,7 @@ fn plan(vehicle: &str, arguments: &[&str]) -> Output {
 }
 
 fn temporary(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).join("plan_command").join(name)
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("plan_command-{name}"))
 }
 
 fn json(output: &Output) -> serde_json::Value {

@@ -19,7 +19,7 @@ fn config(name: &str) -> String {
 
 /// A fresh folder for one test.
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("simulate_command").join(name);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("simulate_command-{name}"));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     folder

@@ -21,7 +21,7 @@ fn stderr(output: &Output) -> String {
 
 /// A file of this test alone.
 fn written(name: &str, text: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("command_line").join(name);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("command_line-{name}"));
     std::fs::write(&path, text).unwrap();
     path
 }
