@@ -1,6 +1,6 @@
 //! What is fuzzed: one function for each target, from an input's bytes to a panic where a law is broken.
 //!
-//! The targets of libFuzzer (`targets/`) call these functions, and so do their twins in `tests/fuzz_twins.rs`,
+//! The targets of libFuzzer (`targets/`) call these functions, and so do their twins in `tests/link/fuzz_twins.rs`,
 //! which replay the corpus and add seeded mutations. A seeded bug is a fault of the harness, not of the program:
 //! it breaks a law in one rare place and shows that the fuzzer gets there.
 

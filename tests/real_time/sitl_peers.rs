@@ -59,8 +59,7 @@ fn flown(answer: &Value, autopilot: u8, parameter: f64) {
     assert!(landed_at[2].abs() < 0.2, "{landed_at:?}");
 }
 
-#[test]
-fn pymavlink_flies_px4_offboard_in_lockstep_over_udp() {
+pub fn pymavlink_flies_px4_offboard_in_lockstep_over_udp() {
     let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let listen = format!("udpout:127.0.0.1:{port}");
     let sitl = Sitl::start(&["--lockstep", "--listen", &listen]);
@@ -74,8 +73,7 @@ fn pymavlink_flies_px4_offboard_in_lockstep_over_udp() {
     assert!(said.contains("stopped after"), "{said}");
 }
 
-#[test]
-fn pymavlink_flies_ardupilot_guided_fast_over_tcp() {
+pub fn pymavlink_flies_ardupilot_guided_fast_over_tcp() {
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let listen = format!("tcpin:127.0.0.1:{port}");
     let options =
@@ -90,8 +88,7 @@ fn pymavlink_flies_ardupilot_guided_fast_over_tcp() {
 }
 
 /// Real time: MAVSDK has clocks of its own.
-#[test]
-fn mavsdk_finds_px4_healthy_stores_a_fence_and_flies_offboard() {
+pub fn mavsdk_finds_px4_healthy_stores_a_fence_and_flies_offboard() {
     let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let listen = format!("udpout:127.0.0.1:{port}");
     let sitl = Sitl::start(&["--warm-up", "2", "--listen", &listen]);
@@ -136,8 +133,7 @@ fn fetched(answer: &Value, begins: &str, ends: &str) {
     assert!(highest_m > 0.3, "{highest_m}");
 }
 
-#[test]
-fn pymavlink_fetches_the_log_of_a_flight_of_px4() {
+pub fn pymavlink_fetches_the_log_of_a_flight_of_px4() {
     let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let listen = format!("udpout:127.0.0.1:{port}");
     let sitl = Sitl::start(&["--warm-up", "2", "--listen", &listen]);
@@ -149,8 +145,7 @@ fn pymavlink_fetches_the_log_of_a_flight_of_px4() {
     assert_eq!(sitl.interrupt().0, Some(0));
 }
 
-#[test]
-fn pymavlink_fetches_the_log_of_a_flight_of_ardupilot() {
+pub fn pymavlink_fetches_the_log_of_a_flight_of_ardupilot() {
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let listen = format!("tcpin:127.0.0.1:{port}");
     let options = ["--autopilot", "ardupilot", "--speed", "3", "--warm-up", "2", "--listen", listen.as_str()];
@@ -164,8 +159,7 @@ fn pymavlink_fetches_the_log_of_a_flight_of_ardupilot() {
 }
 
 /// The vehicle writes on its log meanwhile: what comes later is longer.
-#[test]
-fn mavsdk_fetches_a_log_by_both_protocols() {
+pub fn mavsdk_fetches_a_log_by_both_protocols() {
     let folder = crate::processes::folder("fetched_by_mavsdk");
     let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let listen = format!("udpout:127.0.0.1:{port}");
@@ -188,8 +182,7 @@ fn mavsdk_fetches_a_log_by_both_protocols() {
 }
 
 /// A fifth of the datagrams is lost both ways.
-#[test]
-fn a_log_that_pymavlink_serves_by_messages_is_fetched_over_a_lossy_link() {
+pub fn a_log_that_pymavlink_serves_by_messages_is_fetched_over_a_lossy_link() {
     let folder = crate::processes::folder("served_by_pymavlink");
     let log = folder.join("log.bin");
     let bytes: Vec<u8> = (0..60_000_u32).map(|at| at.wrapping_mul(2_654_435_761).to_be_bytes()[0]).collect();

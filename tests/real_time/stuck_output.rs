@@ -41,8 +41,7 @@ fn held(out: &Path) -> usize {
     if bytes.is_empty() { 0 } else { frames(&read(&bytes).0).len() }
 }
 
-#[test]
-fn a_recording_ends_on_sigterm_though_nobody_reads_what_it_says() {
+pub fn a_recording_ends_on_sigterm_though_nobody_reads_what_it_says() {
     for (name, blocks_output) in [("stdout", true), ("stderr", false)] {
         let (out, port) = (folder(&format!("stuck_{name}")).join("r.tlog"), free_udp_port());
         let (_reader, writer) = full_pipe();
@@ -65,8 +64,7 @@ fn a_recording_ends_on_sigterm_though_nobody_reads_what_it_says() {
     }
 }
 
-#[test]
-fn a_full_disk_is_told_and_no_frame_is_claimed_that_is_not_there() {
+pub fn a_full_disk_is_told_and_no_frame_is_claimed_that_is_not_there() {
     let port = free_udp_port();
     let mut command = record(Path::new("/dev/full"), port);
     let mut running = Running(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap());
@@ -107,8 +105,7 @@ fn fly(out: &Path, connect: &str) -> Command {
     command
 }
 
-#[test]
-fn after_a_connection_that_failed_the_same_command_begins_again() {
+pub fn after_a_connection_that_failed_the_same_command_begins_again() {
     let out = folder("retry").join("flight");
     let taken = UdpSocket::bind("127.0.0.1:0").unwrap();
     let nobody = UdpSocket::bind("127.0.0.1:0").unwrap();
@@ -144,8 +141,7 @@ fn after_a_connection_that_failed_the_same_command_begins_again() {
 }
 
 /// One flight in real time.
-#[test]
-fn a_flight_goes_on_though_its_terminal_takes_nothing() {
+pub fn a_flight_goes_on_though_its_terminal_takes_nothing() {
     let (trajectory, out) = (planned("stuck_plan", 1), folder("stuck_flight").join("flight"));
     let (_vehicle, listens) = vehicle("px4", "udpin:127.0.0.1:0");
     let (reader, writer) = full_pipe();

@@ -27,8 +27,7 @@ fn is_in_phase(out: &Path, phase: &str) -> bool {
 }
 
 /// A flight that ends before it begins.
-#[test]
-fn a_word_for_arming_that_was_typed_before_the_page_arms_nothing() {
+pub fn a_word_for_arming_that_was_typed_before_the_page_arms_nothing() {
     let (trajectory, out) = (planned("early_plan", 1), folder("early").join("flight"));
     let (_vehicle, listens) = vehicle("px4", "udpin:127.0.0.1:0");
     let (mut person, child) = Person::starts(&mut fly(&out, &listens, &trajectory, &["--plain"]));
@@ -53,8 +52,7 @@ fn a_word_for_arming_that_was_typed_before_the_page_arms_nothing() {
 }
 
 /// One flight in real time.
-#[test]
-fn a_terminal_that_takes_nothing_costs_no_result() {
+pub fn a_terminal_that_takes_nothing_costs_no_result() {
     let (trajectory, out) = (planned("blocked_plan", 1), folder("blocked").join("flight"));
     let (_vehicle, listens) = vehicle("px4", "udpin:127.0.0.1:0");
     let (person, child) = Person::starts(&mut fly(&out, &listens, &trajectory, &["--yes"]));
@@ -74,8 +72,7 @@ fn a_terminal_that_takes_nothing_costs_no_result() {
 
 /// A vehicle that was started so as to outlive its terminal flies on when the terminal is gone; its standard output on a
 /// pipe that is closed, and nobody at its address, end it as little.
-#[test]
-fn a_vehicle_outlives_its_terminal_where_it_was_started_so() {
+pub fn a_vehicle_outlives_its_terminal_where_it_was_started_so() {
     let ground = UdpSocket::bind("127.0.0.1:0").unwrap();
     ground.set_read_timeout(Some(LONG)).unwrap();
     let nobody = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();

@@ -1,0 +1,176 @@
+//! `mavid compare`: a rotor that became weak between simulated flights, real propellers that were cut, and outputs that left the mixer.
+
+use crate::support;
+
+use mavid::inspect::inspect;
+use mavid::log::OpenOptions;
+use mavid::study::{Changed, CompareRequest, CompareStudy, Silent, StudyError, VehicleGiven, compare};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn mavid(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_mavid")).args(arguments).output().unwrap()
+}
+
+fn config(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(name).display().to_string()
+}
+
+/// A fresh folder for one test.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("compare-{name}"));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+const WEAK: &str = "[[effect]]\nid = \"weak_rotor\"\nrotor = 2\nfactor = 0.95\n";
+
+#[test]
+fn a_rotor_that_became_weak_is_found_and_an_unchanged_vehicle_is_not_called_changed() {
+    let folder = folder("compare");
+    let place = |name: &str| folder.join(name).display().to_string();
+    std::fs::write(place("weak.toml"), WEAK).unwrap();
+    let (vehicle, trajectory) = (config("x500.toml"), config("trajectories/table2.toml"));
+    let flight = |name: &str, seed: &str, more: &[&str]| {
+        let log = place(name);
+        let common = ["simulate", &vehicle, "--trajectory", &trajectory, "--seed", seed, "--out", &log];
+        let simulated = mavid(&[&common[..], more].concat());
+        assert!(simulated.status.success(), "{}", String::from_utf8_lossy(&simulated.stderr));
+        log
+    };
+    let first = flight("first.tlog", "1", &[]);
+    let second = flight("second.tlog", "2", &[]);
+    let weak = flight("weak.tlog", "3", &["--effects", &place("weak.toml")]);
+    let out = place("out");
+
+    let changed = mavid(&[
+        "compare",
+        &first,
+        &second,
+        "--with",
+        &weak,
+        "--balance-only",
+        "--vehicle",
+        &vehicle,
+        "--out",
+        &out,
+        "--json",
+    ]);
+    assert_eq!(changed.status.code(), Some(4), "{}", String::from_utf8_lossy(&changed.stderr));
+    let said: Value = serde_json::from_slice(&changed.stdout).unwrap();
+    assert_eq!((&said["schema"], &said["verdict"]), (&1.into(), &"changed".into()));
+    let change = &said["changes"][0];
+    assert_eq!(
+        (&change["what"], &change["rotor"], &change["carried_by"]),
+        (&"rotor".into(), &2.into(), &serde_json::json!([2]))
+    );
+    let (after, std) = (change["after"]["value"].as_f64().unwrap(), change["by"]["std"].as_f64().unwrap());
+    assert!((after - 0.95).abs() < 2.0 * std && std < 0.01, "{after} +- {std}");
+    // the same along the row
+    assert_eq!(said["history"][0]["from"], 2);
+    let report = std::fs::read_to_string(folder.join("out/report.html")).unwrap();
+    assert!(report.contains("<svg") && report.contains(change["of"].as_str().unwrap()));
+    let stored: Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.join("out/comparison.json")).unwrap()).unwrap();
+    assert_eq!(stored, said);
+
+    let same =
+        mavid(&["compare", &first, "--with", &second, "--balance-only", "--vehicle", &vehicle, "--json"]);
+    assert_eq!(same.status.code(), Some(0), "{}", String::from_utf8_lossy(&same.stderr));
+    let said: Value = serde_json::from_slice(&same.stdout).unwrap();
+    assert_eq!((&said["verdict"], &said["changes"]), (&"nothing_changed".into(), &serde_json::json!([])));
+    // and what would have shown is told
+    let least = said["smallest_changes"].as_array().unwrap();
+    assert!(
+        least.len() == 6 && least.iter().all(|least| least["size"].as_f64().unwrap() < 0.05),
+        "{least:?}"
+    );
+}
+
+#[test]
+fn logs_of_different_autopilots_are_not_of_one_vehicle() {
+    let refused =
+        mavid(&["compare", "fixtures/px4_flight.ulg", "--with", "fixtures/ap_baseline_70_79s.tlog"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let why = String::from_utf8_lossy(&refused.stderr);
+    assert!(why.contains("ap_baseline_70_79s.tlog: expected flights of one vehicle, got a log of"), "{why}");
+}
+
+#[test]
+fn one_flight_is_nothing_to_compare() {
+    let refused = mavid(&["compare", "alone.bin"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("expected at least two recordings"));
+}
+
+/// Flights of a folder compared, the first `before` of them with the last, without mass and lengths.
+fn compared(folder: &Path, before: &[&str], after: &str) -> CompareStudy {
+    let place = |name: &&str| folder.join(format!("flight_{name}.BIN"));
+    let request = CompareRequest {
+        before: before.iter().map(place).collect(),
+        after: vec![place(&after)],
+        transient_s: CompareRequest::TRANSIENT_S,
+        ..CompareRequest::default()
+    };
+    compare(&request, &Silent).unwrap()
+}
+
+#[test]
+fn cut_propellers_are_found_from_20_mm_on_and_smaller_cuts_get_no_name() {
+    let Some(shared) = support::shared() else { return };
+    let folder = shared.join("onboard/propeller_cut");
+    let whole = ["09", "04", "02"];
+    for (flight, mm) in [("15", 20), ("08", 25)] {
+        let study = compared(&folder, &whole, flight);
+        let changes = &study.compared.as_ref().unwrap().changes;
+        assert_eq!(changes.len(), 1, "{mm} mm: {changes:?}");
+        assert_eq!(changes[0].what, Changed::Rotor(0), "{mm} mm");
+        assert!(changes[0].rivals.is_empty() && changes[0].moved.unwrap().after.0 < 0.9);
+    }
+    for flight in ["13", "11"] {
+        let study = compared(&folder, &whole, flight);
+        let found = study.compared.as_ref().unwrap();
+        assert!(found.changes.is_empty(), "{flight}: {:?}", found.changes);
+        // what cuts of 5 and 10 mm do is below what these flights show
+        assert!(found.balance.least.rotors.iter().all(|least| *least > 0.05));
+    }
+    let between_whole = compared(&folder, &whole[..2], whole[2]);
+    assert!(!between_whole.has_changed());
+}
+
+#[test]
+fn an_output_that_left_the_mixer_is_told_with_its_times_and_nothing_hidden_is_searched_for() {
+    let Some(shared) = support::shared() else { return };
+    let folder = shared.join("onboard/motor_fault_sim");
+    let answers: Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.join("answers.json")).unwrap()).unwrap();
+    for (name, answer) in answers.as_object().unwrap() {
+        let inspection = inspect(&folder.join(name), &OpenOptions::default(), None, &mut |_| ()).unwrap();
+        let faults = answer["faults"].as_array().unwrap();
+        let found = &inspection.outputs_off_mixer;
+        assert_eq!(found.len(), faults.len(), "{name}: {found:?}");
+        for (off, fault) in found.iter().zip(faults) {
+            let stuck_s = |key: &str| fault[key].as_f64().unwrap() * 1e-6;
+            let lasted_s = stuck_s("motor_stopped_us") - stuck_s("control_taken_from_mixer_us");
+            assert_eq!(off.output as u64, fault["motor"].as_u64().unwrap(), "{name}");
+            assert!((off.stopped_s.unwrap() - off.left_s - lasted_s).abs() < 0.25, "{name}: {off}");
+            assert_eq!(Some(off.held), fault["command_held_us"].as_f64(), "{name}");
+        }
+        assert!(inspection.advice[0].contains("does not follow the controllers"), "{:?}", inspection.advice);
+    }
+    let request = mavid::study::ExplainRequest {
+        logs: vec![folder.join("flight_01.bin")],
+        vehicle: VehicleGiven::Weighed(mavid::draft::Given { mass_kg: 1.5, size_m: Some(0.45), frame: None }),
+        transient_s: 1.0,
+        ..mavid::study::ExplainRequest::default()
+    };
+    let refused = mavid::study::explain(&request, &Silent).unwrap_err();
+    let StudyError::File { why, .. } = refused else { panic!("{refused}") };
+    assert!(
+        why.contains("output 2 does not follow the controllers")
+            && why.contains("no hidden effect is searched for"),
+        "{why}"
+    );
+}

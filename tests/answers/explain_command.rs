@@ -1,0 +1,271 @@
+//! `mavid explain` and `mavid export` at their process boundary.
+
+use crate::support;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use support::shared_case;
+
+fn mavid(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_mavid")).args(arguments).output().unwrap()
+}
+
+fn fixture(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name).display().to_string()
+}
+
+fn temporary(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("explain_command-{name}"))
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+#[test]
+fn a_complete_rigid_body_has_nothing_missing_and_says_what_it_would_have_seen() {
+    let out = temporary("explain-p01");
+    let (log, vehicle) = (fixture("p01_identify_0_25s.tlog"), fixture("p01_vehicle.toml"));
+    // no flight is designed where nothing is to be told apart: one of an earlier run must not pass for it
+    let next = temporary("explain-p01-next.toml");
+    std::fs::write(&next, "of an earlier run").unwrap();
+    let to = ["--out", out.to_str().unwrap(), "--next", next.to_str().unwrap(), "--json"];
+    let output = mavid(&[&["explain", log.as_str(), "--vehicle", &vehicle][..], &to].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("--next: nothing written: ") && !next.exists(), "{}", stderr(&output));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["schema"], 1);
+    assert_eq!(document["verdict"], "nothing_missing");
+    assert_eq!(document["effects"].as_array().unwrap().len(), 0);
+    assert!(document["answer"].as_str().unwrap().starts_with("Nothing is missing"));
+    let limits = document["detection_limits"].as_array().unwrap();
+    let drag = limits.iter().find(|limit| limit["id"] == "linear_drag").unwrap();
+    assert!((0.001..0.1).contains(&drag["limit"].as_f64().unwrap()), "{drag}");
+    let mass = &document["parameters"]["mass"];
+    assert!((mass["value"].as_f64().unwrap() / 2.06 - 1.0).abs() < 0.01 && mass["unit"] == "kg");
+    for key in ["axes", "time_s", "state", "band_hz"] {
+        assert!(document["localisation"].get(key).is_some(), "{key}");
+    }
+    assert!(document["fit"]["identify"]["before"]["velocity_m_s"].as_f64().unwrap() > 0.0);
+    // all that the report's tables show
+    for on in ["identify", "holdout"] {
+        let windows = document["fit"][on]["open_loop"].as_array().unwrap();
+        let lengths: Vec<f64> = windows.iter().map(|of| of["window_s"].as_f64().unwrap()).collect();
+        assert_eq!(lengths, [0.1, 0.5, 1.0]);
+        let error = &windows[1]["errors"]["velocity"];
+        assert_eq!(error["before"], document["fit"][on]["before"]["velocity_m_s"]);
+        assert!(error["floor"].as_f64().unwrap() > 0.0 && error["unit"] == "m/s", "{error}");
+    }
+    let holdout = &document["fit"]["holdout"];
+    let force = &holdout["weak_residual"]["force_z"];
+    assert!(force["after"].as_f64().unwrap() > 0.0 && force["unit"] == "N", "{force}");
+    assert!(holdout["no_closed_loop"].as_str().unwrap().contains("is not simulated"));
+    assert!(holdout["own_parameters"]["mass"]["own"].as_f64().unwrap() > 1.9);
+    assert_eq!(document["too_little_excitation"], false);
+    // the model goes where a vehicle goes
+    let model = out.join("model.toml");
+    let checked = mavid(&["vehicle", model.to_str().unwrap(), "--json"]);
+    assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
+    whole_report(&out.join("report.html"));
+}
+
+/// One file, closed, with nothing loaded from anywhere.
+fn whole_report(path: &Path) {
+    let report = std::fs::read_to_string(path).unwrap();
+    assert!(report.len() < 1_000_000, "{} bytes", report.len());
+    // its scripts stand in it and load nothing
+    let mut rest = String::new();
+    for (index, part) in report.split("<script").enumerate() {
+        let (script, after) = if index > 0 { part.split_once("</script>").unwrap() } else { ("", part) };
+        for word in ["fetch(", "XMLHttpRequest", "import(", ".src", "WebSocket", "sendBeacon"] {
+            assert!(!script.contains(word), "{word}");
+        }
+        rest.push_str(after);
+    }
+    let report = rest;
+    for word in ["http:", "https:", "<script", "src=", "@import", "url(", "NaN"] {
+        assert!(!report.contains(word), "{word}");
+    }
+    let mut open: Vec<&str> = Vec::new();
+    for tag in report.split('<').skip(1).filter_map(|part| part.split('>').next()) {
+        let name = tag.split([' ', '/']).find(|part| !part.is_empty()).unwrap_or_default();
+        if tag.starts_with('!') || tag.ends_with('/') || name == "meta" {
+            continue;
+        }
+        if tag.starts_with('/') {
+            assert_eq!(open.pop(), Some(name));
+        } else {
+            open.push(name);
+        }
+    }
+    assert!(open.is_empty(), "{open:?}");
+}
+
+#[test]
+fn bad_input_is_refused_with_what_was_expected_and_what_came() {
+    let (log, vehicle) = (fixture("p01_identify_0_25s.tlog"), fixture("p01_vehicle.toml"));
+    let idle = temporary("explain-idle.csv");
+    std::fs::write(&idle, motion_without_actuators()).unwrap();
+    let folder = temporary("explain-read");
+    std::fs::create_dir_all(&folder).unwrap();
+    let read = folder.join("model.toml");
+    std::fs::write(&read, "read").unwrap();
+    let part = temporary("explain-part.tlog");
+    let whole = std::fs::read(&log).unwrap();
+    std::fs::write(&part, &whole[..2 * whole.len() / 3]).unwrap();
+    for (arguments, words) in [
+        (vec![log.as_str(), "--holdout", &log], "same recording"),
+        (
+            vec![log.as_str(), "--holdout", part.to_str().unwrap()],
+            "expected a flight that is not explained, but 100 % of",
+        ),
+        (vec![log.as_str(), "--transient", "-1"], "--transient: expected seconds from 0 on, got -1"),
+        (vec![log.as_str(), "--csv-map", "map.toml"], "expected a .csv among the logs"),
+        (vec![log.as_str(), "--out", &log], "expected a folder"),
+        (
+            vec![log.as_str(), "--holdout", read.to_str().unwrap(), "--out", folder.to_str().unwrap()],
+            "model.toml is an input",
+        ),
+        (vec!["no-such.tlog"], "no-such.tlog"),
+        (vec![idle.to_str().unwrap()], "no actuator outputs for 4 rotors"),
+    ] {
+        let mut all = vec!["explain"];
+        all.extend(&arguments);
+        all.extend(["--vehicle", vehicle.as_str(), "--json"]);
+        let output = mavid(&all);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
+        assert_eq!(stdout(&output), "", "{arguments:?}");
+        assert!(stderr(&output).contains(words), "{arguments:?}: {}", stderr(&output));
+    }
+}
+
+/// Twenty seconds of rates and acceleration and nothing else.
+fn motion_without_actuators() -> String {
+    let mut text = "time_s,rate_x_rad_s,rate_y_rad_s,rate_z_rad_s,specific_force_x_m_s2,specific_force_y_m_s2,specific_force_z_m_s2\n".to_owned();
+    for index in 0..2000_u32 {
+        let t = f64::from(index) * 0.01;
+        text.push_str(&format!("{t},{},{},0.1,0.0,0.1,9.81\n", t.sin(), t.cos()));
+    }
+    text
+}
+
+/// The document of an explanation that is done.
+fn explained(log: &Path, vehicle: &Path, holdout: &Path, further: &[&str]) -> Value {
+    let [log, vehicle, holdout] = [log, vehicle, holdout].map(|path| path.to_str().unwrap());
+    let common = ["explain", log, "--vehicle", vehicle, "--holdout", holdout, "--json"];
+    let output = mavid(&[&common[..], further].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn drag_is_named_shown_on_the_hold_out_and_carried_into_every_command() {
+    let Some(folder) = shared_case("p02-linear-drag") else { return };
+    let out = temporary("explain-p02");
+    let [log, holdout, vehicle] =
+        ["identify.tlog", "holdout.tlog", "vehicle.toml"].map(|name| folder.join(name));
+    let document = explained(&log, &vehicle, &holdout, &["--out", out.to_str().unwrap()]);
+    assert_eq!(document["verdict"], "explained");
+    assert_eq!(document["effects"][0]["id"], "linear_drag");
+    let answer = document["answer"].as_str().unwrap();
+    assert!(
+        answer.starts_with("Drag was left out: 0.1") && answer.contains("on the hold-out falls by"),
+        "{answer}"
+    );
+    assert!(document["fit"]["holdout"]["improvement_percent"].as_f64().unwrap() > 20.0);
+    // drag acts along both
+    let axis = document["localisation"]["axes"][0]["axis"].as_str().unwrap();
+    assert!(["force_x", "force_y"].contains(&axis), "{axis}");
+    whole_report(&out.join("report.html"));
+    let model = out.join("model.toml");
+    let model = model.to_str().unwrap();
+    // its own model explains the flight: nothing more is missing
+    let [holdout, vehicle] = [&holdout, &vehicle].map(|path| path.to_str().unwrap());
+    let again = mavid(&["validate", holdout, "--model", vehicle, "--model", model, "--json"]);
+    assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
+    for to in ["px4-sih", "ardupilot-sitl", "sdf", "mjcf", "rotorpy"] {
+        let exported = mavid(&["export", model, "--to", to, "--json"]);
+        assert_eq!(exported.status.code(), Some(0), "{to}: {}", stderr(&exported));
+        let document: Value = serde_json::from_slice(&exported.stdout).unwrap();
+        assert!(document["text"].as_str().unwrap().len() > 200);
+    }
+}
+
+#[test]
+fn a_hold_out_of_another_vehicle_is_found_out_and_said() {
+    let (Some(folder), Some(other)) = (shared_case("p02-linear-drag"), shared_case("p04-motor-lag")) else {
+        return;
+    };
+    let out = temporary("explain-other");
+    let (log, vehicle) = (folder.join("identify.tlog"), folder.join("vehicle.toml"));
+    let out = ["--out", out.to_str().unwrap()];
+    let document = explained(&log, &vehicle, &other.join("holdout.tlog"), &out);
+    let warnings = document["warnings"].as_array().unwrap();
+    let said = warnings.iter().any(|warning| {
+        warning
+            .as_str()
+            .unwrap()
+            .starts_with("the hold-out is not of the vehicle that was identified: mass 0.9")
+    });
+    assert!(said, "{warnings:?}");
+    let answer = document["answer"].as_str().unwrap();
+    assert!(
+        answer.contains("the hold-out is of another vehicle (mass 0.9") && !answer.contains("falls"),
+        "{answer}"
+    );
+    assert!(document["fit"]["holdout"]["improvement_percent"].is_null());
+    assert!(document["fit"]["holdout"]["other_vehicle"].is_string());
+}
+
+/// It cannot be played back without an attitude, and is found out by its residuals all the same.
+#[test]
+fn a_hold_out_of_another_vehicle_without_attitude_is_found_out() {
+    let Some(folder) = shared_case("p02-linear-drag") else { return };
+    let other = folder.join("../../recordings/crazyflie_1khz/log15.csv");
+    let (log, vehicle) = (folder.join("identify.tlog"), folder.join("vehicle.toml"));
+    let document = explained(&log, &vehicle, &other, &[]);
+    let answer = document["answer"].as_str().unwrap();
+    assert!(answer.contains("the hold-out is of another vehicle"), "{answer}");
+}
+
+#[test]
+fn identify_and_validate_write_reports_of_one_file() {
+    let folder = temporary("reports");
+    std::fs::create_dir_all(&folder).unwrap();
+    let (log, vehicle) = (fixture("p01_identify_0_25s.tlog"), fixture("p01_vehicle.toml"));
+    let model = folder.join("model.toml");
+    let model = model.to_str().unwrap();
+    let identified = mavid(&["identify", &log, "--vehicle", &vehicle, "--out", model]);
+    assert_eq!(identified.status.code(), Some(0), "{}", stderr(&identified));
+    let report = folder.join("model.html");
+    whole_report(&report);
+    let text = std::fs::read_to_string(&report).unwrap();
+    assert!(text.contains("The flight is good for all of mass and inertia: mass 2.06"), "{}", &text[..2000]);
+    for part in ["Data quality", "Provenance", "SHA-256", "<svg", "Correlation"] {
+        assert!(text.contains(part), "{part}");
+    }
+    let elsewhere = folder.join("elsewhere.html");
+    let place = elsewhere.to_str().unwrap();
+    let with = ["--with", "linear_drag", "--report", place];
+    let arguments = [&["identify", log.as_str(), "--vehicle", vehicle.as_str()][..], &with[..]].concat();
+    let identified = mavid(&arguments);
+    assert_eq!(identified.status.code(), Some(0), "{}", stderr(&identified));
+    whole_report(&elsewhere);
+    let out = folder.join("validated");
+    let (nominal, place) = (vehicle.as_str(), out.to_str().unwrap());
+    let validated = mavid(&["validate", &log, "--model", nominal, "--model", model, "--out", place]);
+    assert_eq!(validated.status.code(), Some(0), "{}", stderr(&validated));
+    whole_report(&out.join("report.html"));
+    let text = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(
+        text.contains("model predicts better than p01_vehicle: its 0.5 s errors are"),
+        "{}",
+        &text[..2500]
+    );
+}

@@ -1,0 +1,28 @@
+//! Identification, explanation and comparison: library and commands.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test ends where it fails")]
+
+#[path = "../support/concealed.rs"]
+mod concealed;
+#[path = "../support/ordinary.rs"]
+mod ordinary;
+#[path = "../support/mod.rs"]
+mod support;
+
+mod blind_flights;
+mod compare;
+mod diagnose_show;
+mod every_effect;
+mod explain_at_bounds;
+mod explain_command;
+mod explain_names;
+mod feedback;
+mod fleet;
+mod identify;
+mod identify_with;
+mod paper_twin;
+mod prove_command;
+mod reconstruction;
+mod validate_command;
+mod velocity_error;
+mod weighed_vehicle;

@@ -1,0 +1,102 @@
+//! The terminal view on a made-up screen.
+
+use mavid::fly::finding::Level;
+use mavid::fly::view::{Attitude, Battery, LinkView, ParameterRow, Phase, Trace, ViewModel, render};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+fn drawn(model: &ViewModel, columns: u16, rows: u16) -> String {
+    let mut terminal = Terminal::new(TestBackend::new(columns, rows)).unwrap();
+    terminal.draw(|frame| render(frame, model)).unwrap();
+    let buffer = terminal.backend().buffer().clone();
+    let row = |y: u16| (0..columns).map(|x| buffer[(x, y)].symbol()).collect::<String>();
+    (0..rows).map(row).collect::<Vec<_>>().join("\n")
+}
+
+fn model() -> ViewModel {
+    let mut history = Trace::default();
+    (0..200).for_each(|step| history.push(2.2 - 0.14 * (1.0 - 0.97_f64.powi(step))));
+    let mut model = ViewModel {
+        title: "x500, PX4".into(),
+        state: "trajectory".into(),
+        phase: Phase::Flying,
+        mode: "OFFBOARD".into(),
+        armed: true,
+        elapsed_s: 83.0,
+        progress_s: Some((31.0, 50.0)),
+        link: LinkView { age_s: Some(0.02), frames_hz: 870.0, bytes_s: 55_400.0, loss: Some(0.013) },
+        battery: Battery { percent: Some(76.0), voltage_v: Some(15.42), is_low: false },
+        attitude: Some(Attitude { roll_deg: -3.2, position_m: [1.0, -2.0, 3.5], ..Attitude::default() }),
+        parameters: vec![
+            ParameterRow { name: "mass", unit: "kg", value: Some(2.0614), std: Some(0.0123), history },
+            ParameterRow { name: "ixx", unit: "kg m^2", value: None, std: None, history: Trace::default() },
+        ],
+        parameters_used_s: 21.0,
+        ..ViewModel::default()
+    };
+    model.tracking.limit_m = Some(1.0);
+    (0..50).for_each(|step| model.track(0.01 * f64::from(step)));
+    model.event(Level::Ok, "takeoff done");
+    model.event(Level::Warning, "setpoints late by 22 ms");
+    model
+}
+
+#[test]
+fn everything_that_matters_is_on_the_screen() {
+    let screen = drawn(&model(), 100, 30);
+    for wanted in [
+        "x500, PX4",
+        "trajectory",
+        "OFFBOARD",
+        "ARMED",
+        "31 of 50 s",
+        "870/s",
+        "55.4 kB/s",
+        "1.3 % lost",
+        "76 %",
+        "15.42 V",
+        "0.49 of 1.0 m",
+        "roll   -3.2",
+        "-2.00",
+        "2.061 +- 0.012 kg",
+        "not determined yet",
+        "takeoff done",
+        "setpoints late",
+        "h hold",
+        "l land",
+        "r return",
+    ] {
+        assert!(screen.contains(wanted), "no `{wanted}` in\n{screen}");
+    }
+    let line = screen.lines().find(|line| line.contains("mass")).unwrap();
+    assert!(line.contains('█') && line.contains('▁'), "the mass falls to its value: {line}");
+}
+
+#[test]
+fn a_word_that_is_being_typed_replaces_the_help() {
+    let mut model = model();
+    model.typed = Some("ki".into());
+    let screen = drawn(&model, 100, 30);
+    assert!(screen.contains("ki_") && !screen.contains("h hold"), "{screen}");
+}
+
+#[test]
+fn an_empty_model_and_a_tiny_screen_are_drawn() {
+    let screen = drawn(&ViewModel::default(), 80, 24);
+    assert!(screen.contains("nothing heard") && screen.contains("not said"), "{screen}");
+    for (columns, rows) in [(1, 1), (10, 3), (20, 8), (300, 100)] {
+        assert_eq!(drawn(&model(), columns, rows).lines().count(), usize::from(rows));
+    }
+}
+
+#[test]
+fn memory_is_bounded() {
+    let mut model = ViewModel::default();
+    for step in 0..100_000_u32 {
+        model.event(Level::Ok, "again");
+        model.track(f64::from(step));
+    }
+    assert!(model.events.len() <= 200);
+    assert_eq!(model.event_count, 100_000);
+    assert_eq!(model.tracking.history_m.values().len(), mavid::fly::view::HISTORY);
+}

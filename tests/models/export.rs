@@ -1,0 +1,281 @@
+//! A model for other simulators: values by hand, and every file read back.
+
+use mavid::autopilot::Autopilot;
+use mavid::export::{Format, PLACES, aircraft_parameters, export, places};
+use mavid::physics::ActiveEffect;
+use mavid::physics::effects::{ALL, by_id};
+use mavid::vehicle::{ThrustLaw, Vehicle};
+
+fn vehicle() -> Vehicle {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
+    let mut vehicle = mavid::config::load_vehicle(&path).unwrap();
+    vehicle.body.inertia_kg_m2[(0, 1)] = 0.001;
+    vehicle.body.inertia_kg_m2[(1, 0)] = 0.001;
+    vehicle.body.inertia_kg_m2[(1, 2)] = 0.002;
+    vehicle.body.inertia_kg_m2[(2, 1)] = 0.002;
+    vehicle
+}
+
+fn effect(id: &str, values: &[f64]) -> ActiveEffect {
+    ActiveEffect::new(by_id(id).unwrap(), values).unwrap()
+}
+
+fn parameter(text: &str, name: &str) -> f64 {
+    let line = text.lines().find(|line| line.starts_with(&format!("param set {name} "))).unwrap();
+    line.rsplit(' ').next().unwrap().parse().unwrap()
+}
+
+#[test]
+fn px4_has_its_frame_and_the_thrust_of_full_command() {
+    let vehicle = vehicle();
+    let effects = [effect("linear_drag", &[0.3, 0.3, 0.3]), effect("thrust_tilt", &[0.02, 0.0])];
+    let exported = export(&vehicle, &effects, Format::Px4Sih).unwrap();
+    let value = |name| parameter(&exported.text, name);
+    assert!((value("SIH_MASS") - vehicle.body.mass_kg).abs() < 1e-6);
+    // y and z turn about: xy changes sign, yz does not
+    assert!((value("SIH_IXY") + 0.001).abs() < 1e-9 && (value("SIH_IYZ") - 0.002).abs() < 1e-9);
+    assert!((value("SIH_KDV") - 0.3).abs() < 1e-9);
+    // the hubs move as the vehicle turns: 0.3 N/(m/s) at 0.174 m in x and y and 0.0581 m in z
+    let (across, up): (f64, f64) = (0.174, 0.06 - 0.0019);
+    let damping = 0.3 * (2.0 * (across * across + up * up) + 2.0 * across * across) / 3.0;
+    assert!((value("SIH_KDW") - damping).abs() < 1e-7);
+    let full = vehicle.propulsion.full_thrust_n();
+    assert!((value("SIH_T_MAX") / full - 1.0).abs() < 1e-6 && value("THR_MDL_FAC") == 0.0);
+    let hover = vehicle.body.mass_kg * vehicle.gravity_m_s2 / 4.0;
+    assert!((value("MPC_THR_HOVER") * full / hover - 1.0).abs() < 1e-6);
+    // 12.5 ms up, 25 ms down
+    assert!((value("SIH_T_TAU") - 0.01875).abs() < 1e-9);
+    assert!(value("IMU_GYRO_RATEMAX") == 1000.0 && value("IMU_INTEG_RATE") == 1000.0);
+    for told in ["thrust_max", "12.5", "centre of mass"].map(|part| part.replace("12.5", "0.0125")) {
+        assert!(exported.left_out.iter().any(|note| note.contains(&told)), "{told}: {:?}", exported.left_out);
+    }
+    assert!(exported.left_out.iter().any(|note| note.contains("thrust_tilt")), "{:?}", exported.left_out);
+    assert!(exported.text.contains("# thrust_tilt"));
+}
+
+/// The frame file without its comments.
+fn frame(text: &str) -> serde_json::Value {
+    let clean: String = text.lines().filter(|line| !line.starts_with('#')).collect();
+    serde_json::from_str(&clean).unwrap()
+}
+
+#[test]
+fn ardupilots_frame_has_the_models_forces_by_its_own_laws() {
+    let mut vehicle = vehicle();
+    vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 11.0, expo: 0.5 };
+    let effects = [
+        effect("linear_drag", &[0.3, 0.3, 0.3]),
+        effect("quadratic_drag", &[0.02, 0.02, 0.02, 1.0]),
+        effect("angular_damping", &[0.01, 0.01, 0.01]),
+    ];
+    let exported = export(&vehicle, &effects, Format::ArdupilotSitl).unwrap();
+    let file = frame(&exported.text);
+    let number = |key: &str| file[key].as_f64().unwrap();
+    let weight = vehicle.body.mass_kg * vehicle.gravity_m_s2;
+    // full thrust is the weight over hoverThrOut
+    assert!((weight / number("hoverThrOut") / 4.0 - 11.0).abs() < 1e-9);
+    // at home: the standard atmosphere at 584 m
+    let density = 1.225 * (1.0 - 2.255_77e-5 * number("refAlt")).powf(4.255_88);
+    let momentum = number("mdrag_coef") * (density * number("disc_area") * weight).sqrt();
+    assert!((momentum / 0.3 - 1.0).abs() < 1e-4, "{momentum}");
+    // what the reference flight leaves for the body, beside the momentum drag of its own thrust
+    let (tilt, speed) = (number("refAngle").to_radians(), number("refSpd"));
+    let thrust = weight / tilt.cos();
+    let of_rotors = tilt.cos()
+        * number("mdrag_coef")
+        * (speed * tilt.cos())
+        * (thrust * density * number("disc_area")).sqrt();
+    let body = (weight * tilt.tan() - of_rotors) / (speed * speed);
+    assert!((body / 0.02 - 1.0).abs() < 1e-3, "{body}");
+    // at hover a little more thrust turns as much as in the model
+    let law = |u: f64| 11.0 * (0.5 * u + 0.5 * u * u);
+    let hover = vehicle.propulsion.command_from_thrust(weight / 4.0);
+    for (index, rotor) in vehicle.rotors.iter().enumerate() {
+        let position = &file[format!("motor{}_position", index + 1)];
+        assert_eq!(position[0].as_f64().unwrap(), rotor.position_m.x);
+        // to the right, not to the left
+        assert_eq!(position[1].as_f64().unwrap(), -rotor.position_m.y);
+        let yaw = file[format!("motor{}_yaw", index + 1)].as_f64().unwrap();
+        let torque = |u: f64| yaw * 0.05 * number("diagonal_size") * u * law(u);
+        let slope = (torque(hover + 1e-6) - torque(hover - 1e-6)) / (law(hover + 1e-6) - law(hover - 1e-6));
+        let expected = -rotor.spin.yaw_sign() * vehicle.propulsion.torque_per_thrust_m;
+        assert!((slope / expected - 1.0).abs() < 1e-6, "{slope} {expected}");
+    }
+    // 0.01 N m/(rad/s) over the moments of inertia; the drag at the hubs is the same in both
+    let rates = vehicle.body.inertia_kg_m2.diagonal().map(|moment| 0.01 / moment);
+    assert!((400.0_f64.to_radians() / number("refRotRate") / rates.mean() - 1.0).abs() < 1e-9);
+    assert!(exported.left_out.iter().any(|note| note.contains("products of inertia")));
+    assert!(exported.left_out.iter().any(|note| note.contains("1150 us")), "{:?}", exported.left_out);
+    let plain = export(&vehicle, &[], Format::ArdupilotSitl).unwrap();
+    let plain = frame(&plain.text);
+    for key in ["refRotRate", "mdrag_coef", "refAngle"] {
+        assert!(plain[key].as_f64().unwrap().abs() < 1e-9, "{key}: {}", plain[key]);
+    }
+}
+
+/// Tags of a text in order, each checked to be closed.
+fn well_formed(text: &str) {
+    let mut open: Vec<String> = Vec::new();
+    let mut rest = text;
+    while let Some(start) = rest.find('<') {
+        let end = if rest[start..].starts_with("<!--") {
+            start + rest[start..].find("-->").unwrap() + 2
+        } else {
+            start + rest[start..].find('>').unwrap()
+        };
+        let tag = &rest[start + 1..end];
+        rest = &rest[end + 1..];
+        if tag.starts_with(['?', '!']) || tag.ends_with('/') {
+            continue;
+        }
+        match tag.strip_prefix('/') {
+            Some(name) => assert_eq!(open.pop().as_deref(), Some(name)),
+            None => open.push(tag.split(' ').next().unwrap().to_owned()),
+        }
+    }
+    assert!(open.is_empty(), "{open:?}");
+}
+
+fn between<'a>(text: &'a str, open: &str, close: &str) -> &'a str {
+    let start = text.find(open).unwrap() + open.len();
+    &text[start..start + text[start..].find(close).unwrap()]
+}
+
+#[test]
+fn gazebo_and_mujoco_are_well_formed_and_hold_the_values() {
+    let mut vehicle = vehicle();
+    vehicle.name = "a<b & c -- d".into();
+    let effects = [
+        effect("linear_drag", &[0.3, 0.3, 0.0]),
+        effect("motor_lag", &[0.03]),
+        effect("com_offset", &[0.01, -0.02, 0.0]),
+        effect("angular_damping", &[0.01, 0.01, 0.01]),
+    ];
+    let sdf = export(&vehicle, &effects, Format::Sdf).unwrap();
+    well_formed(&sdf.text);
+    let coefficient = vehicle.propulsion.thrust_coefficient.unwrap();
+    let hover = (vehicle.body.mass_kg * vehicle.gravity_m_s2 / 4.0 / coefficient).sqrt();
+    let drag: f64 = between(&sdf.text, "<rotorDragCoefficient>", "<").parse().unwrap();
+    assert!((drag * 4.0 * hover - 0.3).abs() < 1e-9);
+    assert_eq!(between(&sdf.text, "<timeConstantUp>", "<"), "0.03");
+    assert!(sdf.left_out.iter().any(|note| note.starts_with("angular_damping")));
+    // with the rotors' own mass, as points, the base is the whole vehicle again
+    let base: f64 = between(&sdf.text, "<mass>", "<").parse().unwrap();
+    assert!((base + 4e-3 - vehicle.body.mass_kg).abs() < 1e-12);
+    let moment: f64 = between(&sdf.text, "<ixx>", "<").parse().unwrap();
+    let hubs = 4.0 * 1e-3 * (0.174_f64.powi(2) + 0.06_f64.powi(2));
+    assert!((moment + hubs - vehicle.body.inertia_kg_m2[(0, 0)]).abs() < 1e-5, "{moment}");
+    let mjcf = export(&vehicle, &effects, Format::Mjcf).unwrap();
+    well_formed(&mjcf.text);
+    assert!(mjcf.text.contains("dyntype=\"filterexact\" dynprm=\"0.03\""));
+    let inertia: Vec<f64> =
+        between(&mjcf.text, "fullinertia=\"", "\"").split(' ').map(|v| v.parse().unwrap()).collect();
+    assert_eq!(inertia[3], 0.001);
+    assert_eq!(inertia[5], 0.002);
+    // a drag across the rotor axis at the middle of the hubs, and what the hubs' own motion damps beside the effect
+    assert_eq!(between(&mjcf.text, "name=\"drag_x\"", "/>").rsplit_once(' ').unwrap().1, "-0.3\"");
+    assert!(!mjcf.text.contains("drag_z"));
+    let damping = between(&mjcf.text, "name=\"damping_z\"", "/>").rsplit_once('-').unwrap().1;
+    let damping: f64 = damping.trim_end_matches('"').parse().unwrap();
+    assert!((damping - 0.01 - 0.3 * 2.0 * 0.174 * 0.174).abs() < 1e-12, "{damping}");
+}
+
+#[test]
+fn rotorpy_gets_back_what_it_is_made_of() {
+    let mut vehicle = vehicle();
+    vehicle.propulsion.time_constant_down_s = None;
+    let effects = [effect("linear_drag", &[0.3, 0.3, 0.2]), effect("inflow", &[0.1])];
+    let exported = export(&vehicle, &effects, Format::Rotorpy).unwrap();
+    let value = |key: &str| -> f64 { between(&exported.text, &format!("'{key}': "), ",").parse().unwrap() };
+    let hover = (vehicle.body.mass_kg * vehicle.gravity_m_s2 / 4.0 / value("k_eta")).sqrt();
+    assert!((value("k_d") * 4.0 * hover - 0.3).abs() < 1e-9);
+    assert!((value("k_z") * 4.0 * hover - 0.3).abs() < 1e-9);
+    assert!((value("k_m") / value("k_eta") - vehicle.propulsion.torque_per_thrust_m).abs() < 1e-12);
+    assert!(exported.left_out.is_empty(), "{:?}", exported.left_out);
+}
+
+#[test]
+fn what_a_simulator_cannot_be_is_said() {
+    let mut vehicle = vehicle();
+    vehicle.rotors.pop();
+    let error = export(&vehicle, &[], Format::Px4Sih).unwrap_err();
+    assert!(error.to_string().contains("3 rotors"), "{error}");
+    vehicle.propulsion.thrust_coefficient = None;
+    vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 10.0, expo: 0.5 };
+    let error = export(&vehicle, &[], Format::Rotorpy).unwrap_err();
+    assert!(error.to_string().contains("thrust_coefficient"), "{error}");
+}
+
+/// What the table says of each effect and simulator is what the exporters do.
+#[test]
+fn the_table_says_of_every_effect_which_simulators_can_hold_it() {
+    let mut wrong = Vec::new();
+    for effect in ALL {
+        let id = effect.id();
+        let places = places(id);
+        let near = |bounds: (f64, f64)| 0.01_f64.clamp(bounds.0, bounds.1);
+        let size = vehicle().size();
+        let values: Vec<f64> = effect.parameters().iter().map(|p| near(p.bounds.at(&size))).collect();
+        let active = [ActiveEffect::new(*effect, &values).unwrap()];
+        for format in [Format::Px4Sih, Format::ArdupilotSitl, Format::Sdf, Format::Mjcf, Format::Rotorpy] {
+            let exported = export(&vehicle(), &active, format).unwrap();
+            let has_place = !exported
+                .left_out
+                .iter()
+                .any(|note| note.starts_with(&format!("{id} cannot be represented")));
+            if has_place != places.contains(&format) {
+                wrong.push(format!("{id} in {format:?}: has a place: {has_place}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    for (place, (id, formats)) in PLACES.iter().enumerate() {
+        assert!(by_id(id).is_some() && !formats.is_empty(), "{id}: no effect, or no simulator");
+        assert!(PLACES[..place].iter().all(|(other, _)| other != id), "{id}: twice");
+    }
+}
+
+#[test]
+fn an_aircraft_gets_what_was_identified_and_nothing_else() {
+    let vehicle = vehicle();
+    let effects = [
+        effect("linear_drag", &[0.3, 0.3, 0.2]),
+        effect("quadratic_drag", &[0.03, 0.001, 0.0]),
+        effect("thrust_curve", &[-0.2]),
+    ];
+    let identified = toml::from_str(
+        "mass = { value = 2.06, std = 0.0206 }\n[effects.linear_drag]\ndx = { value = 0.3, std = 0.01 }\n\
+         dy = { value = 0.3, std = 0.01 }\n[effects.quadratic_drag]\ncx = { value = 0.03, std = 0.001 }\n\
+         cy = { value = 0.001, std = 0.001 }\n[effects.thrust_curve]\ncurvature = { value = -0.2, std = 0.02 }\n",
+    )
+    .unwrap();
+    let written = aircraft_parameters(&vehicle, &effects, Some(&identified), Autopilot::Px4).unwrap();
+    let of = |name: &str| written.parameters.iter().find(|parameter| parameter.name == name).unwrap();
+    let mass = vehicle.body.mass_kg;
+    // d / m, and its error: of drag and of mass
+    let momentum = of("EKF2_MCOEF");
+    assert!((momentum.value - 0.3 / mass).abs() < 1e-12);
+    assert!((momentum.std.unwrap() - (0.01 / mass).hypot(0.01 * 0.3 / mass)).abs() < 1e-9);
+    // rho m / (2 c) where the drag is told from none, and off where it is not
+    assert!((of("EKF2_BCOEF_X").value - 0.5 * 1.225 * mass / 0.03).abs() < 1e-9);
+    assert_eq!((of("EKF2_BCOEF_Y").value, of("EKF2_DRAG_CTRL").value), (0.0, 1.0));
+    // the curve has the slope at hover that was found: by a finite difference of the model's own thrust
+    let hover_n = mass * vehicle.gravity_m_s2 / 4.0;
+    let command = vehicle.propulsion.command_from_thrust(hover_n);
+    let bent = |u: f64| {
+        let thrust_n = vehicle.propulsion.thrust_from_command_n(u);
+        let speed = (thrust_n / hover_n).sqrt();
+        thrust_n + -0.2 * 2.0 * hover_n * speed * (speed - 1.0)
+    };
+    let factor = of("THR_MDL_FAC").value;
+    let curve = |u: f64| (1.0 - factor) * u + factor * u * u;
+    let elasticity = |law: &dyn Fn(f64) -> f64| {
+        command * (law(command + 1e-6) - law(command - 1e-6)) / (2e-6 * law(command))
+    };
+    assert!((elasticity(&bent) - elasticity(&curve)).abs() < 1e-6, "{factor}");
+    let hover = of("MPC_THR_HOVER");
+    assert!((hover.value - curve(command)).abs() < 1e-9 && hover.std.unwrap() > 0.01 * hover.value);
+    // without standard errors nothing follows
+    let none = aircraft_parameters(&vehicle, &effects, None, Autopilot::ArduPilot);
+    assert!(none.unwrap_err().to_string().contains("standard errors"));
+}

@@ -1,0 +1,12 @@
+//! The program and its documents.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test ends where it fails")]
+
+#[path = "../support/require.rs"]
+mod require;
+
+mod command_line;
+mod documents;
+mod examples;
+mod licences;
+mod requirements;
