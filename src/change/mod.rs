@@ -11,6 +11,6 @@ mod together;
 pub use balance_change::{BalanceChange, BalanceFound, Least, NAMED, judge_balance};
 pub use explanation::What;
 pub use groups::{Groups, Moved};
-pub use history::{Step, steps};
+pub use history::{Step, find_returns, steps};
 pub use parameter::{ParameterChange, Spread, judge_parameter};
 pub use together::together;

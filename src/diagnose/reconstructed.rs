@@ -169,7 +169,7 @@ fn choose_form(present: &mut EffectTerm, slot: usize, (share, std): (f64, f64)) 
 
 /// The effects of the model with those of their parameters free that the forces tell; `None` where one of them has states or
 /// changes what sensors show.
-fn terms(base: &Base) -> Option<Vec<Term>> {
+pub(super) fn terms(base: &Base) -> Option<Vec<Term>> {
     let airframe = Airframe::new(&base.vehicle).ok()?;
     let one = |term: &EffectTerm| {
         let effect = term.effect();
@@ -206,7 +206,7 @@ fn pushes(term: &EffectTerm, slot: usize, airframe: &Airframe, base: &Base) -> b
     })
 }
 
-fn known_lag(fitted: &Fitted, signals: &Signals, std_s: f64) -> KnownLag {
+pub(super) fn known_lag(fitted: &Fitted, signals: &Signals, std_s: f64) -> KnownLag {
     if signals.quality.thrust_source == ThrustSource::MeasuredSpeed {
         return KnownLag { delay_s: 0.0, lag_s: 0.0, lag_std_s: NO_LAG_STD_S };
     }

@@ -328,8 +328,15 @@ pub fn fit_mode(problem: Problem, free: &[usize]) -> Result<Fit, FitError> {
     iterate.finished()
 }
 
+/// The block of time in which a state lies.
+pub(super) fn block_of(time_s: &[f64], at: usize) -> usize {
+    let (Some(first), Some(last)) = (time_s.first(), time_s.last()) else { return 0 };
+    let share = (time_s[at] - first) / (last - first);
+    (1..BLOCKS).take_while(|block| share * BLOCKS as f64 >= *block as f64).count()
+}
+
 /// Factor on a covariance from so few blocks (Bell and McCaffrey 2002).
-fn small_sample() -> f64 {
+pub(super) fn small_sample() -> f64 {
     BLOCKS as f64 / (BLOCKS as f64 - 1.0)
 }
 
@@ -356,20 +363,13 @@ impl Fit {
 
     /// Scores of parameters with the states projected out, summed over blocks of time: one row a block.
     fn scores(&self, groups: &[Group], of: &[usize]) -> DMatrix<f64> {
-        let (Some(first), Some(last)) = (self.time_s.first(), self.time_s.last()) else {
-            return DMatrix::zeros(BLOCKS, of.len());
-        };
-        let block_of = |at: usize| {
-            let share = (self.time_s[at] - first) / (last - first);
-            (1..BLOCKS).take_while(|block| share * BLOCKS as f64 >= *block as f64).count()
-        };
         let mut scores = DMatrix::zeros(BLOCKS, of.len());
         let mut projected: [Vec<f64>; WIDTH] = Default::default();
         for (group, rows) in groups.iter().zip(&self.rows) {
             let form = group.form.as_ref();
             for (row, &at) in form.intervals().iter().enumerate() {
                 self.reduced.project(form, rows, (row, of), &mut projected);
-                let (block, residual) = (block_of(at), &rows.residual[row]);
+                let (block, residual) = (block_of(&self.time_s, at), &rows.residual[row]);
                 for column in 0..of.len() {
                     scores[(block, column)] +=
                         (0..WIDTH).map(|part| projected[part][column] * residual[part]).sum::<f64>();

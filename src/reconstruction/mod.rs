@@ -16,6 +16,7 @@ mod places;
 mod problem;
 mod receiver;
 mod residuals;
+mod score;
 mod sensors;
 mod thrusts;
 
@@ -26,3 +27,4 @@ pub use force_problem::{KnownLag, force_problem};
 pub use forces::Term;
 pub use problem::{Problem, Unknown};
 pub use residuals::{Group, Residuals, Row};
+pub use score::{Score, Scores};

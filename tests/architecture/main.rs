@@ -77,6 +77,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "physics",
             "recording",
             "signals",
+            "trim",
             "reconstruction",
             "regression",
             "estimate",
