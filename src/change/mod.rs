@@ -11,6 +11,6 @@ mod pooled;
 pub use balance_change::{BalanceChange, BalanceFound, Least, NAMED, judge_balance};
 pub use explanation::What;
 pub use groups::{Groups, Moved, interval_95};
-pub use history::{Step, steps};
+pub use history::{Step, find_returns, steps};
 pub use parameter::{ParameterChange, Spread, judge_parameter};
 pub use pooled::pooled_mean;

@@ -5,7 +5,7 @@ macro_rules! address_forms {
     () => {
         "udpin:HOST:PORT (waits for the other end), udpout:HOST:PORT, tcpin:HOST:PORT (waits), tcpout:HOST:PORT, \
          serial:PATH:BAUD (8 data bits, no parity), serial:PATH:BAUD:rtscts (with hardware flow control), or pty:PATH (makes \
-         a pseudo-terminal that the other end opens as its serial port PATH)"
+         a pseudo-terminal that the other end opens as its serial port PATH). udp: is udpin:, and tcp: is tcpout:"
     };
 }
 

@@ -70,6 +70,7 @@ mod timing;
 mod torques_by_instruments;
 mod trace;
 mod trace_error;
+mod trim_check;
 mod velocity_error;
 pub mod wording;
 mod words;

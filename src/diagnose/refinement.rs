@@ -17,6 +17,7 @@ use super::tested::Search;
 use super::thrust_slope::may_be_noise;
 use super::torques_by_instruments::torques_by_instruments;
 use super::trace::Trace;
+use super::trim_check::Trim;
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
 use crate::stats::normal_deviate;
@@ -38,7 +39,8 @@ pub(super) fn refine(
     vehicle: &Vehicle,
     found: &mut Search,
 ) -> Result<(), PhysicsError> {
-    leave_out_unnamed(traces, found)?;
+    let trim = Trim::of(flights, vehicle);
+    leave_out_unnamed(traces, &trim, found)?;
     let mut by_instruments = Vec::new();
     for left in (0..ROUNDS).rev() {
         tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, traces, found))?;
@@ -46,7 +48,7 @@ pub(super) fn refine(
             by_instruments = tracing::info_span!("instruments")
                 .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
         }
-        if left == 0 || !leave_out_unnamed(traces, found)? {
+        if left == 0 || !leave_out_unnamed(traces, &trim, found)? {
             break;
         }
     }
@@ -62,8 +64,8 @@ pub(super) fn refine(
 }
 
 /// Removes effects without a name from the model: those of ordinary size, those that are not certain, those that the accelerometer
-/// does not feel, and those that the flight could not have shown. Returns whether there were any.
-fn leave_out_unnamed(traces: &[Trace], found: &mut Search) -> Result<bool, PhysicsError> {
+/// does not feel, those that the flight could not have shown, and those that hover excludes. Returns whether there were any.
+fn leave_out_unnamed(traces: &[Trace], trim: &Trim, found: &mut Search) -> Result<bool, PhysicsError> {
     let all = found.after.base.clone();
     let felt = Felt::of(&found.after);
     let mut first = found.after.rows.nuisances.len();
@@ -87,6 +89,10 @@ fn leave_out_unnamed(traces: &[Trace], found: &mut Search) -> Result<bool, Physi
         if strength.count > 0 && strength.z < STAYS && weakest.is_none_or(|(least, _)| strength.z < least) {
             weakest = Some((strength.z, place));
         }
+    }
+    if let Some(place) = trim.refuted(&all)? {
+        tracing::info!(effect = all.effects[place].id(), "hover shows no such balance");
+        kept[place] = false;
     }
     // two that explain much of each other are both uncertain: one leaves, and the other is judged again
     if let Some((z, place)) = weakest {

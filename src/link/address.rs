@@ -96,7 +96,15 @@ impl FromStr for Address {
     fn from_str(text: &str) -> Result<Self, AddressError> {
         let form = || AddressError::Form { got: text.into() };
         let (kind, rest) = text.split_once(':').ok_or_else(form)?;
+        // as other programs write it: `udp://:14540` waits on all interfaces
+        let (rest, anywhere) = rest.strip_prefix("//").map_or((rest, false), |rest| (rest, true));
         match kind {
+            "udp" | "udpin" if anywhere && rest.starts_with(':') => {
+                endpoint(text, &format!("0.0.0.0{rest}")).map(|(host, port)| Self::UdpIn { host, port })
+            }
+            // what `udp:` and `tcp:` mean to pymavlink and MAVProxy
+            "udp" => endpoint(text, rest).map(|(host, port)| Self::UdpIn { host, port }),
+            "tcp" => endpoint(text, rest).map(|(host, port)| Self::TcpOut { host, port }),
             "udpin" => endpoint(text, rest).map(|(host, port)| Self::UdpIn { host, port }),
             "udpout" => endpoint(text, rest).map(|(host, port)| Self::UdpOut { host, port }),
             "tcpin" => endpoint(text, rest).map(|(host, port)| Self::TcpIn { host, port }),
@@ -156,6 +164,27 @@ impl fmt::Display for Address {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn addresses_of_other_programs_are_read() {
+        for (text, same) in [
+            ("udp:127.0.0.1:14550", "udpin:127.0.0.1:14550"),
+            ("tcp:127.0.0.1:5760", "tcpout:127.0.0.1:5760"),
+            ("udp://:14540", "udpin:0.0.0.0:14540"),
+            ("udpin://0.0.0.0:14540", "udpin:0.0.0.0:14540"),
+            ("udpout://192.168.1.2:14550", "udpout:192.168.1.2:14550"),
+            ("tcp://vehicle.local:5760", "tcpout:vehicle.local:5760"),
+            ("serial:///dev/ttyACM0:57600", "serial:/dev/ttyACM0:57600"),
+        ] {
+            assert_eq!(
+                text.parse::<Address>().map(|address| address.to_string()),
+                Ok(same.to_owned()),
+                "{text}"
+            );
+        }
+        assert!("udp::14550".parse::<Address>().is_err());
+        assert!("tcp://:5760".parse::<Address>().is_err());
+    }
 
     #[test]
     fn addresses_are_written_as_they_are_read() {

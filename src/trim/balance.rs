@@ -75,10 +75,11 @@ impl Balance {
         (of.lean[axis], self.std(flight, axis).hypot(of.wander[axis]))
     }
 
-    /// Covariance of the flights' components with what wanders from flight to flight, `scale` times as much of it.
+    /// Covariance of the flights' components with what wanders from flight to flight, at `scale` times the scatter that is expected. The
+    /// errors of the legs are larger than stated where the flights scatter more, and not smaller where they scatter less.
     #[must_use]
     pub fn covariance_of(&self, axis: usize, scale: f64) -> DMatrix<f64> {
-        let mut out = self.covariance[axis].clone();
+        let mut out = &self.covariance[axis] * scale.max(1.0).powi(2);
         for (place, flight) in self.flights.iter().enumerate() {
             out[(place, place)] += (scale * flight.wander[axis]).powi(2);
         }

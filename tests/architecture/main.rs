@@ -88,6 +88,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "physics",
             "recording",
             "signals",
+            "trim",
             "reconstruction",
             "regression",
             "estimate",

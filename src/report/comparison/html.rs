@@ -1,7 +1,7 @@
 //! `report.html` of `compare`: each section is one function, and one call in [`comparison_html`].
 
 use super::drawing::drawing;
-use super::words::{answer, name, sentence, size, spaced};
+use super::words::{answer, name, returned, sentence, size, spaced};
 use crate::change::interval_95;
 use crate::diagnose::Owner;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
@@ -143,7 +143,12 @@ fn history(study: &CompareStudy) -> Markup {
     let steps = html! {
         @if study.history.is_empty() { (paragraph("Nothing changed along the flights that they could show.")) }
         @for step in &study.history { @for change in &step.change.changes {
-            (paragraph(&format!("From {} on: {}.", study.flights[step.from].input.path, sentence(study, change))))
+            (paragraph(&format!(
+                "From {} on: {}{}.",
+                study.flights[step.from].input.path,
+                sentence(study, change),
+                returned(study, step)
+            )))
         } }
     };
     section("History", &steps)

@@ -37,6 +37,8 @@ struct ChangeEntry {
     of: Option<String>,
     /// rotor's place, from 0
     rotor: Option<usize>,
+    /// the same by the autopilot's number, from 1
+    motor: Option<usize>,
     sentence: String,
     before: Option<Estimate>,
     after: Option<Estimate>,
@@ -91,6 +93,8 @@ struct StepEntry {
     /// place of the first flight that is otherwise
     from: usize,
     changes: Vec<ChangeEntry>,
+    /// places of earlier flights that it is as again; empty where it is as none of them
+    as_before: Vec<usize>,
 }
 
 impl ComparisonDocument {
@@ -113,7 +117,11 @@ impl ComparisonDocument {
             history: study
                 .history
                 .iter()
-                .map(|step| StepEntry { from: step.from, changes: entries(&step.change.changes) })
+                .map(|step| StepEntry {
+                    from: step.from,
+                    changes: entries(&step.change.changes),
+                    as_before: step.as_before.clone(),
+                })
                 .collect(),
             notes: study.notes.iter().map(Note::sentence).collect(),
         }
@@ -137,11 +145,13 @@ fn kind(study: &CompareStudy, what: Changed) -> (&'static str, Option<String>) {
 
 fn entry(study: &CompareStudy, change: &Change) -> ChangeEntry {
     let (what, of) = kind(study, change.what);
+    let rotor = if let Changed::Rotor(place) = change.what { Some(place) } else { None };
     let part = |of: fn(Moved) -> (f64, f64)| change.moved.map(|moved| estimate(of(moved)));
     ChangeEntry {
         what,
         of,
-        rotor: if let Changed::Rotor(place) = change.what { Some(place) } else { None },
+        rotor,
+        motor: rotor.map(|place| place + 1),
         sentence: sentence(study, change),
         before: part(|moved| moved.before),
         after: part(|moved| moved.after),

@@ -1,6 +1,6 @@
 //! The page of `compare` for the terminal.
 
-use super::words::{answer, name, sentence, size, spaced};
+use super::words::{answer, name, returned, sentence, size, spaced};
 use crate::diagnose::Owner;
 use crate::report::number::{significant, with_error};
 use crate::study::{Change, CompareStudy, Compared};
@@ -117,9 +117,10 @@ fn history(page: &mut String, study: &CompareStudy) {
         for change in &step.change.changes {
             let _ = writeln!(
                 page,
-                "    from {} on: {}",
+                "    from {} on: {}{}",
                 study.flights[step.from].input.path,
-                sentence(study, change)
+                sentence(study, change),
+                returned(study, step)
             );
         }
     }

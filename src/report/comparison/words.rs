@@ -1,6 +1,6 @@
 //! A comparison in words.
 
-use crate::change::What;
+use crate::change::{Step, What};
 use crate::report::number::{significant, with_error};
 use crate::study::{Change, Changed, CompareStudy, Compared, LeastChange};
 
@@ -29,7 +29,12 @@ pub(super) fn answer(study: &CompareStudy) -> String {
             let steps = study.history.iter().map(|step| {
                 let all: Vec<String> =
                     step.change.changes.iter().map(|change| sentence(study, change)).collect();
-                format!("from {} on: {}", study.flights[step.from].input.path, all.join("; "))
+                format!(
+                    "from {} on: {}{}",
+                    study.flights[step.from].input.path,
+                    all.join("; "),
+                    returned(study, step)
+                )
             });
             format!(
                 "Along {} the vehicle changed {}.",
@@ -37,6 +42,16 @@ pub(super) fn answer(study: &CompareStudy) -> String {
                 steps.collect::<Vec<_>>().join("; ")
             )
         }
+    }
+}
+
+/// Which earlier flights the vehicle is as again, as a clause; empty where it is as none of them.
+pub(super) fn returned(study: &CompareStudy, step: &Step<Compared>) -> String {
+    let path = |place: &usize| study.flights[*place].input.path.as_str();
+    match step.as_before.as_slice() {
+        [] => String::new(),
+        [one] => format!("; it is again as in {}", path(one)),
+        [first, .., last] => format!("; it is again as in {} to {}", path(first), path(last)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! What changed between groups of flights whose balance and parameters are known.
 
 use super::result::{Change, Changed, Compared, LeastChange};
-use crate::change::{BalanceChange, Groups, Step, What, judge_balance, judge_parameter, steps};
+use crate::change::{BalanceChange, Groups, Step, What, find_returns, judge_balance, judge_parameter, steps};
 use crate::diagnose::Owner;
 use crate::study::Track;
 use crate::trim::{Balance, mean_arm_m};
@@ -25,23 +25,25 @@ impl Judge<'_> {
     /// `least_sigmas` standard deviations is none.
     #[must_use]
     pub fn history(&self, order: &[usize], least_sigmas: f64) -> Vec<Step<Compared>> {
-        steps(order.len(), &|groups: &Groups| {
+        let judged = |groups: &Groups| {
             let compared = self.compared(&flight_groups(groups, order));
             let strongest = compared.strongest();
             (strongest > 0.0 && strongest >= least_sigmas).then_some((strongest, compared))
-        })
+        };
+        let mut found = steps(order.len(), &judged);
+        find_returns(order.len(), &mut found, &|groups, step: &Compared| {
+            let compared = self.compared(&flight_groups(groups, order));
+            compared.changes.is_empty() && step.changes.iter().all(|change| compared.would_show(change))
+        });
+        found
     }
 
-    /// The strongest change between the flights before and those after any place of an order: standard deviations, and the flights
-    /// before it; `None`: nothing changed anywhere.
+    /// Standard deviations of the strongest change between the flights before and those after any place of an order; 0: nothing
+    /// changed anywhere.
     #[must_use]
-    pub fn strongest(&self, order: &[usize]) -> Option<(f64, Vec<usize>)> {
-        let at = |from| {
-            let groups = flight_groups(&Groups::split(order.len(), from), order);
-            (self.compared(&groups).strongest(), groups.before)
-        };
-        let all = (1..order.len()).map(at).filter(|(sigmas, _)| *sigmas > 0.0);
-        all.max_by(|a, b| a.0.total_cmp(&b.0))
+    pub fn strongest(&self, order: &[usize]) -> f64 {
+        let at = |from| self.compared(&flight_groups(&Groups::split(order.len(), from), order)).strongest();
+        (1..order.len()).map(at).fold(0.0, f64::max)
     }
 
     /// What changed between two groups of flights.

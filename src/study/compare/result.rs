@@ -103,6 +103,14 @@ impl Compared {
     pub fn strongest(&self) -> f64 {
         self.changes.iter().map(|change| change.sigmas).fold(0.0, f64::max)
     }
+
+    /// Whether a change as large as this one would have been named here.
+    #[must_use]
+    pub fn would_show(&self, change: &Change) -> bool {
+        let least = self.least.iter().find(|least| least.what == change.what);
+        let size = change.moved.map(|moved| moved.by.0.abs());
+        least.zip(size).is_some_and(|(least, size)| size > least.size)
+    }
 }
 
 impl CompareStudy {

@@ -8,6 +8,7 @@ use super::result::{CompareStudy, ComparedFlight};
 use crate::change::Groups;
 use crate::config::LoadedVehicle;
 use crate::draft::Given;
+use crate::estimate::{Contradiction, NAMES, stated};
 use crate::note::{About, Note, said_once};
 use crate::recording::{Quantity, Recording};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference, best, other_settings};
@@ -15,7 +16,7 @@ use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins
 use crate::study::one_vehicle::refuse_others;
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
-use crate::study::{InputFile, Progress, Stage, StudyError, VehicleGiven};
+use crate::study::{InputFile, Progress, Stage, StudyError, Track, VehicleGiven};
 use crate::trim::{Leg, balance, legs};
 use crate::vehicle::Vehicle;
 
@@ -67,6 +68,9 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     } else {
         tracks(&flights.signals, &vehicle)
     };
+    if draft.is_none() {
+        notes.extend(contradictions(&tracks, &vehicle).iter().map(Contradiction::note));
+    }
     let judge =
         Judge { vehicle: &vehicle, balance: &balance, tracks: &tracks, is_known: request.vehicle.is_some() };
     let count = flights.signals.len();
@@ -86,6 +90,19 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         notes,
     })
 }
+
+/// Mass and moments of inertia of all flights that are far from what the vehicle file states.
+fn contradictions(tracks: &[Track], vehicle: &Vehicle) -> Vec<Contradiction> {
+    let of = |track: &Track| {
+        let index =
+            NAMES.iter().position(|name| *name == track.name).filter(|index| MOMENTS.contains(index))?;
+        Contradiction::of(NAMES[index], track.pooled()?, stated(vehicle, index))
+    };
+    tracks.iter().filter_map(of).collect()
+}
+
+/// Mass and the moments of inertia among [`NAMES`].
+const MOMENTS: [usize; 4] = [0, 1, 4, 6];
 
 /// What is doubtful about the flights' data.
 fn doubts(flights: &Prepared) -> Vec<Note> {
