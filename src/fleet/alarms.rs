@@ -1,7 +1,7 @@
 //! How often an unchanged vehicle is called changed: by histories whose flights are in no order.
 
 use super::history::VehicleHistory;
-use crate::study::{Judge, Track};
+use crate::study::{Changed, Judge, Track};
 use crate::trim::{AXES, Balance};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -35,7 +35,8 @@ pub struct FalseAlarms {
 }
 
 impl FalseAlarms {
-    /// Share of the shuffled histories that are called changed, and the largest that agrees with that count at 95 %.
+    /// Share of the shuffled histories that are called changed, and the largest that agrees with that count at 95 %. Orders that occur
+    /// several times are counted several times: of few blocks there are few orders.
     #[must_use]
     pub fn rate(&self) -> Option<(f64, f64)> {
         use statrs::distribution::{Beta, ContinuousCDF};
@@ -53,44 +54,61 @@ impl FalseAlarms {
 }
 
 /// Shuffles the histories and finds the bound beyond which at most the wanted share of them is called changed. Time is no order
-/// there: what is found is chance. Flights of one day (or of one log, where logs have no date) are alike and stay together. Changes that
-/// a history shows by itself are taken out before, because they are no chance.
+/// there: what is found is chance. Flights of one day (or of one log, where logs have no date) are alike and stay together. Changes beyond
+/// the bound are no chance: they are taken out, and the bound is found again.
 #[must_use]
 pub fn calibrated(histories: &[VehicleHistory], wanted: f64, shuffles: u32) -> FalseAlarms {
-    let long: Vec<Unchanged<'_>> = histories
-        .iter()
-        .filter(|history| history.study.flights.len() >= LEAST_BLOCKS)
-        .map(Unchanged::of)
-        .collect();
+    let long: Vec<&VehicleHistory> =
+        histories.iter().filter(|history| history.study.flights.len() >= LEAST_BLOCKS).collect();
     let none =
         FalseAlarms { wanted, shuffled: 0, called: 0, flights: 0.0, blocks: 0.0, least_sigmas: NAMED_SIGMAS };
     if long.is_empty() {
         return none;
     }
-    // in turn, so that each vehicle has as many
-    let draws = usize::try_from(shuffles).unwrap_or(usize::MAX).div_ceil(long.len()) * long.len();
-    let one = |draw: usize| long[draw % long.len()].strongest_shuffled(draw as u64);
-    let mut strongest: Vec<f64> = (0..draws).into_par_iter().map(one).collect();
-    strongest.sort_by(|a, b| b.total_cmp(a));
-    let shuffled = strongest.len();
-    // a chance that falls between two counts is the lower
-    let allowed = (0..shuffled).take_while(|count| (*count + 1) as f64 <= wanted * shuffled as f64).count();
-    let bound = strongest.get(allowed).copied().unwrap_or(0.0);
-    let least_sigmas = NAMED_SIGMAS.max(bound.next_up());
-    let mean = |of: fn(&Unchanged<'_>) -> usize| {
-        long.iter().map(|long| of(long) as f64).sum::<f64>() / long.len() as f64
-    };
-    FalseAlarms {
-        shuffled,
-        called: strongest.iter().take_while(|sigmas| **sigmas >= least_sigmas).count(),
-        flights: mean(|long| long.history.study.flights.len()),
-        blocks: mean(|long| long.blocks.len()),
-        least_sigmas,
-        ..none
+    // nothing is taken out at first: the bound is the highest
+    let (mut least_sigmas, mut called, mut shuffled) = (f64::INFINITY, 0, 0);
+    let mut blocks = 0.0;
+    for _ in 0..ROUNDS {
+        let unchanged: Vec<Unchanged<'_>> =
+            long.par_iter().map(|history| Unchanged::of(history, least_sigmas)).collect();
+        blocks = mean(unchanged.iter().map(|of| of.blocks.len()));
+        let strongest = strongest(&unchanged, shuffles);
+        shuffled = strongest.len();
+        // a chance that falls between two counts is the lower
+        let allowed =
+            (0..shuffled).take_while(|count| (*count + 1) as f64 <= wanted * shuffled as f64).count();
+        let bound = strongest.get(allowed).copied().unwrap_or(0.0);
+        let found = NAMED_SIGMAS.max(bound.next_up());
+        called = strongest.iter().take_while(|sigmas| **sigmas >= found).count();
+        let is_settled = found >= least_sigmas;
+        least_sigmas = found.min(least_sigmas);
+        if is_settled {
+            break;
+        }
     }
+    let flights = mean(long.iter().map(|history| history.study.flights.len()));
+    FalseAlarms { shuffled, called, flights, blocks, least_sigmas, ..none }
 }
 
-/// A history without the changes that it shows.
+/// How often the changes beyond a bound are taken out and the bound is found again: each time it falls, or stays.
+const ROUNDS: usize = 6;
+
+fn mean(counts: impl ExactSizeIterator<Item = usize>) -> f64 {
+    let all = counts.len() as f64;
+    counts.map(|count| count as f64).sum::<f64>() / all
+}
+
+/// Standard deviations of the strongest change of each shuffled history, the greatest first.
+fn strongest(histories: &[Unchanged<'_>], shuffles: u32) -> Vec<f64> {
+    // in turn, so that each vehicle has as many
+    let draws = usize::try_from(shuffles).unwrap_or(usize::MAX).div_ceil(histories.len()) * histories.len();
+    let one = |draw: usize| histories[draw % histories.len()].strongest_shuffled(draw as u64);
+    let mut strongest: Vec<f64> = (0..draws).into_par_iter().map(one).collect();
+    strongest.sort_by(|a, b| b.total_cmp(a));
+    strongest
+}
+
+/// A history without the changes that are no chance.
 struct Unchanged<'a> {
     history: &'a VehicleHistory,
     balance: Balance,
@@ -100,29 +118,36 @@ struct Unchanged<'a> {
 }
 
 impl<'a> Unchanged<'a> {
-    fn of(history: &'a VehicleHistory) -> Self {
+    /// Without the changes of at least so many standard deviations.
+    fn of(history: &'a VehicleHistory, least_sigmas: f64) -> Self {
         let study = &history.study;
+        let blocks = blocks(history);
         let count = study.flights.len();
         let order: Vec<usize> = (0..count).collect();
-        let steps = judge(history).history(&order, NAMED_SIGMAS);
-        let borders: Vec<usize> =
-            std::iter::once(0).chain(steps.iter().map(|step| step.from)).chain([count]).collect();
+        let steps =
+            if least_sigmas.is_finite() { judge(history).history(&order, least_sigmas) } else { Vec::new() };
         let (mut balance, mut tracks) = (study.balance.clone(), study.tracks.clone());
-        if !steps.is_empty() {
-            for axis in 0..AXES {
-                let lean: Vec<_> = balance.flights.iter().map(|flight| Some(flight.lean[axis])).collect();
-                for (flight, level) in balance.flights.iter_mut().zip(levelled(&lean, &borders)) {
-                    flight.lean[axis] = level.unwrap_or(flight.lean[axis]);
-                }
-            }
-            for track in &mut tracks {
-                let values: Vec<_> = track.values.iter().map(|value| Some(value.as_ref()?.0)).collect();
-                for (value, level) in track.values.iter_mut().zip(levelled(&values, &borders)) {
-                    *value = value.zip(level).map(|((_, std), level)| (level, std));
-                }
+        let parts = |is_of: &dyn Fn(Changed) -> bool| {
+            let own = steps.iter().filter(|step| step.change.changes.iter().any(|change| is_of(change.what)));
+            let borders: Vec<usize> =
+                std::iter::once(0).chain(own.map(|step| step.from)).chain([count]).collect();
+            Parts::of(borders, &blocks)
+        };
+        let of_balance = parts(&|what| !matches!(what, Changed::Parameter(_)));
+        for axis in 0..AXES {
+            let lean: Vec<_> = balance.flights.iter().map(|flight| Some(flight.lean[axis])).collect();
+            for (flight, level) in balance.flights.iter_mut().zip(of_balance.levelled(&lean)) {
+                flight.lean[axis] = level.unwrap_or(flight.lean[axis]);
             }
         }
-        Self { history, balance, tracks, blocks: blocks(history) }
+        for (place, track) in tracks.iter_mut().enumerate() {
+            let values: Vec<_> = track.values.iter().map(|value| Some(value.as_ref()?.0)).collect();
+            let levels = parts(&|what| what == Changed::Parameter(place)).levelled(&values);
+            for (value, level) in track.values.iter_mut().zip(levels) {
+                *value = value.zip(level).map(|((_, std), level)| (level, std));
+            }
+        }
+        Self { history, balance, tracks, blocks }
     }
 
     /// Standard deviations of the strongest change of a shuffled order, 0 where there is none.
@@ -138,30 +163,52 @@ impl<'a> Unchanged<'a> {
     }
 }
 
-/// A row without the differences between its parts: each part has the mean of the row, and scatters about it as much as the part
-/// scatters about its own.
-fn levelled(row: &[Option<f64>], borders: &[usize]) -> Vec<Option<f64>> {
-    let mean = |of: &[Option<f64>]| {
-        let known: Vec<f64> = of.iter().flatten().copied().collect();
-        (known.iter().sum::<f64>() / known.len() as f64, known.len() as f64)
-    };
-    let (of_row, _) = mean(row);
-    let part = |ends: &[usize]| {
-        let own = &row[ends[0]..ends[1]];
-        let (of_part, count) = mean(own);
-        // the mean of a part takes one of its freedoms
-        let scatter = (count / (count - 1.0).max(1.0)).sqrt();
-        own.iter().map(move |value| value.map(|value| of_row + scatter * (value - of_part)))
-    };
-    borders.windows(2).flat_map(part).collect()
+/// A row of flights in parts, between which something changed.
+struct Parts {
+    borders: Vec<usize>,
+    /// blocks of flights in each part
+    blocks: Vec<usize>,
 }
 
-/// Flights that are alike and stay together: of one day, or of one log where not all logs have a date. Each flight alone where that
-/// makes too few of them.
+impl Parts {
+    fn of(borders: Vec<usize>, blocks: &[Vec<usize>]) -> Self {
+        let begins = |block: &&Vec<usize>, ends: &[usize]| {
+            block.first().is_some_and(|first| (ends[0]..ends[1]).contains(first))
+        };
+        let count = |ends: &[usize]| blocks.iter().filter(|block| begins(block, ends)).count().max(1);
+        let blocks = borders.windows(2).map(count).collect();
+        Self { borders, blocks }
+    }
+
+    /// A row without the differences between its parts: each part has the mean of the row, and scatters about it as much as the
+    /// blocks of the part scatter about its own mean.
+    fn levelled(&self, row: &[Option<f64>]) -> Vec<Option<f64>> {
+        let mean = |of: &[Option<f64>]| {
+            let known: Vec<f64> = of.iter().flatten().copied().collect();
+            known.iter().sum::<f64>() / known.len() as f64
+        };
+        if self.blocks.len() < 2 {
+            return row.to_vec();
+        }
+        let of_row = mean(row);
+        let part = |(ends, blocks): (&[usize], &usize)| {
+            let own = &row[ends[0]..ends[1]];
+            let of_part = mean(own);
+            // the mean of a part takes one of the freedoms of its blocks
+            let count = *blocks as f64;
+            let scatter = (count / (count - 1.0).max(1.0)).sqrt();
+            own.iter().map(move |value| value.map(|value| of_row + scatter * (value - of_part)))
+        };
+        self.borders.windows(2).zip(&self.blocks).flat_map(part).collect()
+    }
+}
+
+/// Flights that are alike and stay together: without a pause of hours between them, or of one log where not all logs have a date. Each
+/// flight alone where that makes too few of them.
 fn blocks(history: &VehicleHistory) -> Vec<Vec<usize>> {
     let study = &history.study;
     let is_with_last = |place: usize| match &history.start_utc_us {
-        Some(starts) => starts[place].div_euclid(DAY_US) == starts[place - 1].div_euclid(DAY_US),
+        Some(starts) => starts[place] - starts[place - 1] < PAUSE_US,
         None => study.flights[place].input.sha256 == study.flights[place - 1].input.sha256,
     };
     let mut blocks: Vec<Vec<usize>> = Vec::new();
@@ -178,8 +225,8 @@ fn blocks(history: &VehicleHistory) -> Vec<Vec<usize>> {
     }
 }
 
-/// A day, microseconds.
-const DAY_US: i64 = 86_400_000_000;
+/// Between two beginnings of flights of one day, microseconds, at most: six hours. A night is longer.
+const PAUSE_US: i64 = 6 * 3_600_000_000;
 
 /// The judge of a history.
 #[must_use]
@@ -201,11 +248,16 @@ mod tests {
     #[test]
     fn a_row_without_its_step_scatters_as_its_parts_do() {
         let row = [Some(1.0), Some(1.2), None, Some(5.0), Some(5.4), Some(5.2)];
-        let level = levelled(&row, &[0, 3, 6]);
+        let alone: Vec<Vec<usize>> = (0..6).map(|place| vec![place]).collect();
+        let level = Parts::of(vec![0, 2, 6], &alone).levelled(&row);
         let mean = (1.0 + 1.2 + 5.0 + 5.4 + 5.2) / 5.0;
         assert!((level[0].unwrap() - (mean - 0.1 * 2.0_f64.sqrt())).abs() < 1e-12);
         assert_eq!(level[2], None);
-        assert!((level[4].unwrap() - (mean + 0.2 * 1.5_f64.sqrt())).abs() < 1e-12);
-        assert_eq!(levelled(&[Some(3.0)], &[0, 1]), [Some(3.0)]);
+        assert!((level[4].unwrap() - (mean + 0.2 * (4.0_f64 / 3.0).sqrt())).abs() < 1e-12);
+        // without a step it stays as it is
+        assert_eq!(Parts::of(vec![0, 6], &alone).levelled(&row), row);
+        // flights of two days are two
+        let days = vec![vec![0, 1], vec![2, 3], vec![4, 5]];
+        assert_eq!(Parts::of(vec![0, 2, 6], &days).blocks, [1, 2]);
     }
 }

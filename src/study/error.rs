@@ -49,7 +49,7 @@ pub enum StudyError {
         /// name of the vehicle's file
         vehicle: String,
         /// why
-        source: SignalsError,
+        source: Box<SignalsError>,
         /// what of the log was not read
         losses: Vec<String>,
     },

@@ -50,7 +50,7 @@ impl Flight {
         condition(&self.recording, vehicle, settings).map_err(|source| StudyError::Flight {
             flight: self.input.path.clone(),
             vehicle: text::path(&file),
-            source,
+            source: Box::new(source),
             losses: self.input.losses().into_iter().map(str::to_owned).collect(),
         })
     }

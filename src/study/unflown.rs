@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub(super) fn unflown_first(error: StudyError, logs: &[PathBuf], read: &ReadSettings) -> StudyError {
     let says_expected = match &error {
         StudyError::File { .. } => false,
-        StudyError::Flight { source, .. } => matches!(source, SignalsError::NoActuators { .. }),
+        StudyError::Flight { source, .. } => matches!(**source, SignalsError::NoActuators { .. }),
         _ => return error,
     };
     let Ok(options) = read.open_options() else { return error };

@@ -1,6 +1,6 @@
 //! The result of comparing: every flight, what changed, and what could not have been seen.
 
-use crate::change::{BalanceChange, Groups, Moved, Step, What};
+use crate::change::{BalanceChange, Groups, Moved, NAMED, Step, What};
 use crate::draft::Draft;
 use crate::note::Note;
 use crate::study::{InputFile, Track};
@@ -104,12 +104,19 @@ impl Compared {
         self.changes.iter().map(|change| change.sigmas).fold(0.0, f64::max)
     }
 
-    /// Whether a change as large as this one would have been named here.
+    /// The changes that are certain by themselves: a centre of mass moves along two axes, and may have moved along one only.
+    pub(super) fn certain(&self) -> impl Iterator<Item = &Change> {
+        let alone = |change: &&Change| change.sigmas * change.sigmas >= NAMED;
+        let none = !self.changes.iter().any(|change| alone(&change));
+        self.changes.iter().filter(move |change| none || alone(change))
+    }
+
+    /// Whether a change half as large as this one would have been named here.
     #[must_use]
     pub fn would_show(&self, change: &Change) -> bool {
         let least = self.least.iter().find(|least| least.what == change.what);
         let size = change.moved.map(|moved| moved.by.0.abs());
-        least.zip(size).is_some_and(|(least, size)| size > least.size)
+        least.zip(size).is_some_and(|(least, size)| size > 2.0 * least.size)
     }
 }
 
