@@ -8,7 +8,9 @@ use nalgebra::{DVector, Vector3};
 
 /// Sum of squares that an explanation must account for, in standard deviations: 4.5 of them. One of some thousand comparisons of one
 /// component exceeds it by chance where the errors are right, and a heavier tail is allowed for.
-pub const NAMED: f64 = 20.25;
+pub const NAMED: f64 = NAMED_SIGMAS * NAMED_SIGMAS;
+/// Its root: standard deviations that a change needs.
+pub const NAMED_SIGMAS: f64 = 4.5;
 /// Sum of squares that the best explanation may leave. Set by judgement: two components exceed it in one of 500.
 const FITS: f64 = 12.0;
 /// Cost of each amount of an explanation, sum of squares. A smaller one would name a centre of mass, which has two

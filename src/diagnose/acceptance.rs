@@ -2,6 +2,7 @@
 
 use super::base::lift_load;
 use super::fit::{Fitted, Newton, fit};
+use super::gates::NAME_Z;
 use super::grid_refinement::refined;
 use super::latency::{is_delay, with_latency};
 use super::locate::mass_step_std_kg;
@@ -90,13 +91,9 @@ fn wanders(flights: &[Trace], fitted: &Fitted, taken: &Tested) -> bool {
         taken.candidate.parts.iter().filter_map(|part| Some(part.values[part.signature.role.moment?]));
     moments.into_iter().any(|moment_s| {
         let delta_kg = taken.evidence.theta[0].abs();
-        delta_kg < WANDERED * mass_step_std_kg(flights, fitted, moment_s)
+        delta_kg < NAME_Z * mass_step_std_kg(flights, fitted, moment_s)
     })
 }
-
-/// A step of the mass counts beyond this many standard errors of a force that drifts by itself: the z of
-/// [`Gates`](super::Gates).
-const WANDERED: f64 = 4.0;
 
 /// The effect with those parameters freed that can be estimated only after it was accepted.
 fn released(mut term: EffectTerm) -> EffectTerm {

@@ -46,9 +46,12 @@ impl Gates {
     }
 }
 
+/// Standard errors by which an effect must differ from zero to get a name; see [`Gates`].
+pub(in crate::diagnose) const NAME_Z: f64 = 4.0;
+
 impl Default for Gates {
     fn default() -> Self {
-        Self { z: 4.0, p_cluster: 0.02, gain: 0.004, matters: (4e-4, 0.04), steps: 6 }
+        Self { z: NAME_Z, p_cluster: 0.02, gain: 0.004, matters: (4e-4, 0.04), steps: 6 }
     }
 }
 

@@ -7,6 +7,7 @@
 use super::candidates::Candidate;
 use super::fit::Fitted;
 use super::gates::Gates;
+use super::gates::NAME_Z;
 use super::materiality::Materiality;
 use super::named::DetectionLimit;
 use super::signature::EffectTerm;
@@ -15,7 +16,7 @@ use super::slight::BEYOND;
 use super::tested::Tested;
 
 /// Standard errors by which an effect of its usual size must differ from zero: the z of [`Gates`](super::Gates).
-const CERTAIN: f64 = 4.0;
+const CERTAIN: f64 = NAME_Z;
 /// Standard errors at which an effect is accepted whatever its usual size is. Twice what a name needs: then no prior
 /// can say otherwise.
 const PLAIN: f64 = 8.0;

@@ -2,6 +2,7 @@
 
 use super::base::Base;
 use super::fit::{Fitted, Newton};
+use super::gates::NAME_Z;
 use super::latency::{LatencyFinding, is_delay, with_latency};
 use super::signature::EffectTerm;
 use super::trace::Trace;
@@ -51,7 +52,7 @@ pub(super) fn prune(
 
 /// An accepted effect stays in the model if it is this many standard deviations from zero: the z of
 /// [`Gates`](super::Gates).
-const KEPT: f64 = 4.0;
+const KEPT: f64 = NAME_Z;
 /// A parameter of an accepted effect is set to zero if it is nearer to zero than this many standard deviations. Set
 /// by judgement; measured only together with all conditions of a name (see `Gates`).
 const PRUNED: f64 = 2.5;

@@ -1,6 +1,7 @@
 //! How often an unchanged vehicle is called changed: by histories whose flights are in no order.
 
 use super::history::VehicleHistory;
+use crate::change::NAMED_SIGMAS;
 use crate::study::{Changed, Judge, Track};
 use crate::trim::{AXES, Balance};
 use rand::{RngExt, SeedableRng};
@@ -14,8 +15,6 @@ pub const FALSE_ALARMS: f64 = 0.005;
 pub const SHUFFLES: u32 = 1000;
 /// Flights, or blocks of them, from which on an order says something: three have six orders.
 const LEAST_BLOCKS: usize = 4;
-/// Standard deviations that `compare` asks for by itself.
-const NAMED_SIGMAS: f64 = 4.5;
 
 /// The rate of false alarms of one fleet, by its own flights.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -55,7 +54,8 @@ impl FalseAlarms {
 
 /// Shuffles the histories and finds the bound beyond which at most the wanted share of them is called changed. Time is no order
 /// there: what is found is chance. Flights of one day (or of one log, where logs have no date) are alike and stay together. Changes beyond
-/// the bound are no chance: they are taken out, and the bound is found again.
+/// the bound are no chance: they are taken out, and the bound is found again. Until then an order that divides the flights as the true
+/// one does, by its own change, is left out: of a few flights, one order in some tens does so.
 #[must_use]
 pub fn calibrated(histories: &[VehicleHistory], wanted: f64, shuffles: u32) -> FalseAlarms {
     let long: Vec<&VehicleHistory> =
@@ -103,7 +103,7 @@ fn strongest(histories: &[Unchanged<'_>], shuffles: u32) -> Vec<f64> {
     // in turn, so that each vehicle has as many
     let draws = usize::try_from(shuffles).unwrap_or(usize::MAX).div_ceil(histories.len()) * histories.len();
     let one = |draw: usize| histories[draw % histories.len()].strongest_shuffled(draw as u64);
-    let mut strongest: Vec<f64> = (0..draws).into_par_iter().map(one).collect();
+    let mut strongest: Vec<f64> = (0..draws).into_par_iter().filter_map(one).collect();
     strongest.sort_by(|a, b| b.total_cmp(a));
     strongest
 }
@@ -115,6 +115,8 @@ struct Unchanged<'a> {
     tracks: Vec<Track>,
     /// flights that stay together
     blocks: Vec<Vec<usize>>,
+    /// flights on one side of its strongest change, while that is in it
+    own: Option<Vec<usize>>,
 }
 
 impl<'a> Unchanged<'a> {
@@ -147,11 +149,13 @@ impl<'a> Unchanged<'a> {
                 *value = value.zip(level).map(|((_, std), level)| (level, std));
             }
         }
-        Self { history, balance, tracks, blocks }
+        let own = judge(history).strongest(&order).map(|(_, before)| before).filter(|_| steps.is_empty());
+        Self { history, balance, tracks, blocks, own }
     }
 
-    /// Standard deviations of the strongest change of a shuffled order, 0 where there is none.
-    fn strongest_shuffled(&self, draw: u64) -> f64 {
+    /// Standard deviations of the strongest change of a shuffled order, 0 where there is none; `None` of an order that divides the
+    /// flights as the true one does.
+    fn strongest_shuffled(&self, draw: u64) -> Option<f64> {
         let mut blocks: Vec<&Vec<usize>> = self.blocks.iter().collect();
         let mut generator = Pcg64::seed_from_u64(draw);
         for place in (1..blocks.len()).rev() {
@@ -159,7 +163,12 @@ impl<'a> Unchanged<'a> {
         }
         let order: Vec<usize> = blocks.into_iter().flatten().copied().collect();
         let judge = Judge { balance: &self.balance, tracks: &self.tracks, ..judge(self.history) };
-        judge.strongest(&order)
+        let Some((sigmas, mut before)) = judge.strongest(&order) else { return Some(0.0) };
+        before.sort_unstable();
+        let after: Vec<usize> =
+            (0..order.len()).filter(|flight| before.binary_search(flight).is_err()).collect();
+        let is_own = self.own.as_ref().is_some_and(|own| *own == before || *own == after);
+        (!is_own).then_some(sigmas)
     }
 }
 

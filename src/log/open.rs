@@ -44,6 +44,7 @@ pub struct Opened {
 pub fn open<'a>(log: impl Into<Input<'a>>, options: &OpenOptions) -> Result<Opened, LogError> {
     let input = log.into();
     let format = format_of(input)?;
+    let _stage = tracing::info_span!("read", format = format.name).entered();
     let (mut report, builder) = of_the_flown(options, |options| {
         let mut builder = RecordingBuilder::new();
         let report = match format.read_whole {

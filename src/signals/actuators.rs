@@ -251,7 +251,7 @@ pub fn bus_range(recording: &Recording) -> Option<PwmRange> {
 }
 
 /// No output has a longer pulse, microseconds.
-const LONGEST_PULSE_US: f64 = 2500.0;
+pub(super) const LONGEST_PULSE_US: f64 = 2500.0;
 
 fn moving_commands(recording: &Recording) -> impl Iterator<Item = &Stream> {
     let commands = recording.streams.iter().filter(|(key, _)| key.quantity == Quantity::ActuatorCommand);

@@ -1,5 +1,6 @@
 //! Outputs that no longer follow the mixer: they stand still while the controllers and the other motors move.
 
+use super::actuators::LONGEST_PULSE_US;
 use super::reported_state::ReportedState;
 use super::select::{best, is_live};
 use crate::recording::{Quantity, Recording, Stream};
@@ -85,7 +86,7 @@ fn range_of(recording: &Recording, stream: &Stream) -> Option<(f64, f64)> {
     let stack = recording.autopilot.stack();
     let stated = stack.and_then(|stack| stack.outputs.pulses.ends_us(parameter));
     let ends = stated.filter(|(low, high)| high > low).unwrap_or((1000.0, 2000.0));
-    (most <= 2500.0).then_some(ends)
+    (most <= LONGEST_PULSE_US).then_some(ends)
 }
 
 /// Channels that move in the air as motors do.

@@ -5,7 +5,8 @@ use crate::diagnose::{FlightParameter, Owner};
 use crate::estimate::UNITS;
 use crate::physics::effects::ALL;
 
-/// A flight carries a name from so many standard errors on.
+/// A flight carries a name from so many standard errors on: one that is there in all flights shows in nearly all of them, and
+/// one that is in none shows by chance in one of 400.
 const CARRIES: f64 = 3.0;
 
 /// Standard deviation of a moment of inertia between flights of one vehicle beside its error, share: the phase at which a log samples

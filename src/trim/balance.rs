@@ -234,7 +234,7 @@ fn solved(
 fn scatter_of(left: &[f64]) -> (f64, f64) {
     let count = left.len() as f64;
     let mut sizes: Vec<f64> = left.iter().map(|value| value.abs()).collect();
-    let robust = 1.4826 * crate::stats::median(&mut sizes);
+    let robust = crate::stats::normal_sigma(&mut sizes);
     let rms = (left.iter().map(|value| value * value).sum::<f64>() / (count - 1.5).max(1.0)).sqrt();
     // a leg or two of a gust are no scatter
     let scatter = rms.min(2.0 * robust.max(LEAST_SCATTER)).max(LEAST_SCATTER);

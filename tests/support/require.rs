@@ -49,7 +49,10 @@ impl Needed {
 pub fn skip(needed: Needed, why: &str) {
     let required = std::env::var("MAVID_REQUIRE").unwrap_or_default();
     match judge(needed, why, &required) {
-        Ok(line) => eprintln!("{line}"),
+        // past the capture of the test harness, which would hide it in a test that passes
+        Ok(line) => {
+            let _ = std::io::Write::write_all(&mut std::io::stderr(), format!("{line}\n").as_bytes());
+        }
         Err(failure) => panic!("{failure}"),
     }
 }

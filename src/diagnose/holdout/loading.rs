@@ -3,6 +3,7 @@
 use super::settings::HoldoutSettings;
 use crate::diagnose::base::Base;
 use crate::diagnose::channels::AXES;
+use crate::diagnose::gates::NAME_Z;
 use crate::diagnose::rows::Rows;
 use crate::diagnose::signatures::{ALL, REPACKED_M};
 use crate::diagnose::trace::Trace;
@@ -15,7 +16,7 @@ const FIRST_S: f64 = 5.0;
 /// Length of the blocks whose scatter gives its standard error, s. It is longer than the torques are correlated.
 const BLOCK_S: f64 = 1.0;
 /// Standard errors beyond which it was another place. As many as a name needs.
-const SIGMAS: f64 = 4.0;
+const SIGMAS: f64 = NAME_Z;
 
 /// A base with the centre of mass of another flight.
 pub(super) struct Loaded {

@@ -5,6 +5,7 @@ use super::choose::Chosen;
 use crate::diagnose::base::Base;
 use crate::diagnose::evidence::Weighted;
 use crate::diagnose::fit::{Fitted, Newton, fit};
+use crate::diagnose::gates::NAME_Z;
 use crate::diagnose::signature::EffectTerm;
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
@@ -37,7 +38,7 @@ const OWN: f64 = 1e-7;
 const SEEN: f64 = 2.5;
 /// Standard errors by which a drag along z must differ from zero to determine a wind along z. As many as a name
 /// needs.
-const SHOWS_WIND: f64 = 4.0;
+const SHOWS_WIND: f64 = NAME_Z;
 
 /// Fits, holds the parameters that cannot be estimated, and fits again until all remaining ones are determined.
 pub(super) fn estimate_forms(

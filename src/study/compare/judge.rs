@@ -38,12 +38,16 @@ impl Judge<'_> {
         found
     }
 
-    /// Standard deviations of the strongest change between the flights before and those after any place of an order; 0: nothing
-    /// changed anywhere.
+    /// The strongest change between the flights before and those after any place of an order: standard deviations, and the flights
+    /// before it; `None`: nothing changed anywhere.
     #[must_use]
-    pub fn strongest(&self, order: &[usize]) -> f64 {
-        let at = |from| self.compared(&flight_groups(&Groups::split(order.len(), from), order)).strongest();
-        (1..order.len()).map(at).fold(0.0, f64::max)
+    pub fn strongest(&self, order: &[usize]) -> Option<(f64, Vec<usize>)> {
+        let at = |from| {
+            let groups = flight_groups(&Groups::split(order.len(), from), order);
+            (self.compared(&groups).strongest(), groups.before)
+        };
+        let all = (1..order.len()).map(at).filter(|(sigmas, _)| *sigmas > 0.0);
+        all.max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// What changed between two groups of flights.

@@ -30,6 +30,7 @@ const SHARES: &str = "neither mass nor lengths were given: thrusts are compared 
 /// # Errors
 /// [`StudyError`] where a file or a setting cannot be used, or a flight shows no balance.
 pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<CompareStudy, StudyError> {
+    let _stage = tracing::info_span!("compare").entered();
     request.check()?;
     let given = request.vehicle.clone().unwrap_or(VehicleGiven::Weighed(UNKNOWN));
     let known = given.of_file()?;
