@@ -46,7 +46,7 @@ pub enum SignalsError {
         /// each slow stream, its rate, and the rate that was expected
         slow: String,
         /// what to set for more in the vehicle's own log; `None` of a table, which says nothing of its autopilot
-        logging: Option<String>,
+        logging: Option<Box<str>>,
     },
     /// streams do not share a span
     #[error("motion and actuator streams overlap for {overlap_s:.2} s only; at least 1 s is needed")]

@@ -74,9 +74,9 @@ pub(super) struct Sufficiency {
 
 /// What to set for more in the log that the vehicle writes itself, by the parameters that a recording has; `None` of a table, which
 /// says nothing of its autopilot.
-pub(super) fn logging_of(recording: &Recording) -> Option<String> {
+pub(super) fn logging_of(recording: &Recording) -> Option<Box<str>> {
     let parameter = |name: &str| recording.parameters.get(name).copied();
-    recording.autopilot.stack().map(|stack| stack.logging_by(parameter))
+    recording.autopilot.stack().map(|stack| stack.logging_by(parameter).into_boxed_str())
 }
 
 /// Judges the rates in the air; `logging` is what to set for more in the vehicle's own log. Refuses a flight with a stream that is too slow for any identification.
@@ -86,7 +86,7 @@ pub(super) fn logging_of(recording: &Recording) -> Option<String> {
 pub(super) fn check(
     needed: &[Needed<'_>],
     airborne_s: &[(f64, f64)],
-    logging: Option<String>,
+    logging: Option<Box<str>>,
 ) -> Result<Sufficiency, SignalsError> {
     let in_air: Vec<(&str, &str, f64, f64)> = needed
         .iter()

