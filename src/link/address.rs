@@ -214,7 +214,7 @@ mod tests {
         for (text, expected) in [
             ("", "udpin:HOST:PORT"),
             ("127.0.0.1:14550", "udpin:HOST:PORT"),
-            ("udp:127.0.0.1:14550", "udpin:HOST:PORT"),
+            ("udq:127.0.0.1:14550", "udpin:HOST:PORT"),
             ("udpin:14550", "udpin:HOST:PORT"),
             ("udpin::14550", "host name"),
             ("udpin:[]:14550", "host name"),

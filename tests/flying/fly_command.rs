@@ -30,7 +30,7 @@ fn stderr(output: &Output) -> String {
 fn wrong_input_is_told_before_anything_is_opened() {
     let out = folder("fly_wrong");
     for (connect, further, expected) in [
-        ("udp:127.0.0.1:14550", &[][..], "udpin:HOST:PORT"),
+        ("udq:127.0.0.1:14550", &[][..], "udpin:HOST:PORT"),
         ("udpin:127.0.0.1:0", &["--tracking-max", "0"][..], "--tracking-max"),
         ("udpin:127.0.0.1:0", &["--hover-time", "-3"][..], "--hover-time"),
         ("udpin:127.0.0.1:0", &["--setpoint-hz", "5"][..], "20..=200"),

@@ -149,7 +149,7 @@ fn sitl_refuses_what_it_cannot_run() {
     let missing = written("missing-parameter.toml", "[[effect]]\nid = \"linear_drag\"\ndx = 0.3\n");
     let stray = written("stray-key.toml", "wind = 3\n");
     for (arguments, said) in [
-        (vec!["--listen", "udp:127.0.0.1:9"], "udpin:HOST:PORT"),
+        (vec!["--listen", "udq:127.0.0.1:9"], "udpin:HOST:PORT"),
         (vec!["--speed", "0"], "--speed"),
         (vec!["--speed", "2", "--lockstep"], "cannot be used with"),
         (vec!["--loss", "1.5"], "loss"),
