@@ -30,7 +30,7 @@ pub fn make_way(folder: &Path, station: SystemId) -> Result<(), CommandError> {
             CommandError::Input(format!("cannot begin again with {}: {error}", text::path(&tlog)))
         })?;
     }
-    output::folder(folder)
+    output::silent_folder(folder)
 }
 
 /// Whether a flight can be recorded into this folder: it holds no recording of a vehicle.

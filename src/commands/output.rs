@@ -129,10 +129,15 @@ pub fn folder(path: &Path) -> Result<(), CommandError> {
     if path.as_os_str().is_empty() || path.is_dir() {
         return Ok(());
     }
-    std::fs::create_dir_all(path)
-        .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", text::path(&path))))?;
+    silent_folder(path)?;
     message(&format!("made the folder {}", text::path(&path)));
     Ok(())
+}
+
+/// Makes a folder without a word: before a flight a terminal that takes nothing must not be waited for.
+pub fn silent_folder(path: &Path) -> Result<(), CommandError> {
+    std::fs::create_dir_all(path)
+        .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", text::path(&path))))
 }
 
 /// The same of the folder of a file that is to be written.
