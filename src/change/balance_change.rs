@@ -22,7 +22,7 @@ const APART: f64 = 6.0;
 /// Standard deviation of the centre of mass from flight to flight by where battery and load sit, arms, a direction:
 /// the flight's own. With less a battery that was put back elsewhere would be a change; `cargo bench --bench blind --
 /// --vehicles --compared 40 --seed 9101` measures false ones.
-const LOADED: f64 = 0.01;
+pub const LOADED: f64 = 0.01;
 /// Flights that the stated scatter counts as. With fewer one odd flight decides the scatter, with more the flights
 /// cannot contradict it.
 const PRIOR: f64 = 6.0;

@@ -62,16 +62,21 @@ fn search<T>(
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_row_with_two_steps_is_divided_where_they_are() {
-        let row = [1.0, 1.1, 0.9, 3.0, 3.1, 2.0, 2.1, 1.9];
+    /// Judges the difference of the means of two groups of a row that scatters by a tenth.
+    fn difference(row: &[f64]) -> impl Fn(&Groups) -> Option<(f64, f64)> {
         let mean =
             |places: &[usize]| places.iter().map(|place| row[*place]).sum::<f64>() / places.len() as f64;
-        let judge = |groups: &Groups| {
+        move |groups: &Groups| {
             let by: f64 = mean(&groups.after) - mean(&groups.before);
             let error = (1.0 / groups.before.len() as f64 + 1.0 / groups.after.len() as f64).sqrt();
             (by.abs() > 0.5 * error).then_some((by.abs() / error, by))
-        };
+        }
+    }
+
+    #[test]
+    fn a_row_with_two_steps_is_divided_where_they_are() {
+        let row = [1.0, 1.1, 0.9, 3.0, 3.1, 2.0, 2.1, 1.9];
+        let judge = difference(&row);
         let mut found = steps(row.len(), &judge);
         assert!(found.iter().all(|step| step.as_before.is_empty()));
         let places: Vec<usize> = found.iter().map(|step| step.from).collect();
@@ -79,20 +84,14 @@ mod tests {
         assert!(found[0].change > 0.0 && found[1].change < 0.0);
         find_returns(row.len(), &mut found, &|groups, _| judge(groups).is_none());
         assert!(found.iter().all(|step| step.as_before.is_empty()), "2 is not 1");
-        assert!(steps(3, &judge).is_empty() || row[..3].len() == 3);
+        assert!(steps(3, &judge).is_empty());
         assert!(steps(0, &judge).is_empty());
     }
 
     #[test]
     fn a_row_that_goes_back_says_to_which_flights() {
         let row = [1.0, 1.1, 0.9, 3.0, 3.1, 1.0, 1.1, 0.9];
-        let mean =
-            |places: &[usize]| places.iter().map(|place| row[*place]).sum::<f64>() / places.len() as f64;
-        let judge = |groups: &Groups| {
-            let by: f64 = mean(&groups.after) - mean(&groups.before);
-            let error = (1.0 / groups.before.len() as f64 + 1.0 / groups.after.len() as f64).sqrt();
-            (by.abs() > 0.5 * error).then_some((by.abs() / error, by))
-        };
+        let judge = difference(&row);
         let mut found = steps(row.len(), &judge);
         find_returns(row.len(), &mut found, &|groups, _| judge(groups).is_none());
         let returned: Vec<(usize, &[usize])> =

@@ -8,7 +8,7 @@ mod history;
 mod parameter;
 mod pooled;
 
-pub use balance_change::{BalanceChange, BalanceFound, Least, NAMED, NAMED_SIGMAS, judge_balance};
+pub use balance_change::{BalanceChange, BalanceFound, LOADED, Least, NAMED, NAMED_SIGMAS, judge_balance};
 pub use explanation::What;
 pub use groups::{Groups, Moved, interval_95};
 pub use history::{Step, find_returns, steps};

@@ -4,6 +4,7 @@
 //! the motion, where other causes can look like it. Means over seconds of hover and slow flight know less, and of nothing else.
 
 use super::base::Base;
+use crate::change::{LOADED, NAMED_SIGMAS};
 use crate::physics::{
     Airframe, Condition, Effect, Input, MAX_ROTORS, PhysicsError, Rotors, State, effects_wrench,
 };
@@ -12,16 +13,12 @@ use crate::trim::{AXES, Balance, balance, legs, mean_arm_m};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
-/// Standard errors by which the balance has to miss a name's size. That of a comparison of two flights (`change::NAMED`).
-const MISSED: f64 = 4.5;
 /// Share of the name's size below which the balance does not show it.
 const SHOWN: f64 = 0.5;
 /// A name that moves the balance by less than this does not act on it, arms.
 const MOVED: f64 = 1e-6;
 /// Standard errors from which on hover shows a part of the name for certain, and does not exclude it.
 const CERTAIN: f64 = 3.0;
-/// Standard deviation of the centre of mass from flight to flight by where battery and load sit, arms: as in [`crate::change`].
-const LOADED: f64 = 0.01;
 /// Height above ground at which the model hovers, m: no effect of ground or ceiling acts there.
 const HEIGHT_M: f64 = 100.0;
 
@@ -58,7 +55,7 @@ impl Trim {
                 shown.add(of, &hover.left(base, &places), &hover.left(base, &others));
             }
             let missed = shown.missed();
-            if missed > worst.map_or(MISSED, |(most, _)| most) {
+            if missed > worst.map_or(NAMED_SIGMAS, |(most, _)| most) {
                 worst = Some((missed, place));
             }
         }

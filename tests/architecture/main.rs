@@ -89,6 +89,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "recording",
             "signals",
             "trim",
+            "change",
             "reconstruction",
             "regression",
             "estimate",
@@ -175,7 +176,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "plan", "diagnose", "change", "study", "fleet",
         ],
     ),
-    ("export", &["text", "autopilot", "vehicle", "physics"]),
+    ("export", &["units", "text", "autopilot", "vehicle", "physics"]),
     ("sitl", &["units", "autopilot", "frames", "vehicle", "fence", "physics", "wire", "link", "simulate"]),
     (
         "fly",

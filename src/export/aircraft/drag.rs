@@ -11,9 +11,8 @@ use super::parameter::AircraftParameter;
 use super::table::{DragNames, Table};
 use crate::export::source::Source;
 use crate::text::with_error;
+use crate::units::AIR_DENSITY_KG_M3;
 
-/// Air at sea level in the standard atmosphere, kg/m^3.
-const DENSITY_KG_M3: f64 = 1.225;
 /// Largest coefficient of momentum drag that both autopilots document, 1/s.
 const MOST_MOMENTUM: f64 = 1.0;
 /// Smallest coefficients that both take for more than none: of momentum drag, 1/s, and of a bluff body, kg/m^2.
@@ -93,7 +92,7 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
     }
     let std = (mean_std / mass_kg).hypot(value * mass_std);
     let why = format!(
-        "drag at hover of {} N per m/s over the mass of {mass_kg:.4} kg, taken as in air of {DENSITY_KG_M3} kg/m^3; wind was \
+        "drag at hover of {} N per m/s over the mass of {mass_kg:.4} kg, taken as in air of {AIR_DENSITY_KG_M3} kg/m^3; wind was \
          estimated with it where there was one",
         with_error(mean, mean_std)
     );
@@ -111,7 +110,7 @@ fn bluff(
     let (mass_kg, mass_std) = mass(source, determined);
     let Some(std) = determined.std("quadratic_drag", axis) else { return Coefficient::Absent };
     let drag = source.take("quadratic_drag", axis);
-    let value = 0.5 * DENSITY_KG_M3 * mass_kg / drag;
+    let value = 0.5 * AIR_DENSITY_KG_M3 * mass_kg / drag;
     // so slight that the autopilot has no number for it
     if drag < TOLD * std || value > names.most_ballistic {
         return Coefficient::Absent;
@@ -124,7 +123,7 @@ fn bluff(
         return Coefficient::Beyond;
     }
     let why = format!(
-        "drag of {} N per (m/s)^2 at the mass of {mass_kg:.4} kg, taken as in air of {DENSITY_KG_M3} kg/m^3",
+        "drag of {} N per (m/s)^2 at the mass of {mass_kg:.4} kg, taken as in air of {AIR_DENSITY_KG_M3} kg/m^3",
         with_error(drag, std)
     );
     Coefficient::Found(AircraftParameter::number(
