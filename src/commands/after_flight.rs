@@ -136,7 +136,7 @@ impl Written<'_> {
         let targets =
             Targets { model: Some(place(MODEL)), report: Some(place(REPORT)), chart: Some(place(CHART)) };
         let written = || {
-            output::folder(&self.folder.join(RIGID_BODY))?;
+            output::silent_folder(&self.folder.join(RIGID_BODY))?;
             output::file(&place(PAGE), &format!("{}\n", identification_text(study)))?;
             output::file(&place(DOCUMENT), &output::json_text(&IdentificationDocument::new(study))?)?;
             targets.write(study)

@@ -30,7 +30,7 @@ pub fn rigid_body(context: &Context<'_>, logs: &[PathBuf]) {
     let step = step.option("--vehicle", context.folder.vehicle()).option("--out", folder.join("model.toml"));
     let step = step.option("--report", folder.join("report.html"));
     let make = || {
-        output::folder(&folder)?;
+        output::silent_folder(&folder)?;
         context.tell(&step);
         let (study, targets) = identify::make(context.stderr, &step.identify()?)?;
         output::file(&folder.join("identification.txt"), &format!("{}\n", identification_text(&study)))?;
@@ -49,7 +49,7 @@ pub fn exports(context: &Context<'_>) -> Vec<String> {
         let file = folder.join(name);
         let step = Step::of(&["export"]).word(&model).option("--to", format).option("--out", &file);
         let make = || {
-            output::folder(&folder)?;
+            output::silent_folder(&folder)?;
             context.tell(&step);
             export::make(&step.export()?).map(|_| ())
         };

@@ -37,7 +37,7 @@ impl Folder {
             let got = text::path(&place);
             return Err(CommandError::Input(format!("--out: expected a folder, {got} is a file")));
         }
-        output::folder(&place)?;
+        output::silent_folder(&place)?;
         Ok(Self(place))
     }
 

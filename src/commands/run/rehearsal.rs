@@ -124,6 +124,6 @@ fn free(context: &Context<'_>) -> Result<std::path::PathBuf, CommandError> {
         std::iter::once("rehearsal".to_owned()).chain(names).map(|name| context.folder.of(&name));
     let folder = folders.find(|folder| leftover::is_free(folder, mavid::wire::SystemId(255)));
     let folder = folder.unwrap_or_else(|| context.folder.of("rehearsal"));
-    output::folder(&folder)?;
+    output::silent_folder(&folder)?;
     Ok(folder)
 }
