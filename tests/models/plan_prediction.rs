@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::path::Path;
 
 #[test]
-fn two_hundred_flights_scatter_as_promised() {
+fn a_hundred_flights_scatter_as_promised() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let vehicle = read_vehicle(&root.join("configs/x500.toml")).unwrap().vehicle;
     let room = Limits {
@@ -29,7 +29,7 @@ fn two_hundred_flights_scatter_as_promised() {
     let promised = expected_standard_errors(&planned.trajectory, &vehicle, &request.noise, span).unwrap();
     let scale = parameter_scale(&vehicle);
     let reference = Reference { trajectory: planned.trajectory, hover_s: 4.0, ramp_s: 0.5 };
-    let flights: Vec<Vec<f64>> = (0..200_u64)
+    let flights: Vec<Vec<f64>> = (0..100_u64)
         .into_par_iter()
         .map(|seed| {
             let settings = FlightSettings { seed, duration_s: 54.0, ..FlightSettings::default() };
@@ -52,6 +52,6 @@ fn two_hundred_flights_scatter_as_promised() {
         println!("{name:<5} promised {:.5}, scatter over promise {ratio:.2}", promised[k]);
         worst = worst.max(ratio.max(1.0 / ratio));
     }
-    // of two hundred flights a standard deviation is known to 5 %, and this is the worst of seven
-    assert!(worst < 1.2, "worst ratio {worst:.2}");
+    // of a hundred flights a standard deviation is known to 7 %, and this is the worst of seven
+    assert!(worst < 1.25, "worst ratio {worst:.2}");
 }

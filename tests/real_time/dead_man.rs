@@ -4,11 +4,7 @@
 //! What counts is the program's own time: the setpoint's, against that at which the part last ran. A busy machine
 //! changes neither; what it adds until the setpoint is sent is measured beside them.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
-
-#[path = "support/flying.rs"]
-mod flying;
-
+use crate::flying;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::Duration;
@@ -181,8 +177,7 @@ fn check(part: Part, how: Stop, trial: &Trial) {
 }
 
 /// Nothing but the flight's clock tells of it: every part goes on as if nothing had been.
-#[tokio::test(flavor = "multi_thread", worker_threads = 8)]
-async fn a_computer_that_slept_has_stood_still() {
+pub async fn a_computer_that_slept_has_stood_still() {
     let Climbing { parking, flight, vehicle, _press, .. } = climbing("sleep").await;
     parking.sleep(Duration::from_secs(600));
     let record = tokio::time::timeout(Duration::from_secs(120), flight).await.unwrap().unwrap().unwrap();
@@ -192,15 +187,13 @@ async fn a_computer_that_slept_has_stood_still() {
     assert_eq!(record.outcome.ending, Ending::Landed);
 }
 
-#[tokio::test(flavor = "multi_thread", worker_threads = 8)]
-async fn whatever_stands_still_setpoints_end_and_no_mode_is_ordered() {
+pub async fn whatever_stands_still_setpoints_end_and_no_mode_is_ordered() {
     for (part, trial) in all_stopped(Stop::Stands, "stands").await {
         check(part, Stop::Stands, &trial);
     }
 }
 
-#[tokio::test(flavor = "multi_thread", worker_threads = 8)]
-async fn whatever_dies_setpoints_end_and_no_mode_is_ordered() {
+pub async fn whatever_dies_setpoints_end_and_no_mode_is_ordered() {
     for (how, name) in [(Stop::Panics, "panics"), (Stop::Ends, "ends")] {
         for (part, trial) in all_stopped(how, name).await {
             check(part, how, &trial);
@@ -208,10 +201,8 @@ async fn whatever_dies_setpoints_end_and_no_mode_is_ordered() {
     }
 }
 
-/// The figures of the documents: 180 flights.
-#[ignore = "seven minutes: .ci/slow runs it"]
-#[tokio::test(flavor = "multi_thread", worker_threads = 8)]
-async fn twenty_trials_of_each() {
+/// The figures of the documents: 180 flights, seven minutes.
+pub async fn twenty_trials_of_each() {
     for how in STOPS {
         let mut trials = Vec::new();
         for _ in 0..10 {

@@ -1,11 +1,7 @@
 //! The whole of `mavid fly` over a socket, as far as its checks: the fence is measured from home, wherever that is,
 //! and a key opens the vehicle that has it.
 
-#![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
-
-#[path = "support/flying.rs"]
-mod flying;
-
+use crate::flying;
 use std::path::Path;
 use std::sync::mpsc;
 use std::time::{Duration, UNIX_EPOCH};
@@ -102,8 +98,7 @@ fn why(outcome: &Outcome) -> String {
     outcome.cause.as_ref().unwrap().to_string()
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn a_fence_about_home_lets_a_flight_inside_it_go_on_and_refuses_one_that_leaves_it() {
+pub async fn a_fence_about_home_lets_a_flight_inside_it_go_on_and_refuses_one_that_leaves_it() {
     let (inside, outside, low) = tokio::join!(
         checked("inside", &[("GF_MAX_HOR_DIST", 10.0), ("GF_MAX_VER_DIST", 10.0)], [None, None]),
         checked("outside", &[("GF_MAX_HOR_DIST", 0.3)], [None, None]),
@@ -114,8 +109,7 @@ async fn a_fence_about_home_lets_a_flight_inside_it_go_on_and_refuses_one_that_l
     assert!(why(&low).contains("the fence's greatest height"), "{}", why(&low));
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn a_vehicle_that_signs_is_flown_with_its_key_alone() {
+pub async fn a_vehicle_that_signs_is_flown_with_its_key_alone() {
     let (right, wrong, unsigned) = tokio::join!(
         checked("right", &[], [Some(7), Some(7)]),
         checked("wrong", &[], [Some(7), Some(8)]),
@@ -132,8 +126,7 @@ async fn a_vehicle_that_signs_is_flown_with_its_key_alone() {
     }
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn a_vehicle_that_has_just_booted_is_waited_for() {
+pub async fn a_vehicle_that_has_just_booted_is_waited_for() {
     // all else is checked after some 8 s, and its fence needs its home
     let kind = Firmware::ARDUPILOT_4_7;
     let booted = Settings { warm_up: Some(Duration::from_secs(14)), ..flying::vehicle_settings(kind) };
@@ -142,8 +135,7 @@ async fn a_vehicle_that_has_just_booted_is_waited_for() {
     assert!(why(&outcome).contains("the operator"), "{}", why(&outcome));
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn the_file_of_another_vehicle_is_refused_before_it_is_armed() {
+pub async fn the_file_of_another_vehicle_is_refused_before_it_is_armed() {
     let shipped =
         |name: &str| load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(name)).unwrap();
     let x500 = || flying::vehicle_settings(Firmware::PX4);
