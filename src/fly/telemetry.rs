@@ -2,6 +2,10 @@
 
 use crate::recording::landed::ON_GROUND;
 use crate::wire::heartbeat::{ARMED, BASE_MODE_AT};
+use crate::wire::message_id::{
+    BATTERY_STATUS, CURRENT_MODE, EKF_STATUS_REPORT, ESTIMATOR_STATUS, HEARTBEAT, ODOMETRY,
+    POSITION_TARGET_LOCAL_NED, SYS_STATUS,
+};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -20,8 +24,6 @@ use crate::frames::Attitude;
 use crate::recording::{self, Quantity};
 use crate::wire::{self, Decoder, Frame, Payload, Record};
 
-const POSITION_TARGET: u32 = 85;
-const ODOMETRY: u32 = 331;
 /// Longest time since boot, beyond the silence before, of an autopilot that has just restarted, s. A larger one would
 /// take a working autopilot for a restarted one, a smaller one would miss a slow boot.
 const STARTED_S: f64 = 20.0;
@@ -140,7 +142,7 @@ impl Telemetry {
     /// mode.
     fn status(&mut self, now: Duration, id: u32, payload: Payload<'_>, place: i64, news: &mut Vec<Novelty>) {
         match id {
-            0 => {
+            HEARTBEAT => {
                 self.heartbeat = now;
                 let (custom_mode, armed) = (payload.u32(0), payload.u8(BASE_MODE_AT) & ARMED != 0);
                 let state = FlightState { custom_mode, armed, system_status: payload.u8(7) };
@@ -149,13 +151,13 @@ impl Telemetry {
                     self.arming.report(now, armed, on_ground);
                 }
             }
-            436 => {
+            CURRENT_MODE => {
                 if let Some(Seen { value, at }) = self.state {
                     let state = FlightState { custom_mode: payload.u32(0), ..value };
                     self.note_state(at, state, place, news);
                 }
             }
-            1 => {
+            SYS_STATUS => {
                 let report = SystemReport::from_sys_status(payload);
                 if self.battery.is_none_or(|battery| now.saturating_sub(battery.at) > STATUS_VALID)
                     && let Some(percent) = report.battery_percent
@@ -165,11 +167,11 @@ impl Telemetry {
                 }
                 self.system = Some(Seen { at: now, value: report });
             }
-            147 if payload.u8(32) == 0 => {
+            BATTERY_STATUS if payload.u8(32) == 0 => {
                 self.battery = Some(Seen { at: now, value: battery_status(payload) });
             }
-            193 => self.note_estimator(now, EstimatorReport::from_ekf_status_report(payload)),
-            230 => self.note_estimator(now, EstimatorReport::from_estimator_status(payload)),
+            EKF_STATUS_REPORT => self.note_estimator(now, EstimatorReport::from_ekf_status_report(payload)),
+            ESTIMATOR_STATUS => self.note_estimator(now, EstimatorReport::from_estimator_status(payload)),
             _ => {}
         }
     }
@@ -246,7 +248,7 @@ impl Telemetry {
             | recording::Event::Parameter { .. }
             | recording::Event::ParameterDefault { .. } => {}
         });
-        if frame.header().message_id == POSITION_TARGET {
+        if frame.header().message_id == POSITION_TARGET_LOCAL_NED {
             news.push(Novelty::Target(target_m));
         }
         let oriented = self.attitude.filter(|seen| seen.at == now).map(|seen| seen.value);

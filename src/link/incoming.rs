@@ -1,6 +1,6 @@
 //! From bytes to frames and events for the reader.
 
-use crate::wire::heartbeat::HEARTBEAT;
+use crate::wire::message_id::HEARTBEAT;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 

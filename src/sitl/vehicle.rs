@@ -14,7 +14,6 @@ use super::files::{FileServer, LogSender};
 use super::link::Link;
 use super::logger::{Keeper, Now};
 use super::message::Message;
-use super::message_id::HEARTBEAT;
 use super::parameters::{Parameters, Pulses};
 use super::telemetry::{PROTOCOL, Snapshot, Telemetry};
 use super::tuning::Tuning;
@@ -22,6 +21,7 @@ use super::upload::Upload;
 use super::{Fault, LinkId, LinkRole, Mode, Outgoing, Settings, SitlError};
 use crate::link::{Signing, SigningKey, time_of};
 use crate::physics::MAX_ROTORS;
+use crate::wire::message_id::HEARTBEAT;
 use crate::wire::{Check, CrcSeeds, Frame, Payload};
 
 /// MAV_COMP_ID_AUTOPILOT1

@@ -16,14 +16,12 @@ use crate::fly::requests::{
 use crate::fly::safety::Feeding;
 use crate::frames::{Geodetic, world_from_ned};
 use crate::vehicle::Vehicle;
+use crate::wire::message_id::{GPS_GLOBAL_ORIGIN, HOME_POSITION};
 use crate::wire::{self, Decoder, Frame, Payload, Record};
 use nalgebra::Vector3;
 
 /// Subjects that the flight itself waits for before it arms: no refusal here.
 const AWAITED: [&str; 4] = ["estimate", "pre-arm", "home", "health"];
-
-const GPS_GLOBAL_ORIGIN: u32 = 49;
-const HOME_POSITION: u32 = 242;
 
 /// Result of the checks.
 #[derive(Debug)]

@@ -1,6 +1,8 @@
 //! Detection of another station that commands the vehicle.
 
-use crate::wire::heartbeat::HEARTBEAT;
+use crate::wire::message_id::{
+    HEARTBEAT, SET_ATTITUDE_TARGET, SET_POSITION_TARGET_GLOBAL_INT, SET_POSITION_TARGET_LOCAL_NED,
+};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -30,9 +32,9 @@ const DRAINS: Duration = Duration::from_secs(20);
 const REPORTS: usize = 2;
 const WINDOW: Duration = Duration::from_secs(3);
 
-/// SET_ATTITUDE_TARGET, SET_POSITION_TARGET_LOCAL_NED, SET_POSITION_TARGET_GLOBAL_INT with the offset of
-/// their target.
-const SETPOINTS: [(u32, usize); 3] = [(82, 36), (84, 50), (86, 50)];
+/// Messages that carry setpoints, with the offset of their target.
+const SETPOINTS: [(u32, usize); 3] =
+    [(SET_ATTITUDE_TARGET, 36), (SET_POSITION_TARGET_LOCAL_NED, 50), (SET_POSITION_TARGET_GLOBAL_INT, 50)];
 
 /// Detection of a second station.
 #[derive(Debug)]

@@ -7,12 +7,12 @@ use mavlink::dialects::ardupilotmega::{
 
 use super::super::demand::frd;
 use super::super::message::Message;
-use super::super::message_id as ids;
 use super::field::short;
 use super::scene::Scene;
 use super::source::Telemetry;
 use crate::frames::{Attitude, frd_ned_from_attitude, yaw_from_ned};
 use crate::units::{STANDARD_GRAVITY_M_S2, narrow};
+use crate::wire::message_id as ids;
 
 /// Bits of accelerations and rates.
 const FIELDS_UPDATED: u16 = 0b11_1111;
