@@ -1,9 +1,10 @@
 //! Right names.
 
 use super::flights::{Conditions, drawn, fly, vehicle};
-use super::measured::{Confused, EffectRun, short};
+use super::measured::{Confused, EffectRun};
 use super::ordinary::{Ordinary, ShownBy};
 use super::show::show_search;
+use super::support::digits::short;
 use mavid::diagnose::{Explanation, Named, Verdict};
 use rayon::prelude::*;
 use std::collections::BTreeMap;

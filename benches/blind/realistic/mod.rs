@@ -41,7 +41,7 @@ pub fn run(arguments: &Arguments) {
         wanted.push(Wanted { seed: seed + place, entries });
     }
     let judged = judge::all(&wanted);
-    let command = format!("cargo bench --bench blind -- {}", arguments.line());
+    let command = arguments.command("blind");
     let figures = report::figures((command, seed), &judged);
     report::tell(&figures);
     if let Some(file) = arguments.text("--out") {
