@@ -172,9 +172,9 @@ impl Tally {
                 figures.not_determined += 1;
                 println!("{what} not determined: {reason}");
             }
-            Found::AtBound { value, wanted, std } => {
+            Found::AtBound { value, unbounded, std } => {
                 figures.at_bound += 1;
-                println!("{what} at {value}: {wanted} +- {std}");
+                println!("{what} at {value}: {unbounded} +- {std}");
             }
             _ => {}
         }

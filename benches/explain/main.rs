@@ -23,7 +23,7 @@ mod measured;
 mod ordinary;
 mod pairs;
 mod pictures;
-mod show;
+mod search_steps;
 #[path = "../support/mod.rs"]
 mod support;
 

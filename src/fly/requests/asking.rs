@@ -24,7 +24,7 @@ pub struct RequestSettings {
     /// requests of one message
     pub tries: u32,
     /// time until streams have their new rates
-    pub settle: Duration,
+    pub settling_time: Duration,
     /// time over which arrivals are counted
     pub window: Duration,
     /// the ground station's system and component: acknowledgements for others are not ours
@@ -36,7 +36,7 @@ impl Default for RequestSettings {
         Self {
             timeout: Duration::from_millis(1500),
             tries: 6,
-            settle: Duration::from_millis(500),
+            settling_time: Duration::from_millis(500),
             window: Duration::from_secs(4),
             own: (255, 190),
         }
@@ -122,7 +122,7 @@ impl Requests {
             match self.phase {
                 Phase::Asking { index, sent } => {
                     if index >= self.streams.len() {
-                        self.phase = Phase::Settling { until: now + self.settings.settle };
+                        self.phase = Phase::Settling { until: now + self.settings.settling_time };
                     } else if !self.is_wanted(index) {
                         self.phase = Phase::Asking { index: index + 1, sent: None };
                     } else if sent.is_some_and(|sent| now < sent + self.settings.timeout) {
@@ -190,7 +190,7 @@ impl Requests {
 
     /// Starts a new measurement of the rates, from now on.
     pub fn measure_again(&mut self, now: Duration) {
-        self.phase = Phase::Settling { until: now + self.settings.settle };
+        self.phase = Phase::Settling { until: now + self.settings.settling_time };
     }
 
     /// Messages answered and asked for.

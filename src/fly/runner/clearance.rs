@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
-use super::question::{Answer, Question, Told};
+use super::question::{Answer, FenceAndHome, Question};
 
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 use crate::fly::finding::{Finding, Level};
 use crate::fly::flight::Flight;
-use crate::fly::parameters::{Download, DownloadSettings, Parameters, wanted};
+use crate::fly::parameters::{Download, DownloadSettings, Parameters, requested_parameters};
 use crate::fly::preflight::{Fence, FenceDownload, FenceOutcome, Judged, Page};
 use crate::fly::requests::{
     Capacity, LinkKind, Need, RequestSettings, Requests, request_set, slow_request_set,
@@ -80,7 +80,11 @@ pub(super) struct Clearance {
 
 impl Clearance {
     pub(super) fn new(vehicle: wire::Vehicle, rotors: usize, link: LinkKind) -> Self {
-        let download = Download::new(vehicle, wanted(vehicle.autopilot, rotors), DownloadSettings::default());
+        let download = Download::new(
+            vehicle,
+            requested_parameters(vehicle.autopilot, rotors),
+            DownloadSettings::default(),
+        );
         let (stage, fence) = (Stage::Parameters(Box::new(download)), FenceDownload::new(vehicle));
         Self {
             vehicle,
@@ -182,7 +186,7 @@ impl Clearance {
             let of = of.map_or("an unknown number of".to_owned(), |of| of.to_string());
             fence.unknown.push(format!("{came} of {of} items came"));
         }
-        Some(Question::of(flight, vehicle, now, (parameters, Told { fence, home_m: self.home_m })))
+        Some(Question::of(flight, vehicle, now, (parameters, FenceAndHome { fence, home_m: self.home_m })))
     }
 
     /// The result, once, with what the checks came to.

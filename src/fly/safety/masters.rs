@@ -40,7 +40,7 @@ const SETPOINTS: [(u32, usize); 3] =
 #[derive(Debug)]
 pub struct Masters {
     own: (SystemId, ComponentId),
-    told: VecDeque<(Duration, Setpoint)>,
+    sent: VecDeque<(Duration, Setpoint)>,
     reported: Option<Duration>,
     /// time of each foreign report, and the distance of our nearest target, m
     foreign: VecDeque<(Duration, f64)>,
@@ -54,7 +54,7 @@ impl Masters {
     pub fn new(system: SystemId, component: ComponentId) -> Self {
         Self {
             own: (system, component),
-            told: VecDeque::new(),
+            sent: VecDeque::new(),
             reported: None,
             foreign: VecDeque::new(),
             silence: None,
@@ -81,10 +81,10 @@ impl Masters {
     }
 
     /// Notes the setpoint that is sent at `now`.
-    pub fn told(&mut self, now: Duration, setpoint: Setpoint) {
-        self.told.push_back((now, setpoint));
-        while self.told.front().is_some_and(|(at, _)| now.saturating_sub(*at) > OLDEST) {
-            self.told.pop_front();
+    pub fn record_setpoint(&mut self, now: Duration, setpoint: Setpoint) {
+        self.sent.push_back((now, setpoint));
+        while self.sent.front().is_some_and(|(at, _)| now.saturating_sub(*at) > OLDEST) {
+            self.sent.pop_front();
         }
     }
 
@@ -104,7 +104,7 @@ impl Masters {
         // while ours do not arrive the last is flown for so long: by the time-out's default
         let alone = stack.setpoints.timeout_default;
         let age = |at: Duration| now.saturating_sub(at);
-        let ours = self.told.iter().filter(|(at, _)| age(*at) <= late + alone);
+        let ours = self.sent.iter().filter(|(at, _)| age(*at) <= late + alone);
         let away_m = match target_m {
             Some(target_m) => {
                 let moved = |at: Duration| match stack.setpoints.last_setpoint {
@@ -198,7 +198,7 @@ mod tests {
         let mut masters = Masters::new(SystemId(255), ComponentId(190));
         (from..to).step_by(10).find(|&t| {
             if t % 20 == 0 {
-                masters.told(ms(t), ours(t));
+                masters.record_setpoint(ms(t), ours(t));
             }
             t % 50 == 0 && masters.check(ms(t), reported(t), stack).is_some()
         })
@@ -244,7 +244,7 @@ mod tests {
     fn what_a_silence_held_back_is_ours() {
         let mut masters = Masters::new(SystemId(255), ComponentId(190));
         for t in (1000..6000).step_by(20) {
-            masters.told(ms(t), ours(t));
+            masters.record_setpoint(ms(t), ours(t));
             if t < 2000 {
                 assert!(masters.check(ms(t), Some(ours(t).position_m), &PX4).is_none());
             }
