@@ -33,10 +33,10 @@ const SHARE: f64 = 0.99;
 const PERIODS: u64 = 6;
 
 /// A setpoint: the milliseconds of the sender's clock at which it was made, and when it came by.
-type Seen = (u32, Duration);
+type Arrival = (u32, Duration);
 
 /// Passes datagrams on between whoever sends to it and the vehicle, and stamps the setpoints.
-fn tap(to: SocketAddr) -> (u16, Arc<Mutex<Vec<Seen>>>) {
+fn tap(to: SocketAddr) -> (u16, Arc<Mutex<Vec<Arrival>>>) {
     let ground_side = UdpSocket::bind("127.0.0.1:0").unwrap();
     let vehicle_side = UdpSocket::bind("127.0.0.1:0").unwrap();
     vehicle_side.connect(to).unwrap();
@@ -99,8 +99,8 @@ fn under_load<T>(threads: usize, work: impl FnOnce() -> T) -> T {
 }
 
 /// Lateness in ms, sorted, and how many instants of the grid have no setpoint.
-fn lateness(seen: &[Seen]) -> (Vec<f64>, usize) {
-    let late = |(made_ms, came): &Seen| {
+fn lateness(seen: &[Arrival]) -> (Vec<f64>, usize) {
+    let late = |(made_ms, came): &Arrival| {
         let due_ms = made_ms / PERIOD_MS * PERIOD_MS;
         1000.0 * came.as_secs_f64() - f64::from(due_ms)
     };

@@ -1,8 +1,9 @@
 //! What `identify --with` finds of effects that a simulated flight conceals: sizes against the truth.
 //!
-//! `cargo bench --bench with -- [--each N] [--seed S] [--only EFFECT,...] [--noise FACTOR] [--fed-back] [--show]
+//! `cargo bench --bench with -- [--each N] [--seed S] [--only EFFECT,...] [--noise FACTOR] [--fed-back] [--show] [--out FILE]`
 //!
-//! `--fed-back`: the controller flies on the very noise that is logged.`
+//! `--fed-back`: the controller flies on the very noise that is logged. `--out` stores the figures in a section of a file, of
+//! which the book is made: `joint`, or the effects of `--only`.
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, reason = "a benchmark prints")]
 
 mod support;
@@ -15,6 +16,9 @@ use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random
 use mavid::vehicle::Vehicle;
 use rayon::prelude::*;
 use support::Arguments;
+use support::digits::short;
+use support::identification::{ConcealedEffect, Joint, JointSet};
+use support::sections::store;
 
 /// What a size grows with: nothing, the mass, or the mean of Ixx and Iyy.
 #[derive(Clone, Copy)]
@@ -72,14 +76,20 @@ fn main() {
     let (only, noise) = (arguments.text("--only"), arguments.number("--noise", 1.0));
     let how = How { noise, fed_back: arguments.has("--fed-back"), show: arguments.has("--show") };
     println!(
-        "set                            flights  parameters  within 20 %  within 3 std  rms in std  z least; worst"
+        "set                            flights  determined  within 20 %  within 3 std  rms in std  z least; worst"
     );
-    for set in SETS {
-        let ids: Vec<&str> = set.iter().map(|(id, _)| *id).collect();
-        if only.as_ref().is_none_or(|only| ids.join(",") == *only) {
-            report(set, &ids.join(","), (first, each), how);
-        }
+    let named = |set: &&[Sizes]| only.as_ref().is_none_or(|only| ids(set) == *only);
+    let chosen = SETS.iter().copied().filter(named);
+    let sets: Vec<JointSet> = chosen.map(|set| report(set, (first, each), how)).collect();
+    if let Some(file) = arguments.text("--out") {
+        let section = only.unwrap_or_else(|| "joint".to_owned());
+        store(&file, &section, &Joint { command: arguments.command("with"), sets });
     }
+}
+
+/// `linear_drag,com_offset`
+fn ids(set: &[Sizes]) -> String {
+    set.iter().map(|(id, _)| *id).collect::<Vec<_>>().join(",")
 }
 
 /// How flights are made and told.
@@ -90,42 +100,46 @@ struct How {
     show: bool,
 }
 
-fn report(set: &'static [Sizes], name: &str, (first, each): (u64, u64), how: How) {
+fn report(set: &'static [Sizes], (first, each): (u64, u64), how: How) -> JointSet {
     let found: Vec<(u64, Result<JointEstimate, JointError>, Vec<ActiveEffect>)> =
         (first..first + each).into_par_iter().filter_map(|seed| fly(seed, how, set)).collect();
     let mut tally = Tally { least: f64::INFINITY, ..Tally::default() };
-    for (seed, together, truth) in &found {
-        match together {
-            Ok(together) => tally.add(*seed, together, truth, how.show),
-            Err(error) => println!("{name}: seed {seed}: {error}"),
+    for (seed, estimate, truth) in &found {
+        match estimate {
+            Ok(estimate) => tally.add(*seed, estimate, truth, how.show),
+            Err(error) => {
+                tally.figures.failed += 1;
+                println!("{}: seed {seed}: {error}", ids(set));
+            }
         }
     }
+    let figures = tally.figures(set, found.len());
     println!(
-        "{name:30} {:7} {:11} {:12} {:13} {:11.2}  {:6.1}; {:.1} %",
-        found.len(),
-        tally.count,
-        tally.near,
-        tally.covered,
-        (tally.squares / f64::from(tally.count).max(1.0)).sqrt(),
+        "{:30} {:7} {:11} {:12} {:13} {:11.2}  {:6.1}; {:.1} %",
+        ids(set),
+        figures.flights,
+        figures.determined,
+        figures.near,
+        figures.covered,
+        figures.error_over_std,
         tally.least,
-        100.0 * tally.worst
+        figures.worst_error_percent
     );
+    figures
 }
 
 /// Sizes against the truth, over flights.
 #[derive(Default)]
 struct Tally {
-    count: u32,
-    near: usize,
-    covered: usize,
+    figures: JointSet,
+    /// squares of error over standard error
     squares: f64,
     least: f64,
-    worst: f64,
 }
 
 impl Tally {
-    fn add(&mut self, seed: u64, together: &JointEstimate, truth: &[ActiveEffect], show: bool) {
-        for (effect, truth) in together.effects.iter().zip(truth) {
+    fn add(&mut self, seed: u64, estimate: &JointEstimate, truth: &[ActiveEffect], show: bool) {
+        for (effect, truth) in estimate.effects.iter().zip(truth) {
             self.least = self.least.min(effect.z);
             let id = effect.effect.id();
             for (slot, (parameter, &truth)) in effect.parameters.iter().zip(truth.parameters()).enumerate() {
@@ -144,19 +158,43 @@ impl Tally {
         if amount == 0.0 {
             return;
         }
+        let figures = &mut self.figures;
         match found {
             Found::Determined { value, std } => {
-                self.count += 1;
+                figures.determined += 1;
                 let off = value - truth;
-                self.near += usize::from(off.abs() < 0.2 * amount.abs());
-                self.covered += usize::from(off.abs() < 3.0 * std);
+                figures.near += usize::from(off.abs() < 0.2 * amount.abs());
+                figures.covered += usize::from(off.abs() < 3.0 * std);
                 self.squares += (off / std).powi(2);
-                self.worst = self.worst.max((off / amount).abs());
+                figures.worst_error_percent = figures.worst_error_percent.max(100.0 * (off / amount).abs());
             }
-            Found::NotDetermined { reason, .. } => println!("{what} not determined: {reason}"),
-            Found::AtBound { value, wanted, std } => println!("{what} at {value}: {wanted} +- {std}"),
+            Found::NotDetermined { reason, .. } => {
+                figures.not_determined += 1;
+                println!("{what} not determined: {reason}");
+            }
+            Found::AtBound { value, unbounded, std } => {
+                figures.at_bound += 1;
+                println!("{what} at {value}: {unbounded} +- {std}");
+            }
             _ => {}
         }
+    }
+
+    /// What is stored.
+    fn figures(&mut self, set: &[Sizes], flown: usize) -> JointSet {
+        let mut figures = std::mem::take(&mut self.figures);
+        let parameters = |values: &[(&str, f64, Scale)]| {
+            let of_size = values.iter().filter(|(_, value, _)| *value != 0.0);
+            of_size.map(|(name, ..)| (*name).to_owned()).collect()
+        };
+        figures.effects = set
+            .iter()
+            .map(|(id, values)| ConcealedEffect { id: (*id).to_owned(), parameters: parameters(values) })
+            .collect();
+        figures.flights = flown - figures.failed;
+        figures.error_over_std = short((self.squares / (figures.determined as f64).max(1.0)).sqrt());
+        figures.worst_error_percent = short(figures.worst_error_percent);
+        figures
     }
 }
 
@@ -196,16 +234,20 @@ fn fly(
     let truth = Truth { vehicle: pair.truth, effects: effects.clone(), disturbance: None };
     let flight = simulate_flight(truth, &nominal, &reference, &settings).ok()?;
     let names: Vec<String> = set.iter().map(|(id, _)| (*id).to_owned()).collect();
-    let wanted = RequestedEffects::of(&names).expect("known effects");
+    let requested = RequestedEffects::of(&names).expect("known effects");
     let conditions = ConditionSettings {
         transient_s: Some(1.0),
-        thrust: if wanted.need_commands() { ThrustPreference::Commands } else { ThrustPreference::Measured },
-        askew: wanted.has("imu_misalignment"),
+        thrust: if requested.need_commands() {
+            ThrustPreference::Commands
+        } else {
+            ThrustPreference::Measured
+        },
+        askew: requested.has("imu_misalignment"),
         ..ConditionSettings::default()
     };
     let signals = condition(&flight.recording, &nominal, &conditions).ok()?;
     let half_width_s = ExplainSettings::default().half_width_s;
-    Some((seed, identify_jointly(&[signals], (&nominal, &[]), &wanted, half_width_s), effects))
+    Some((seed, identify_jointly(&[signals], (&nominal, &[]), &requested, half_width_s), effects))
 }
 
 fn sized((id, values): &Sizes, vehicle: &Vehicle) -> ActiveEffect {

@@ -1,9 +1,10 @@
 //! Right names.
 
 use super::flights::{Conditions, drawn, fly, vehicle};
-use super::measured::{Confused, EffectRun, short};
+use super::measured::{Confused, EffectRun};
 use super::ordinary::{Ordinary, ShownBy};
-use super::show::show_search;
+use super::search_steps::print_steps;
+use super::support::digits::short;
 use mavid::diagnose::{Explanation, Named, Verdict};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -43,7 +44,7 @@ pub fn run(entry: &'static Ordinary, first: u64, count: u64) -> EffectRun {
             );
         }
         if std::env::var("SHOW").is_ok_and(|want| want == seed.to_string()) {
-            show_search(explanation);
+            print_steps(explanation);
         }
         let companion = |name: &Named| entry.shown_by == ShownBy::Drag && name.id == "linear_drag";
         for name in &explanation.named {

@@ -1,7 +1,8 @@
 //! Detection limits.
 
 use super::flights::{Conditions, fly};
-use super::measured::{Limit, short};
+use super::measured::Limit;
+use super::support::digits::short;
 use mavid::diagnose::Explanation;
 use rayon::prelude::*;
 use std::collections::BTreeMap;

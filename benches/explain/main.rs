@@ -23,7 +23,7 @@ mod measured;
 mod ordinary;
 mod pairs;
 mod pictures;
-mod show;
+mod search_steps;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -53,7 +53,7 @@ fn main() {
     let effects = chosen().map(|entry| effects::run(entry, first, each)).collect();
     let Some(out) = arguments.text("--out") else { return };
     let pictures = chosen().filter_map(|entry| pictures::picture(entry, first)).collect();
-    let command = format!("cargo bench --bench explain -- {}", arguments.line());
+    let command = arguments.command("explain");
     let measured = Measured { command, seed: first, clean, effects, pairs, limits, pictures };
     let text = serde_json::to_string(&measured).expect("numbers and words");
     // one entry a line: changes can be read

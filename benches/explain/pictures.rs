@@ -1,8 +1,9 @@
 //! The residual of one flight with an effect, before it was found and after.
 
 use super::flights::{Conditions, fly};
-use super::measured::{Chart, Picture, to_digits};
+use super::measured::{Chart, Picture};
 use super::ordinary::Ordinary;
+use super::support::digits::to_digits;
 use mavid::diagnose::locate::Follow;
 use mavid::diagnose::{AXES, CHANNEL_NAMES, Explanation};
 

@@ -101,13 +101,3 @@ pub struct Chart {
     pub low: Vec<f64>,
     pub high: Vec<f64>,
 }
-
-/// A number to four significant digits.
-pub fn short(value: f64) -> f64 {
-    to_digits(value, 4)
-}
-
-/// A number to this many significant digits.
-pub fn to_digits(value: f64, digits: usize) -> f64 {
-    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
-}

@@ -1,5 +1,13 @@
-//! What benchmarks share: their arguments.
+//! What benchmarks share: their arguments, and the figures that they store.
 #![allow(dead_code, reason = "each benchmark uses a part")]
+#![allow(clippy::print_stdout, reason = "a benchmark prints")]
+
+pub mod comparison;
+pub mod digits;
+pub mod fleet;
+pub mod identification;
+pub mod recorded;
+pub mod sections;
 
 use std::str::FromStr;
 
@@ -32,6 +40,11 @@ impl Arguments {
         self.0.join(" ")
     }
 
+    /// The whole command line of this benchmark.
+    pub fn command(&self, benchmark: &str) -> String {
+        format!("cargo bench --bench {benchmark} -- {}", self.line())
+    }
+
     /// Whether the word is there.
     pub fn has(&self, word: &str) -> bool {
         self.0.iter().any(|other| other == word)
@@ -39,6 +52,11 @@ impl Arguments {
 }
 
 fn refuse<T>(name: &str, expected: &str, came: &str) -> T {
-    println!("{name}: expected {expected}, got {came}");
+    end(&format!("{name}: expected {expected}, got {came}"))
+}
+
+/// Ends the process and says why.
+pub fn end(why: &str) -> ! {
+    println!("{why}");
     std::process::exit(2);
 }

@@ -11,7 +11,7 @@ pub struct LogChange {
     /// what it is
     pub found: f64,
     /// what it should be
-    pub wanted: f64,
+    pub needed: f64,
     /// the autopilot takes it only when it starts
     pub restarts: bool,
 }
@@ -104,13 +104,13 @@ impl Stack {
         }
         let added = |change: &LogChange| {
             let of = settings.iter().find(|setting| setting.parameter == change.parameter);
-            let new = bits(change.wanted) & !bits(change.found);
+            let new = bits(change.needed) & !bits(change.found);
             let names = of.into_iter().flat_map(|of| of.bits).filter(|(bit, _)| new >> bit & 1 == 1);
             names.map(|(_, name)| *name).collect::<Vec<_>>().join(", ")
         };
         let set = |change: &LogChange| match added(change) {
-            names if names.is_empty() => format!("{} = {}", change.parameter, change.wanted),
-            names => format!("{} = {} (adds {names})", change.parameter, change.wanted),
+            names if names.is_empty() => format!("{} = {}", change.parameter, change.needed),
+            names => format!("{} = {} (adds {names})", change.parameter, change.needed),
         };
         let restart =
             if changes.iter().any(|change| change.restarts) { " and restart the autopilot" } else { "" };
@@ -167,13 +167,13 @@ mod tests {
         let plan = PX4.log_plan(|name| Some(if name == "SDLOG_PROFILE" { 27.0 } else { 1.0 }));
         assert_eq!(plan.changes, []);
         let off = PX4.log_plan(|name| (name == "SDLOG_MODE").then_some(-1.0));
-        assert_eq!((off.changes[0].found, off.changes[0].wanted), (-1.0, 0.0));
+        assert_eq!((off.changes[0].found, off.changes[0].needed), (-1.0, 0.0));
         assert_eq!(off.unknown, ["SDLOG_PROFILE"]);
         assert_eq!(PX4.rates_unknown(&off), ["SDLOG_PROFILE"]);
         let old = ARDUPILOT.log_plan(|name| (name == "LOG_BITMASK").then_some(0.0));
         assert!(!old.unknown.is_empty() && ARDUPILOT.rates_unknown(&old).is_empty(), "{old:?}");
         let plan = ARDUPILOT.log_plan(|name| Some(if name == "LOG_BITMASK" { 176_126.0 } else { 1.0 }));
-        let names: Vec<_> = plan.changes.iter().map(|change| (change.parameter, change.wanted)).collect();
+        let names: Vec<_> = plan.changes.iter().map(|change| (change.parameter, change.needed)).collect();
         assert_eq!(names, [("LOG_BITMASK", 438_271.0), ("LOG_FILE_RATEMAX", 0.0)]);
         assert_eq!(plan.logs.len(), 3);
     }

@@ -115,7 +115,7 @@ impl Analysis {
         let explained = self.explained.as_ref().map_err(failed)?;
         // it was told with the rest
         if self.unwritten.iter().any(Option::is_some) {
-            return Err(CommandError::Told(NOT_WRITTEN));
+            return Err(CommandError::Reported(NOT_WRITTEN));
         }
         Ok(explain::outcome(explained))
     }
@@ -203,7 +203,7 @@ mod tests {
             "{}",
             analysis.page()
         );
-        assert!(matches!(analysis.outcome(), Err(CommandError::Told(NOT_WRITTEN))));
+        assert!(matches!(analysis.outcome(), Err(CommandError::Reported(NOT_WRITTEN))));
         fs::remove_dir_all(folder).unwrap();
     }
 }

@@ -69,7 +69,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &ConvertArgs) -> Result<Out
         columns: series.columns,
     });
     let converted = Converted { schema: 1, files, series: listed.collect(), losses };
-    if json { output::json(&converted) } else { output::text(&told(&converted, &args.out)) }?;
+    if json { output::json(&converted) } else { output::text(&summary(&converted, &args.out)) }?;
     Ok(outcome)
 }
 
@@ -90,7 +90,7 @@ fn refuse_form(form: ConvertForm) -> Result<(), CommandError> {
     ))
 }
 
-fn told(converted: &Converted, out: &Path) -> String {
+fn summary(converted: &Converted, out: &Path) -> String {
     let mut page = format!("{} files in {}\n", converted.files.len(), text::path(&out));
     for Listed { name, unit, columns, samples } in &converted.series {
         let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };

@@ -20,7 +20,7 @@ pub enum CommandError {
     Ended(String),
     /// it failed and said so; the exit status
     #[error("it failed, and said why")]
-    Told(u8),
+    Reported(u8),
 }
 
 impl From<mavid::config::ConfigError> for CommandError {

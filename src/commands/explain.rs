@@ -89,7 +89,7 @@ pub fn outcome(study: &ExplainStudy) -> Outcome {
 
 /// The trajectory of the flight that distinguishes what these cannot, or why there is none.
 fn write_next(study: &ExplainStudy, path: &Path) -> Result<(), CommandError> {
-    match &study.next {
+    match &study.next_flight {
         Some(Ok(next)) => output::file(path, &trajectory_to_toml(&stored_trajectory(next))?),
         Some(Err(why)) => {
             output::message(&format!("--next: nothing written: {why}"));

@@ -39,7 +39,7 @@ enum Phase {
 
 /// What is known of a verb.
 #[derive(Debug, Clone, Copy)]
-struct Told {
+struct VerbState {
     phase: Phase,
     /// a signal has ended what it fetched
     fetch_ended: bool,
@@ -47,7 +47,7 @@ struct Told {
 
 /// What a running verb tells those that watch over it. Clones tell the same.
 #[derive(Debug, Clone)]
-pub struct Work(Arc<watch::Sender<Told>>);
+pub struct Work(Arc<watch::Sender<VerbState>>);
 
 impl Work {
     fn enters(&self, phase: Phase) {
@@ -71,7 +71,7 @@ impl Work {
 
     /// The download is over; whether a signal ended it. From now on it ends itself.
     pub fn fetched(&self, by_signal: bool) {
-        self.0.send_replace(Told { phase: Phase::Ending, fetch_ended: by_signal });
+        self.0.send_replace(VerbState { phase: Phase::Ending, fetch_ended: by_signal });
     }
 
     /// It hears of signals, or has ended what had to be; by an end soon after one nothing is lost but words and what can
@@ -92,7 +92,7 @@ struct Signalled {
 
 impl Signalled {
     /// A signal came. It may be heard of here only after the download has ended by it.
-    fn hear(&mut self, name: String, told: Told) {
+    fn hear(&mut self, name: String, told: VerbState) {
         let of_download = told.phase == Phase::Fetching || told.fetch_ended;
         if of_download && name == INTERRUPT && !self.spared && self.asked.is_none() {
             self.spared = true;
@@ -109,7 +109,7 @@ pub fn run(
     panics_do_not_wait();
     let (sender, signalled) = channel();
     watch_signals(sender)?;
-    let (told, phase) = watch::channel(Told { phase: Phase::Before, fetch_ended: false });
+    let (told, phase) = watch::channel(VerbState { phase: Phase::Before, fetch_ended: false });
     let work = Work(Arc::new(told));
     let (done, outcome) = channel();
     let thread = thread::Builder::new().name("verb".into()).spawn(move || {
@@ -124,7 +124,7 @@ pub fn run(
         match outcome.recv_timeout(LOOK) {
             Ok(ended) => return ended,
             // it panicked, which was told
-            Err(RecvTimeoutError::Disconnected) => return Err(CommandError::Told(PANICKED)),
+            Err(RecvTimeoutError::Disconnected) => return Err(CommandError::Reported(PANICKED)),
             Err(RecvTimeoutError::Timeout) => {}
         }
         if let Ok(name) = signalled.try_recv() {
@@ -147,7 +147,7 @@ pub fn run(
             ),
         };
         last_word(move || output::error(&text));
-        return Err(CommandError::Told(FAILED));
+        return Err(CommandError::Reported(FAILED));
     }
 }
 
@@ -182,7 +182,7 @@ fn report_in_time(error: CommandError) -> CommandError {
     if !words.is_empty() {
         let _ = within(PATIENCE, move || words.iter().for_each(|line| output::error(line)));
     }
-    CommandError::Told(status)
+    CommandError::Reported(status)
 }
 
 /// A panic is told, but a terminal that takes nothing does not keep the panicking thread from ending: others still have
@@ -204,7 +204,7 @@ mod tests {
     fn asked(signals: &[(&str, Phase, bool)]) -> Option<String> {
         let mut heard = Signalled::default();
         for (name, phase, fetch_ended) in signals {
-            heard.hear((*name).to_owned(), Told { phase: *phase, fetch_ended: *fetch_ended });
+            heard.hear((*name).to_owned(), VerbState { phase: *phase, fetch_ended: *fetch_ended });
         }
         heard.asked
     }

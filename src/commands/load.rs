@@ -1,7 +1,7 @@
 //! `mavid vehicle load`: parameters of a file onto a vehicle, and back.
 
 use crate::commands::agreement::SET;
-use mavid::onboard::{self, Loading, ParameterFileError, Session, Wanted, read_parameter_file};
+use mavid::onboard::{self, Loading, ParameterComparison, ParameterFileError, Session, read_parameter_file};
 use mavid::text;
 use serde::Serialize;
 
@@ -31,9 +31,9 @@ struct Line {
     wanted: f64,
 }
 
-impl From<&Wanted> for Line {
-    fn from(Wanted { name, found, wanted }: &Wanted) -> Self {
-        Self { parameter: name.clone(), found: *found, wanted: *wanted }
+impl From<&ParameterComparison> for Line {
+    fn from(ParameterComparison { name, found, in_file }: &ParameterComparison) -> Self {
+        Self { parameter: name.clone(), found: *found, wanted: *in_file }
     }
 }
 
@@ -63,7 +63,7 @@ async fn load(
     if !json {
         output::text(&table(session, &loading))?;
     }
-    let differing = loading.wanted.iter().filter(|wanted| wanted.differs()).count();
+    let differing = loading.parameters.iter().filter(|parameter| parameter.differs()).count();
     let set = differing > 0 && (args.yes || !json && agreed(SET, "set these")?);
     if set {
         onboard::load(session, &loading, &notes).await?;
@@ -74,7 +74,7 @@ async fn load(
             schema: 1,
             system: session.vehicle.system.0,
             autopilot: session.stack.id,
-            parameters: loading.wanted.iter().map(Line::from).collect(),
+            parameters: loading.parameters.iter().map(Line::from).collect(),
             set,
             notes: set.then_some(place),
             ..Document::default()
@@ -95,12 +95,12 @@ async fn load(
 /// All or nothing, unless told otherwise: a file for another autopilot or a simulator is refused.
 fn refuse_unknown(args: &LoadArgs, session: &Session, loading: &Loading) -> Result<(), CommandError> {
     let unknown: Vec<&str> = loading
-        .wanted
+        .parameters
         .iter()
-        .filter(|wanted| wanted.found.is_none())
-        .map(|wanted| wanted.name.as_str())
+        .filter(|parameter| parameter.found.is_none())
+        .map(|parameter| parameter.name.as_str())
         .collect();
-    if unknown.is_empty() || args.known_only && unknown.len() < loading.wanted.len() {
+    if unknown.is_empty() || args.known_only && unknown.len() < loading.parameters.len() {
         return Ok(());
     }
     Err(CommandError::Input(format!(
@@ -114,10 +114,10 @@ fn refuse_unknown(args: &LoadArgs, session: &Session, loading: &Loading) -> Resu
 fn table(session: &Session, loading: &Loading) -> String {
     let mut lines = vec![format!("system {}, {}:", session.vehicle.system, session.stack.name)];
     lines.push(format!("  {:<18}{:>14}{:>14}", "parameter", "now", "in the file"));
-    lines.extend(loading.wanted.iter().map(|Wanted { name, found, wanted }| {
+    lines.extend(loading.parameters.iter().map(|ParameterComparison { name, found, in_file }| {
         let found = found.map_or_else(|| "not there".to_owned(), |found| text::significant(found, 6));
-        let same = if found == text::significant(*wanted, 6) { "  the same" } else { "" };
-        format!("  {name:<18}{found:>14}{:>14}{same}", text::significant(*wanted, 6))
+        let same = if found == text::significant(*in_file, 6) { "  the same" } else { "" };
+        format!("  {name:<18}{found:>14}{:>14}{same}", text::significant(*in_file, 6))
     }));
     lines.join("\n")
 }

@@ -58,7 +58,7 @@ impl CommandError {
     /// What is to be said of it, line by line; nothing where that was done.
     pub fn words(&self) -> Vec<String> {
         match self {
-            Self::Told(_) => Vec::new(),
+            Self::Reported(_) => Vec::new(),
             Self::Inputs(lines) => lines.iter().map(|line| format!("mavid: {line}")).collect(),
             one => vec![format!("mavid: {one}")],
         }
@@ -69,7 +69,7 @@ impl CommandError {
         match self {
             Self::Input(_) | Self::Inputs(_) => 2,
             Self::Failure(_) | Self::Ended(_) => 1,
-            Self::Told(status) => *status,
+            Self::Reported(status) => *status,
         }
     }
 }

@@ -3,16 +3,18 @@
 //! It only listens, unless `--heartbeat` asks it to speak as a ground station and to request messages.
 //! Exit status 3 where the file misses frames or nothing came.
 
-use mavid::wire::heartbeat::{AUTOPILOT_AT, HEARTBEAT, NO_AUTOPILOT};
+use mavid::wire::heartbeat::{AUTOPILOT_AT, NO_AUTOPILOT};
+use mavid::wire::message_id::HEARTBEAT;
 use std::time::Duration;
 
-use mavid::fly::{self, Order, Period, Target};
+use mavid::fly::{self, MessageId, Order, Period, Target};
 use mavid::link::{
     LinkEvent, LinkOptions, LinkReader, LinkStats, LinkWriter, Received, ReceivedFrame, RecordError,
     Recorder, RecorderStatus, Signing,
 };
 use mavid::text;
 use mavid::wire::{ComponentId, SystemId};
+use mavlink::dialects::ardupilotmega as dialect;
 use serde::Serialize;
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
@@ -25,19 +27,19 @@ const YEAR: Duration = Duration::from_secs(365 * 86_400);
 /// How long the last frames may take to leave.
 const FLUSH: Duration = Duration::from_secs(1);
 /// Messages that identification uses and the rates asked for, Hz. A vehicle gives what it can.
-const MESSAGES: &[(u16, u16)] = &[
-    (31, 100),  // ATTITUDE_QUATERNION
-    (32, 50),   // LOCAL_POSITION_NED
-    (36, 100),  // SERVO_OUTPUT_RAW
-    (83, 50),   // ATTITUDE_TARGET
-    (85, 20),   // POSITION_TARGET_LOCAL_NED
-    (105, 100), // HIGHRES_IMU
-    (27, 100),  // RAW_IMU
-    (147, 2),   // BATTERY_STATUS
-    (245, 5),   // EXTENDED_SYS_STATE
-    (291, 10),  // ESC_STATUS
-    (331, 50),  // ODOMETRY
-    (375, 100), // ACTUATOR_OUTPUT_STATUS
+const MESSAGES: &[(MessageId, u16)] = &[
+    (MessageId::of::<dialect::ATTITUDE_QUATERNION_DATA>(), 100),
+    (MessageId::of::<dialect::LOCAL_POSITION_NED_DATA>(), 50),
+    (MessageId::of::<dialect::SERVO_OUTPUT_RAW_DATA>(), 100),
+    (MessageId::of::<dialect::ATTITUDE_TARGET_DATA>(), 50),
+    (MessageId::of::<dialect::POSITION_TARGET_LOCAL_NED_DATA>(), 20),
+    (MessageId::of::<dialect::HIGHRES_IMU_DATA>(), 100),
+    (MessageId::of::<dialect::RAW_IMU_DATA>(), 100),
+    (MessageId::of::<dialect::BATTERY_STATUS_DATA>(), 2),
+    (MessageId::of::<dialect::EXTENDED_SYS_STATE_DATA>(), 5),
+    (MessageId::of::<dialect::ESC_STATUS_DATA>(), 10),
+    (MessageId::of::<dialect::ODOMETRY_DATA>(), 50),
+    (MessageId::of::<dialect::ACTUATOR_OUTPUT_STATUS_DATA>(), 100),
 ];
 
 /// The JSON document.

@@ -94,7 +94,7 @@ pub enum ConfigError {
 
 impl ConfigError {
     /// All of a file's as one; of one error that itself.
-    pub(super) fn together(origin: &str, mut errors: Vec<Self>) -> Self {
+    pub(super) fn combined(origin: &str, mut errors: Vec<Self>) -> Self {
         match errors.pop() {
             Some(one) if errors.is_empty() => one,
             last => {

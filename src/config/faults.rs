@@ -62,7 +62,7 @@ impl Faults {
 
     /// Refuses the file of this name where anything is wrong with it.
     pub(super) fn refuse(self, origin: &str) -> Result<(), ConfigError> {
-        if self.errors.is_empty() { Ok(()) } else { Err(ConfigError::together(origin, self.errors)) }
+        if self.errors.is_empty() { Ok(()) } else { Err(ConfigError::combined(origin, self.errors)) }
     }
 }
 

@@ -68,11 +68,11 @@ pub(super) fn parse_toml_on<T: serde::de::DeserializeOwned>(
     match read_form(text) {
         Ok(Read { form, faults, stands_in }) => {
             other(&faults)?;
-            Ok((form, Faults::new(told(&faults), stands_in)))
+            Ok((form, Faults::new(described(&faults), stands_in)))
         }
         Err(faults) => {
             other(&faults)?;
-            Err(ConfigError::together(origin, told(&faults)))
+            Err(ConfigError::combined(origin, described(&faults)))
         }
     }
 }

@@ -160,7 +160,7 @@ fn what_is_hardly_meant_is_warned_of() {
 }
 
 /// Each of the lines that a refusal of several errors has, without the file's name.
-fn told(parts: &[&str]) -> Vec<String> {
+fn refusals(parts: &[&str]) -> Vec<String> {
     let lines = parse(parts).unwrap_err().lines();
     lines.iter().map(|line| line.trim_start_matches("quad.toml: ").to_owned()).collect()
 }
@@ -172,7 +172,7 @@ fn all_that_is_wrong_is_told_at_once() {
     let speed = SPEED.replace("speed_max = 1000\n", "speed_max = 0\nspeed_min = 1\n").replace("2e-7", "-1");
     let rotors = ROTORS.replacen("\"cw\"", "\"left\"", 1).replacen("spin = \"ccw\"\n", "", 1);
     let limits = "[limits]\nz_min_m = 2\nz_max_m = 1\nroll_max_deg = 95\nx_max_m = -3\n";
-    let lines = told(&[&body, &speed, &rotors, limits]);
+    let lines = refusals(&[&body, &speed, &rotors, limits]);
     let expected = [
         "11 errors",
         "line 4, column 18 (`inertia = { xx = \"thin\", yy = 0.02, zz = nan }`): invalid type: string \"thin\", expected f64",
@@ -195,7 +195,7 @@ fn all_that_is_wrong_is_told_at_once() {
 
 #[test]
 fn what_is_missing_as_a_whole_is_told_once() {
-    let lines = told(&["name = \"x\"\n[body]\nmass = 1\n"]);
+    let lines = refusals(&["name = \"x\"\n[body]\nmass = 1\n"]);
     assert_eq!(lines.len(), 4, "{lines:#?}");
     assert!(lines[1].contains("missing field `inertia` in `body`"), "{lines:#?}");
     assert!(lines[2].contains("missing field `propulsion`"), "{lines:#?}");
@@ -209,7 +209,7 @@ fn a_position_of_two_numbers_or_of_text_is_told_where_it_stands() {
         "[0.2, \"x\", 0]",
         1,
     );
-    let lines = told(&[BODY, SPEED, &rotors]);
+    let lines = refusals(&[BODY, SPEED, &rotors]);
     assert_eq!(lines.len(), 3, "{lines:#?}");
     assert!(lines[1].contains("invalid length 2, expected an array of length 3"), "{lines:#?}");
     assert!(lines[2].contains("invalid type: string \"x\", expected f64"), "{lines:#?}");
@@ -217,17 +217,17 @@ fn a_position_of_two_numbers_or_of_text_is_told_where_it_stands() {
 
 #[test]
 fn what_is_no_toml_is_told_by_its_lines_and_a_foreign_file_has_an_end() {
-    let lines = told(&["name = \n[body\nmass = 1\n"]);
+    let lines = refusals(&["name = \n[body\nmass = 1\n"]);
     assert!(lines.len() > 1 && lines.iter().any(|line| line.contains("line 1")), "{lines:#?}");
     let many: String = (0..1000).map(|number| format!("key_{number} = 1\n")).collect();
-    let lines = told(&[&many]);
+    let lines = refusals(&[&many]);
     assert_eq!((lines.len(), lines[0].as_str()), (21, "20 or more errors"), "{lines:#?}");
 }
 
 #[test]
 fn what_follows_from_a_fault_is_not_told() {
-    let lines = told(&[BODY, &CURVE.replace("\"pwm\"", "\"pmw\""), ROTORS]);
+    let lines = refusals(&[BODY, &CURVE.replace("\"pwm\"", "\"pmw\""), ROTORS]);
     assert!(lines.len() == 1 && lines[0].contains("unknown variant `pmw`"), "{lines:#?}");
-    let lines = told(&[&BODY.replace("mass = 1.5\n", ""), SPEED, ROTORS]);
+    let lines = refusals(&[&BODY.replace("mass = 1.5\n", ""), SPEED, ROTORS]);
     assert!(lines.len() == 1 && lines[0].contains("missing field `mass` in `body`"), "{lines:#?}");
 }

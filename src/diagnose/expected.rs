@@ -12,7 +12,7 @@ use super::recorded::Recorded;
 use super::rows::Rows;
 use super::score::columns_of;
 use super::signature::{Carried, EffectTerm, Signature};
-use super::signatures::{WANTED, Wanted};
+use super::signatures::{EFFECT_QUANTITIES, EffectQuantity};
 use super::trace::Trace;
 use crate::physics::Parameter;
 use crate::signals::{Signals, WEAK_HALF_WIDTH_S};
@@ -42,7 +42,7 @@ pub enum Expected {
         /// of the parameter
         unit: &'static str,
         /// what the flights hold of it already, however badly an effect of usual size is determined
-        shown: Option<Shown>,
+        shown: Option<SignificantAmount>,
     },
     /// a quantity that it needs is not recorded
     Lacks {
@@ -59,7 +59,7 @@ pub enum Expected {
 
 /// A parameter that stands out of the flights' own residual.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shown {
+pub struct SignificantAmount {
     /// its name
     pub parameter: &'static str,
     /// standard error, in its unit
@@ -79,7 +79,7 @@ impl ExpectedError {
 /// From so many standard errors on it stands out: as many as [`explain`](super::explain) asks for.
 const STANDS_OUT: f64 = 4.0;
 
-/// How well flights determine each of [`WANTED`].
+/// How well flights determine each of [`EFFECT_QUANTITIES`].
 ///
 /// # Errors
 /// [`ExplainError`] where streams are missing or too little was flown.
@@ -94,7 +94,7 @@ pub fn expected_errors(flights: &[Signals], vehicle: &Vehicle) -> Result<Vec<Exp
     }
     let (fitted, latency_std_s) = with_any_latency(&traces, Base::rigid(vehicle))?;
     let flights = Flights { traces: &traces, fitted: &fitted, vehicle };
-    let of = |wanted: &Wanted| ExpectedError {
+    let of = |wanted: &EffectQuantity| ExpectedError {
         quantity: wanted.name,
         of: match wanted.signature.role.latency {
             // what is measured is behind the motors
@@ -106,7 +106,7 @@ pub fn expected_errors(flights: &[Signals], vehicle: &Vehicle) -> Result<Vec<Exp
             None => flights.expected(wanted),
         },
     };
-    Ok(WANTED.par_iter().map(of).collect())
+    Ok(EFFECT_QUANTITIES.par_iter().map(of).collect())
 }
 
 /// Flights with the rigid body fitted to them.
@@ -117,7 +117,7 @@ struct Flights<'a> {
 }
 
 impl Flights<'_> {
-    fn expected(&self, wanted: &Wanted) -> Expected {
+    fn expected(&self, wanted: &EffectQuantity) -> Expected {
         let signature = wanted.signature;
         let recorded = Recorded::new(&self.fitted.base.vehicle, self.traces);
         if let Some((_, what, why)) = recorded.lacks(signature.needs) {
@@ -134,15 +134,15 @@ impl Flights<'_> {
             }
         };
         // a wind is seen through a drag of usual size, which these flights need not have
-        let shown = signature.role.wind.is_none().then(|| shown(signature, &tested)).flatten();
+        let shown = signature.role.wind.is_none().then(|| significant_amount(signature, &tested)).flatten();
         self.known(wanted, worst(signature, &tested), shown)
     }
 
     fn known(
         &self,
-        wanted: &Wanted,
+        wanted: &EffectQuantity,
         worst: Option<(&'static Parameter, f64)>,
-        shown: Option<Shown>,
+        shown: Option<SignificantAmount>,
     ) -> Expected {
         match worst {
             Some((parameter, std)) if std.is_finite() && std > 0.0 => {
@@ -207,13 +207,16 @@ impl Flights<'_> {
 }
 
 /// The amount that is the most standard errors from nothing, where that is enough of them.
-fn shown(signature: &Signature, tested: &[(EffectTerm, Evidence, usize)]) -> Option<Shown> {
+fn significant_amount(
+    signature: &Signature,
+    tested: &[(EffectTerm, Evidence, usize)],
+) -> Option<SignificantAmount> {
     let of = |(term, evidence, first): &(EffectTerm, Evidence, usize)| {
         let amounts = term.free.iter().enumerate().filter(|(_, slot)| signature.amounts.contains(slot));
         let amounts = amounts.filter_map(|(place, slot)| {
             let (parameter, std) = (term.parameter(*slot)?, evidence.std(first + place));
             let deviates = evidence.theta.get(first + place)?.abs() / std;
-            Some(Shown { parameter: parameter.name, std, deviates })
+            Some(SignificantAmount { parameter: parameter.name, std, deviates })
         });
         amounts.collect::<Vec<_>>()
     };

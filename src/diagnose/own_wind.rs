@@ -55,7 +55,7 @@ pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings
 
 /// The flight as seen with air that moves at `wind` (world, m/s).
 #[must_use]
-pub fn seen_with_air(signals: &Signals, wind: &Vector3<f64>) -> Signals {
+pub fn relative_to_air(signals: &Signals, wind: &Vector3<f64>) -> Signals {
     let mut seen = signals.clone();
     let moving =
         |velocity: &Arc<Vec<Vector3<f64>>>| Arc::new(velocity.iter().map(|v| v - wind).collect::<Vec<_>>());

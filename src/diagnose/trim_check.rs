@@ -49,7 +49,7 @@ impl Trim {
         let mut worst: Option<(f64, usize)> = None;
         for &place in &places {
             let others: Vec<usize> = places.iter().copied().filter(|other| *other != place).collect();
-            let mut shown = Shown::default();
+            let mut shown = HoverEvidence::default();
             for of in &self.each {
                 let hover = Hover { airframe: &airframe, arm_m: mean_arm_m(&base.vehicle), of };
                 shown.add(of, &hover.left(base, &places), &hover.left(base, &others));
@@ -65,14 +65,14 @@ impl Trim {
 
 /// How much of a name hover shows, over all flights.
 #[derive(Default)]
-struct Shown {
+struct HoverEvidence {
     /// reciprocal variance of the size over the named one
     information: f64,
     /// the same times how much that size is less than the named one
     less: f64,
 }
 
-impl Shown {
+impl HoverEvidence {
     /// Adds a flight. `left` is the balance with the effect, and `without` that without it.
     fn add(&mut self, of: &Balance, left: &Vector3<f64>, without: &Vector3<f64>) {
         let by = without - left;

@@ -24,12 +24,12 @@ pub enum FetchError {
         why: String,
     },
     /// a parameter stays what it was
-    #[error("expected {name} = {wanted} after setting it, the vehicle says {came}")]
+    #[error("expected {name} = {requested} after setting it, the vehicle says {came}")]
     NotSet {
         /// which
         name: String,
         /// what was asked for
-        wanted: f64,
+        requested: f64,
         /// what it is
         came: String,
     },

@@ -6,7 +6,7 @@ use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::ftp::{Answer, Ftp, Question};
 use super::peer::Peer;
-use super::remote::{Place, RemoteLog, Wanted};
+use super::remote::{LogSelection, Place, RemoteLog};
 use super::{Dialogue, FetchError};
 use crate::autopilot::Autopilot;
 use crate::text;
@@ -44,7 +44,7 @@ impl Folder {
 pub(super) struct FtpList {
     ftp: Ftp,
     autopilot: Autopilot,
-    wanted: Wanted,
+    selection: LogSelection,
     roots: std::slice::Iter<'static, &'static str>,
     open: Option<Folder>,
     /// folders below the root that are still to be listed, the next one last
@@ -66,12 +66,12 @@ fn is_log(name: &str) -> bool {
 }
 
 impl FtpList {
-    pub(super) fn new(peer: Peer, autopilot: Autopilot, wanted: Wanted) -> Self {
+    pub(super) fn new(peer: Peer, autopilot: Autopilot, selection: LogSelection) -> Self {
         let roots = if autopilot == Autopilot::Px4 { PX4_ROOTS } else { ARDUPILOT_ROOTS };
         let mut roots = roots.iter();
         let open = roots.next().map(|root| Folder::new((*root).to_owned()));
         let (folders, found) = (Vec::new(), Vec::new());
-        Self { ftp: Ftp::new(peer), autopilot, wanted, roots, open, folders, found, left_out: 0 }
+        Self { ftp: Ftp::new(peer), autopilot, selection, roots, open, folders, found, left_out: 0 }
     }
 
     fn entries(&mut self, folder: &mut Folder, data: &[u8]) -> usize {
@@ -105,7 +105,7 @@ impl FtpList {
     }
 
     /// A folder is over: which one is next?
-    fn next(&mut self, is_root: bool) {
+    fn open_next_folder(&mut self, is_root: bool) {
         if is_root {
             // days before those folders that have none, the newest last
             self.folders.sort_by_key(|path| {
@@ -116,11 +116,11 @@ impl FtpList {
                     path.clone(),
                 )
             });
-            if self.wanted == Wanted::All {
+            if self.selection == LogSelection::All {
                 self.folders.reverse();
             }
         }
-        let is_enough = self.wanted == Wanted::Last && !self.found.is_empty();
+        let is_enough = self.selection == LogSelection::Last && !self.found.is_empty();
         self.open = if is_enough { None } else { self.folders.pop().map(Folder::new) };
     }
 
@@ -129,14 +129,14 @@ impl FtpList {
         match answer {
             Answer::Data(data) if folder.count < u32::try_from(ENTRIES).unwrap_or(u32::MAX) => {
                 if self.entries(&mut folder, &data) == 0 {
-                    self.next(is_root);
+                    self.open_next_folder(is_root);
                     return Ok(());
                 }
                 folder.question = Question::new(operation::LIST, folder.count, &folder.path);
                 self.open = Some(folder);
             }
-            Answer::Data(_) | Answer::Refused(refusal::END) => self.next(is_root),
-            Answer::Refused(_) if !is_root => self.next(false),
+            Answer::Data(_) | Answer::Refused(refusal::END) => self.open_next_folder(is_root),
+            Answer::Refused(_) if !is_root => self.open_next_folder(false),
             Answer::Refused(code) => match self.roots.next() {
                 Some(root) => self.open = Some(Folder::new((*root).to_owned())),
                 None => {
@@ -152,7 +152,7 @@ impl FtpList {
     pub(super) fn logs(&self) -> Vec<RemoteLog> {
         let mut found = self.found.clone();
         found.sort();
-        let all_known = self.wanted == Wanted::All;
+        let all_known = self.selection == LogSelection::All;
         let log = |(index, (path, size)): (u32, (String, u64))| {
             let stem = path.rsplit('/').next().and_then(|name| name.split('.').next()).unwrap_or_default();
             let own = if self.autopilot == Autopilot::Px4 { None } else { stem.parse().ok() };

@@ -7,7 +7,7 @@ use mavlink::dialects::ardupilotmega::MavMessage;
 use super::ftp_list::FtpList;
 use super::log_list::LogList;
 use super::peer::Peer;
-use super::remote::{Protocol, RemoteLog, Wanted};
+use super::remote::{LogSelection, Protocol, RemoteLog};
 use super::{Dialogue, FetchError};
 use crate::wire::{Frame, Vehicle};
 
@@ -26,10 +26,10 @@ impl List {
     ///
     /// # Errors
     /// No message can name it.
-    pub fn new(vehicle: Vehicle, protocol: Protocol, wanted: Wanted) -> Result<Self, FetchError> {
+    pub fn new(vehicle: Vehicle, protocol: Protocol, selection: LogSelection) -> Result<Self, FetchError> {
         let peer = Peer::of(vehicle)?;
         Ok(Self(match protocol {
-            Protocol::Ftp => Way::Ftp(Box::new(FtpList::new(peer, vehicle.autopilot, wanted))),
+            Protocol::Ftp => Way::Ftp(Box::new(FtpList::new(peer, vehicle.autopilot, selection))),
             Protocol::Log => Way::Log(LogList::new(peer)),
         }))
     }

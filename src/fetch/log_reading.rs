@@ -46,7 +46,7 @@ impl Request {
     }
 
     /// The next of a round that is to be sent.
-    fn next(&self) -> Option<(u64, u64)> {
+    fn next_range(&self) -> Option<(u64, u64)> {
         self.ranges.get(self.sent).copied()
     }
 
@@ -111,7 +111,7 @@ impl LogReading {
     }
 
     /// What is asked for next: the small gaps before the first large one, a large one, or what comes after all of them.
-    fn wanted(&self) -> Vec<(u64, u64)> {
+    fn ranges_due(&self) -> Vec<(u64, u64)> {
         let mut ranges: Vec<(u64, u64)> = Vec::new();
         for (from, to) in self.window.gaps() {
             match ranges.last_mut() {
@@ -179,7 +179,7 @@ impl Dialogue for LogReading {
         }
         let every = self.pace.between(SPACINGS, BETWEEN_REQUESTS);
         if let Some(request) = &mut self.request
-            && let Some(range) = request.next()
+            && let Some(range) = request.next_range()
         {
             if now.saturating_sub(request.last_sent) < every {
                 return Ok(None);
@@ -191,7 +191,7 @@ impl Dialogue for LogReading {
         if self.is_waited_for(now)? {
             return Ok(None);
         }
-        let ranges = self.wanted();
+        let ranges = self.ranges_due();
         let first = ranges.first().copied();
         self.request = Some(Request {
             ranges,

@@ -46,6 +46,6 @@ pub use name::local_name;
 pub use notes::{Noted, Notes, NotesError};
 pub use parameters::{Known, ReadParameters, SetParameters};
 pub use part::{Begun, Checked, Part, PartError};
-pub use remote::{MOST_BYTES, Place, Protocol, RemoteLog, Wanted};
+pub use remote::{LogSelection, MOST_BYTES, Place, Protocol, RemoteLog};
 pub use survey::{Offer, Survey};
 pub use uptime::Uptime;

@@ -3,10 +3,8 @@
 use mavlink::dialects::ardupilotmega::MavParamType;
 
 use super::peer::Peer;
+use crate::wire::message_id::PARAM_VALUE;
 use crate::wire::{Frame, Payload};
-
-/// PARAM_VALUE.
-const PARAM_VALUE: u32 = 22;
 
 /// Types whose values are whole numbers, by their number in messages.
 const WHOLE: [(u8, MavParamType); 6] = [

@@ -106,7 +106,7 @@ impl Dialogue for ReadParameters {
 struct Setting {
     name: String,
     was: ParameterValue,
-    wanted: f64,
+    requested: f64,
     came: Option<f64>,
     asked: Asked,
     /// it was asked for often enough
@@ -116,7 +116,7 @@ struct Setting {
 impl Setting {
     /// To the precision of the message.
     fn is_settled(&self) -> bool {
-        self.came.is_some_and(|came| (came - self.wanted).abs() <= 1e-6 * self.wanted.abs().max(1.0))
+        self.came.is_some_and(|came| (came - self.requested).abs() <= 1e-6 * self.requested.abs().max(1.0))
     }
 }
 
@@ -139,7 +139,7 @@ impl SetParameters {
             Some(Setting {
                 name: (*name).to_owned(),
                 was,
-                wanted: *wanted,
+                requested: *wanted,
                 came: None,
                 asked: Asked::default(),
                 given_up: false,
@@ -154,7 +154,7 @@ impl SetParameters {
         self.items.iter().filter(|item| !item.is_settled()).map(|item| {
             let came =
                 item.came.map_or_else(|| "nothing".to_owned(), |came| format!("{} = {came}", item.name));
-            let failure = FetchError::NotSet { name: item.name.clone(), wanted: item.wanted, came };
+            let failure = FetchError::NotSet { name: item.name.clone(), requested: item.requested, came };
             (item.name.as_str(), failure)
         })
     }
@@ -171,7 +171,7 @@ impl Dialogue for SetParameters {
                 item.given_up = true;
                 continue;
             }
-            let value = item.was.encoded(&self.peer, item.wanted);
+            let value = item.was.encoded(&self.peer, item.requested);
             return Ok(Some(self.peer.set_parameter(&item.name, value, item.was.of_type)));
         }
         Ok(None)

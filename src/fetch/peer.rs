@@ -9,16 +9,9 @@ use mavlink::dialects::ardupilotmega::{
 use super::FetchError;
 use crate::autopilot::Autopilot;
 use crate::wire::file_transfer::Transfer;
+use crate::wire::message_id::{AUTOPILOT_VERSION, FILE_TRANSFER_PROTOCOL, LOG_DATA, LOG_ENTRY, SYSTEM_TIME};
 use crate::wire::{Frame, Vehicle};
 
-/// FILE_TRANSFER_PROTOCOL, LOG_ENTRY and LOG_DATA.
-const FILE_TRANSFER: u32 = 110;
-const LOG_ENTRY: u32 = 118;
-const LOG_DATA: u32 = 120;
-/// The message with what a vehicle offers, as a parameter of a command.
-const AUTOPILOT_VERSION: f32 = 148.0;
-/// The message with the vehicle's time.
-const SYSTEM_TIME: f32 = 2.0;
 /// Bytes of one LOG_DATA.
 pub(super) const LOG_DATA_BYTES: usize = 90;
 
@@ -106,12 +99,12 @@ impl Peer {
 
     /// A request for AUTOPILOT_VERSION.
     pub(super) fn request_version(&self) -> MavMessage {
-        self.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, AUTOPILOT_VERSION)
+        self.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, AUTOPILOT_VERSION as f32)
     }
 
     /// A request for SYSTEM_TIME.
     pub(super) fn request_system_time(&self) -> MavMessage {
-        self.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, SYSTEM_TIME)
+        self.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, SYSTEM_TIME as f32)
     }
 
     /// The older one of the version.
@@ -152,7 +145,7 @@ impl Peer {
 
     /// An answer of the file transfer, if it is one of this vehicle.
     pub(super) fn heard_transfer<'a>(&self, frame: &Frame<'a>) -> Option<Transfer<'a>> {
-        let is = self.is_from(frame) && frame.header().message_id == FILE_TRANSFER;
+        let is = self.is_from(frame) && frame.header().message_id == FILE_TRANSFER_PROTOCOL;
         is.then(|| Transfer::read(frame.payload()))
     }
 

@@ -58,7 +58,7 @@ pub struct RemoteLog {
 
 /// Which logs are to be listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wanted {
+pub enum LogSelection {
     /// all of them
     All,
     /// the last one, and others only where they come with it

@@ -9,10 +9,10 @@ use super::pace::Pace;
 use super::peer::Peer;
 use super::remote::Protocol;
 use super::{Dialogue, FetchError};
+use crate::wire::message_id::AUTOPILOT_VERSION;
 use crate::wire::{Frame, UID2_BYTES, Vehicle};
 
-/// AUTOPILOT_VERSION, and where its numbers of the processor begin.
-const AUTOPILOT_VERSION: u32 = 148;
+/// Where the numbers of the processor begin in AUTOPILOT_VERSION.
 const UID_AT: usize = 8;
 const UID2_AT: usize = 60;
 /// Tries; a vehicle that does not answer is asked all the same for its logs.

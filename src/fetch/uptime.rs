@@ -8,10 +8,11 @@ use super::asked::Asked;
 use super::pace::Pace;
 use super::peer::Peer;
 use super::{Dialogue, FetchError};
+use crate::wire::message_id::{ATTITUDE, LOCAL_POSITION_NED, SYSTEM_TIME};
 use crate::wire::{Frame, Vehicle};
 
-/// Messages with the time since the start in ms, and where in them it is: SYSTEM_TIME, ATTITUDE, LOCAL_POSITION_NED.
-const SAYS: [(u32, usize); 3] = [(2, 8), (30, 0), (32, 0)];
+/// Messages with the time since the start in ms, and where in them it is.
+const SAYS: [(u32, usize); 3] = [(SYSTEM_TIME, 8), (ATTITUDE, 0), (LOCAL_POSITION_NED, 0)];
 /// Tries; a vehicle need not say it.
 const TRIES: u32 = 6;
 

@@ -20,7 +20,8 @@ const LEAST_BLOCKS: usize = 4;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FalseAlarms {
     /// what was asked for: share of unchanged vehicles, over the whole time of their histories
-    pub wanted: f64,
+    #[serde(rename = "wanted")]
+    pub allowed: f64,
     /// histories that were shuffled; 0: no vehicle has flights enough, and the usual bound holds
     pub shuffled: usize,
     /// of these called changed, by the bound below
@@ -60,8 +61,14 @@ impl FalseAlarms {
 pub fn calibrated(histories: &[VehicleHistory], wanted: f64, shuffles: u32) -> FalseAlarms {
     let long: Vec<&VehicleHistory> =
         histories.iter().filter(|history| history.study.flights.len() >= LEAST_BLOCKS).collect();
-    let none =
-        FalseAlarms { wanted, shuffled: 0, called: 0, flights: 0.0, blocks: 0.0, least_sigmas: NAMED_SIGMAS };
+    let none = FalseAlarms {
+        allowed: wanted,
+        shuffled: 0,
+        called: 0,
+        flights: 0.0,
+        blocks: 0.0,
+        least_sigmas: NAMED_SIGMAS,
+    };
     if long.is_empty() {
         return none;
     }

@@ -96,7 +96,7 @@ struct Pending {
     order: Order,
     manner: Manner,
     since: Duration,
-    next: Duration,
+    due: Duration,
     sent: u8,
     /// number of reports of the mode when it was given or last sent
     reports: u64,
@@ -127,15 +127,7 @@ impl Commander {
     /// `reports`: number of accepted reports of the mode so far.
     pub fn give(&mut self, now: Duration, order: Order, manner: Manner, reports: u64) {
         self.pending.retain(|waiting| waiting.order.command() != order.command());
-        self.pending.push(Pending {
-            order,
-            manner,
-            since: now,
-            next: now,
-            sent: 0,
-            reports,
-            rejection: None,
-        });
+        self.pending.push(Pending { order, manner, since: now, due: now, sent: 0, reports, rejection: None });
     }
 
     /// Whether a command of this kind waits for its answer.
@@ -155,7 +147,7 @@ impl Commander {
     pub fn waits_for_report(&self, now: Duration, permission: Permission) -> bool {
         self.pending.iter().any(|waiting| {
             let new = permission.ours && permission.reports > waiting.reports;
-            now >= waiting.next && !waiting.order.is_question() && !new
+            now >= waiting.due && !waiting.order.is_question() && !new
         })
     }
 
@@ -193,13 +185,13 @@ impl Commander {
             }
             let permitted =
                 waiting.order.is_question() || permission.ours && permission.reports > waiting.reports;
-            if now >= waiting.next && permitted {
+            if now >= waiting.due && permitted {
                 waiting.reports = permission.reports;
                 // its patience begins when it could be sent
                 waiting.since = if waiting.sent == 0 { now } else { waiting.since };
                 messages.push(target.command(&waiting.order, waiting.sent));
                 waiting.sent = waiting.sent.saturating_add(1);
-                waiting.next = now + waiting.manner.repeat;
+                waiting.due = now + waiting.manner.repeat;
             }
             true
         });
@@ -219,13 +211,13 @@ impl Commander {
             result == TEMPORARILY_REJECTED || result == FAILED && waiting.manner.failed_is_temporary;
         if result == IN_PROGRESS {
             waiting.since = now;
-            waiting.next = now + waiting.manner.patience;
+            waiting.due = now + waiting.manner.patience;
             return None;
         }
         let late = now + AFTER_REJECTION >= waiting.since + waiting.manner.patience;
         if temporary && !late {
             waiting.rejection = Some((result, detail));
-            waiting.next = now + AFTER_REJECTION;
+            waiting.due = now + AFTER_REJECTION;
             return None;
         }
         let order = self.pending.remove(at).order;

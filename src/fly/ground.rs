@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::state::Seen;
+use super::state::Timestamped;
 
 /// "On the ground" is accepted if it was reported within the first of these times, and for the second time without a
 /// pause of the first.
@@ -14,7 +14,7 @@ const CLOCK_SETTLES: Duration = Duration::from_secs(3);
 /// Reports of EXTENDED_SYS_STATE, and reasons for doubt.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Ground {
-    said: Option<Seen<bool>>,
+    said: Option<Timestamped<bool>>,
     /// since when it has reported "on the ground" without a pause
     since: Option<Duration>,
     /// it was ordered to take off and has not reported yet that it is in the air
@@ -30,7 +30,7 @@ impl Ground {
         // a silence or a stall in between may have hidden that it said something else
         let goes_on = self.said.is_some_and(|said| now.saturating_sub(said.at) < VALID.0);
         self.since = on_ground.then(|| self.since.filter(|_| goes_on).unwrap_or(now));
-        self.said = Some(Seen { at: now, value: on_ground });
+        self.said = Some(Timestamped { at: now, value: on_ground });
     }
 
     /// Notes the order to take off: reports of the ground have little value until it has reported that it is in the

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 /// A value with when it arrived, on the flight's clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen<T> {
+pub struct Timestamped<T> {
     /// when
     pub at: Duration,
     /// what

@@ -2,6 +2,10 @@
 
 use crate::recording::landed::ON_GROUND;
 use crate::wire::heartbeat::{ARMED, BASE_MODE_AT};
+use crate::wire::message_id::{
+    BATTERY_STATUS, CURRENT_MODE, EKF_STATUS_REPORT, ESTIMATOR_STATUS, HEARTBEAT, ODOMETRY,
+    POSITION_TARGET_LOCAL_NED, SYS_STATUS,
+};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -14,14 +18,12 @@ use super::lift::Outputs;
 use super::news::Novelty;
 use super::order::SendingOrder;
 use super::reset::{Pose, Step};
-pub use super::state::{FlightState, Motion, Seen};
+pub use super::state::{FlightState, Motion, Timestamped};
 use crate::autopilot::Stack;
 use crate::frames::Attitude;
 use crate::recording::{self, Quantity};
 use crate::wire::{self, Decoder, Frame, Payload, Record};
 
-const POSITION_TARGET: u32 = 85;
-const ODOMETRY: u32 = 331;
 /// Longest time since boot, beyond the silence before, of an autopilot that has just restarted, s. A larger one would
 /// take a working autopilot for a restarted one, a smaller one would miss a slow boot.
 const STARTED_S: f64 = 20.0;
@@ -50,15 +52,15 @@ pub struct Telemetry {
     /// last HEARTBEAT
     pub heartbeat: Duration,
     /// mode, arming
-    pub state: Option<Seen<FlightState>>,
+    pub state: Option<Timestamped<FlightState>>,
     /// place and velocity
-    pub motion: Option<Seen<Motion>>,
+    pub motion: Option<Timestamped<Motion>>,
     /// orientation
-    pub attitude: Option<Seen<Attitude>>,
+    pub attitude: Option<Timestamped<Attitude>>,
     /// on the ground, as EXTENDED_SYS_STATE says
     pub(super) ground: Ground,
     /// report of the estimator
-    pub estimator: Option<Seen<EstimatorReport>>,
+    pub estimator: Option<Timestamped<EstimatorReport>>,
     /// since when the estimator has been good without a pause
     pub estimator_good_since: Option<Duration>,
     /// since when it has been bad without a pause
@@ -66,9 +68,9 @@ pub struct Telemetry {
     /// since when positions arrive without a gap of a second
     pub position_since: Option<Duration>,
     /// sensors, pre-arm checks
-    pub system: Option<Seen<SystemReport>>,
+    pub system: Option<Timestamped<SystemReport>>,
     /// level of the battery, and percent
-    pub battery: Option<Seen<(BatteryLevel, Option<i8>)>>,
+    pub battery: Option<Timestamped<(BatteryLevel, Option<i8>)>>,
     /// V
     pub battery_v: Option<f64>,
     /// of the last frame
@@ -140,7 +142,7 @@ impl Telemetry {
     /// mode.
     fn status(&mut self, now: Duration, id: u32, payload: Payload<'_>, place: i64, news: &mut Vec<Novelty>) {
         match id {
-            0 => {
+            HEARTBEAT => {
                 self.heartbeat = now;
                 let (custom_mode, armed) = (payload.u32(0), payload.u8(BASE_MODE_AT) & ARMED != 0);
                 let state = FlightState { custom_mode, armed, system_status: payload.u8(7) };
@@ -149,27 +151,27 @@ impl Telemetry {
                     self.arming.report(now, armed, on_ground);
                 }
             }
-            436 => {
-                if let Some(Seen { value, at }) = self.state {
+            CURRENT_MODE => {
+                if let Some(Timestamped { value, at }) = self.state {
                     let state = FlightState { custom_mode: payload.u32(0), ..value };
                     self.note_state(at, state, place, news);
                 }
             }
-            1 => {
+            SYS_STATUS => {
                 let report = SystemReport::from_sys_status(payload);
                 if self.battery.is_none_or(|battery| now.saturating_sub(battery.at) > STATUS_VALID)
                     && let Some(percent) = report.battery_percent
                 {
                     let value = (level_of_percent(percent), Some(percent));
-                    self.battery = Some(Seen { at: now, value });
+                    self.battery = Some(Timestamped { at: now, value });
                 }
-                self.system = Some(Seen { at: now, value: report });
+                self.system = Some(Timestamped { at: now, value: report });
             }
-            147 if payload.u8(32) == 0 => {
-                self.battery = Some(Seen { at: now, value: battery_status(payload) });
+            BATTERY_STATUS if payload.u8(32) == 0 => {
+                self.battery = Some(Timestamped { at: now, value: battery_status(payload) });
             }
-            193 => self.note_estimator(now, EstimatorReport::from_ekf_status_report(payload)),
-            230 => self.note_estimator(now, EstimatorReport::from_estimator_status(payload)),
+            EKF_STATUS_REPORT => self.note_estimator(now, EstimatorReport::from_ekf_status_report(payload)),
+            ESTIMATOR_STATUS => self.note_estimator(now, EstimatorReport::from_estimator_status(payload)),
             _ => {}
         }
     }
@@ -185,7 +187,7 @@ impl Telemetry {
         self.state_place = place;
         self.mode_reports += 1;
         let from = self.state.map(|seen| seen.value);
-        self.state = Some(Seen { at, value: state });
+        self.state = Some(Timestamped { at, value: state });
         if from != Some(state) {
             news.push(Novelty::State { from, to: state });
         }
@@ -200,7 +202,7 @@ impl Telemetry {
             self.estimator_bad_since.get_or_insert(now);
             self.estimator_good_since = None;
         }
-        self.estimator = Some(Seen { at: now, value: report });
+        self.estimator = Some(Timestamped { at: now, value: report });
     }
 
     fn samples(&mut self, (now, silence): (Duration, Duration), frame: Frame<'_>, news: &mut Vec<Novelty>) {
@@ -216,7 +218,7 @@ impl Telemetry {
                 (Quantity::Velocity, &[x, y, z]) => velocity = Some(Vector3::new(x, y, z)),
                 (Quantity::Attitude, &[w, x, y, z]) => {
                     let value = Attitude(UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)));
-                    *attitude = Some(Seen { at: now, value });
+                    *attitude = Some(Timestamped { at: now, value });
                 }
                 (Quantity::AngularRate, &[x, y, z]) => rates = Some(Vector3::new(x, y, z)),
                 (Quantity::LandedState, &[state]) => {
@@ -246,7 +248,7 @@ impl Telemetry {
             | recording::Event::Parameter { .. }
             | recording::Event::ParameterDefault { .. } => {}
         });
-        if frame.header().message_id == POSITION_TARGET {
+        if frame.header().message_id == POSITION_TARGET_LOCAL_NED {
             news.push(Novelty::Target(target_m));
         }
         let oriented = self.attitude.filter(|seen| seen.at == now).map(|seen| seen.value);
@@ -288,7 +290,7 @@ impl Telemetry {
     }
 
     fn note_motion(&mut self, now: Duration, motion: Motion, news: &mut Vec<Novelty>) {
-        if let Some(Seen { value: last, .. }) = self.motion {
+        if let Some(Timestamped { value: last, .. }) = self.motion {
             let passed_s = motion.time_s - last.time_s;
             // a message that others overtook
             if passed_s < 0.0 && passed_s > -1.0 {
@@ -309,7 +311,7 @@ impl Telemetry {
         self.velocity_m_s.get_or_insert(motion.velocity_m_s);
         let gap = self.motion.is_none_or(|last| now.saturating_sub(last.at) > POSITION_GAP);
         self.position_since = self.position_since.filter(|_| !gap).or(Some(now));
-        self.motion = Some(Seen { at: now, value: motion });
+        self.motion = Some(Timestamped { at: now, value: motion });
     }
 
     /// Outputs of the motors in the last frame.

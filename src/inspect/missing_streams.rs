@@ -1,7 +1,7 @@
 //! Streams that a quantity needs and the log does not hold, and how to record them.
 
 use super::evidence::Evidence;
-use crate::diagnose::signatures::ToldBy;
+use crate::diagnose::signatures::DeterminedBy;
 use crate::recording::Quantity;
 use crate::signals::{LEAST_FORCE_HZ, LEAST_TORQUE_HZ};
 
@@ -54,18 +54,18 @@ impl Need {
     pub(super) fn of_body(index: usize) -> &'static [Self] {
         match index {
             0 => &[COMMANDS, Self::Force, Self::BodyRatesIfThere(LEAST_FORCE_HZ)],
-            _ => Self::of(ToldBy::Torques),
+            _ => Self::of(DeterminedBy::Torques),
         }
     }
 
     /// Streams that this part of a recording is made of.
-    pub(super) fn of(part: ToldBy) -> &'static [Self] {
+    pub(super) fn of(part: DeterminedBy) -> &'static [Self] {
         match part {
-            ToldBy::Forces => &[COMMANDS, BODY_RATES, Self::Force],
-            ToldBy::MeanTorques => &[COMMANDS, BODY_RATES],
-            ToldBy::ForcesOverVelocity => &[COMMANDS, BODY_RATES, Self::Force, Self::Velocity],
-            ToldBy::ForcesOverVoltage => &[COMMANDS, BODY_RATES, Self::Force, Self::Voltage],
-            ToldBy::Torques => &[Self::Commands(LEAST_TORQUE_HZ), Self::BodyRates(LEAST_TORQUE_HZ)],
+            DeterminedBy::Forces => &[COMMANDS, BODY_RATES, Self::Force],
+            DeterminedBy::MeanTorques => &[COMMANDS, BODY_RATES],
+            DeterminedBy::ForcesOverVelocity => &[COMMANDS, BODY_RATES, Self::Force, Self::Velocity],
+            DeterminedBy::ForcesOverVoltage => &[COMMANDS, BODY_RATES, Self::Force, Self::Voltage],
+            DeterminedBy::Torques => &[Self::Commands(LEAST_TORQUE_HZ), Self::BodyRates(LEAST_TORQUE_HZ)],
         }
     }
 

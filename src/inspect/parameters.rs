@@ -6,7 +6,7 @@ use super::inspection::ParameterSummary;
 use crate::autopilot::{Autopilot, STACKS};
 use crate::note::Note;
 use crate::recording::ParameterChange;
-use crate::signals::{changes_in_the_air, resting_on_defaults, settled_parameters};
+use crate::signals::{changes_in_the_air, in_flight_parameters, resting_on_defaults};
 
 /// Parameters kept; autopilots have about 1500.
 const KEPT: usize = 10_000;
@@ -56,7 +56,7 @@ impl Parameters {
 
     /// Of what changed, the values that stood longest in the air.
     pub(super) fn keep_airborne(&mut self, autopilot: Autopilot, airborne_s: &[(f64, f64)]) {
-        self.values.extend(settled_parameters(autopilot, &self.changes, airborne_s));
+        self.values.extend(in_flight_parameters(autopilot, &self.changes, airborne_s));
     }
 
     /// Takes one; says whether it changes what identification reads.

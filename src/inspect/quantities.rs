@@ -6,8 +6,8 @@ use super::inspection::Outlook;
 use super::missing_streams::{Lack, Need, lack, remedy};
 use super::outlook::judged;
 use super::quantity::{ExpectedParameter, QuantitySummary};
-use crate::diagnose::signatures::{ToldBy, WANTED, Wanted};
-use crate::diagnose::{Expected, ExpectedError, LEAST_FLIGHT_S, Shown};
+use crate::diagnose::signatures::{DeterminedBy, EFFECT_QUANTITIES, EffectQuantity};
+use crate::diagnose::{Expected, ExpectedError, LEAST_FLIGHT_S, SignificantAmount};
 
 /// A quantity's standard error as a share of its usual size up to which it is told: an effect of usual size is then four
 /// standard errors from nothing, which is what `explain` asks for.
@@ -28,7 +28,7 @@ enum Of {
     /// of the rigid body, at these places among its parameters
     Body(&'static [usize]),
     /// of an effect
-    Effect(ToldBy),
+    Effect(DeterminedBy),
 }
 
 const OF_THE_BODY: [Asked; 2] = [
@@ -41,14 +41,14 @@ const OF_THE_BODY: [Asked; 2] = [
 ];
 
 impl Asked {
-    fn of_effect(wanted: &Wanted) -> Self {
-        Self { name: wanted.name, of: Of::Effect(wanted.told_by), fly: wanted.fly }
+    fn of_effect(wanted: &EffectQuantity) -> Self {
+        Self { name: wanted.name, of: Of::Effect(wanted.determined_by), fly: wanted.fly }
     }
 
     fn needs(&self) -> &'static [Need] {
         match self.of {
             Of::Body(places) => Need::of_body(places[0]),
-            Of::Effect(told_by) => Need::of(told_by),
+            Of::Effect(determined_by) => Need::of(determined_by),
         }
     }
 }
@@ -66,7 +66,7 @@ pub(super) struct Outcome<'a> {
 
 /// One entry a quantity, in the order of the page.
 pub(super) fn quantities(outcome: &Outcome<'_>) -> Vec<QuantitySummary> {
-    let effects = WANTED.iter().map(Asked::of_effect);
+    let effects = EFFECT_QUANTITIES.iter().map(Asked::of_effect);
     OF_THE_BODY.into_iter().chain(effects).map(|asked| outcome.of(&asked)).collect()
 }
 
@@ -215,7 +215,7 @@ impl Outcome<'_> {
 }
 
 /// What is to be said of something that stands out of the flight: this quantity, or another one.
-fn beyond(shown: Option<Shown>, stands_out: bool) -> String {
+fn beyond(shown: Option<SignificantAmount>, stands_out: bool) -> String {
     match shown {
         Some(shown) => format!(
             "; but something stands out of this flight that, if it were this, would be {:.1} standard errors: `explain` tells \

@@ -1,6 +1,6 @@
 //! From bytes to frames and events for the reader.
 
-use crate::wire::heartbeat::HEARTBEAT;
+use crate::wire::message_id::HEARTBEAT;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -12,7 +12,7 @@ use super::options::LinkOptions;
 use super::received::{Received, ReceivedFrame};
 use super::recorder::Recorder;
 use super::shared::Shared;
-use super::signing::{Signing, Told};
+use super::signing::{ReportedSignatures, Signing};
 use crate::wire::{Frame, Splitter};
 
 /// Frames that may wait for the reader; further ones are counted, not delivered.
@@ -35,7 +35,7 @@ struct Sink {
     shared: Arc<Shared>,
     clock: HostClock,
     signing: Option<Signing>,
-    told: Told,
+    signatures: ReportedSignatures,
     recorder: Option<Recorder>,
     recording_fails: bool,
 }
@@ -51,7 +51,7 @@ impl Incoming {
             shared,
             clock: options.clock,
             signing: options.signing.clone(),
-            told: Told::default(),
+            signatures: ReportedSignatures::default(),
             recorder: options.recorder.clone(),
             recording_fails: false,
         };
@@ -147,7 +147,7 @@ impl Sink {
         self.record(frame, stamp);
         self.shared.stats().tally(frame);
         let verdict = self.signing.as_ref().map_or(Ok(()), |signing| signing.verify(frame));
-        for event in self.told.events(frame, self.signing.as_ref(), verdict) {
+        for event in self.signatures.events(frame, self.signing.as_ref(), verdict) {
             self.deliver(Received::Event(event));
         }
         if let Err(distrust) = verdict {

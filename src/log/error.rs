@@ -77,10 +77,10 @@ pub enum LogError {
         system: SystemId,
     },
     /// the chosen vehicle does not speak in it
-    #[error("expected frames of system {wanted}, got system(s) {}", list(systems))]
+    #[error("expected frames of system {requested}, got system(s) {}", list(systems))]
     SystemAbsent {
         /// which was chosen
-        wanted: SystemId,
+        requested: SystemId,
         /// who speaks
         systems: Vec<SystemId>,
     },

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::{Flow, OnboardError, Session};
 use crate::autopilot::Autopilot;
-use crate::fetch::{self, Begun, Checked, Chosen, List, Offer, Part, Protocol, RemoteLog, Wanted};
+use crate::fetch::{self, Begun, Checked, Chosen, List, LogSelection, Offer, Part, Protocol, RemoteLog};
 
 /// How far a download is.
 #[derive(Debug, Clone)]
@@ -55,22 +55,26 @@ pub struct Download {
 pub async fn list(
     session: &mut Session,
     (offer, asked): (&Offer, Option<Protocol>),
-    wanted: Wanted,
+    selection: LogSelection,
 ) -> Result<Listed, OnboardError> {
     let protocol = asked.unwrap_or_else(|| offer.protocol());
-    match listed(session, protocol, wanted).await {
+    match listed(session, protocol, selection).await {
         Err(error)
             if asked.is_none() && protocol == Protocol::Ftp && !error.is_end() && !error.is_input() =>
         {
             session.warn(format!("no file transfer: {error}; asking by log messages"));
-            listed(session, Protocol::Log, wanted).await
+            listed(session, Protocol::Log, selection).await
         }
         done => done,
     }
 }
 
-async fn listed(session: &mut Session, protocol: Protocol, wanted: Wanted) -> Result<Listed, OnboardError> {
-    let mut list = List::new(session.vehicle, protocol, wanted)?;
+async fn listed(
+    session: &mut Session,
+    protocol: Protocol,
+    selection: LogSelection,
+) -> Result<Listed, OnboardError> {
+    let mut list = List::new(session.vehicle, protocol, selection)?;
     session.talk(&mut list, |_| Ok(Flow::On)).await?;
     Ok(Listed { protocol, logs: list.logs(), left_out: list.left_out() })
 }

@@ -6,20 +6,20 @@ use crate::fetch::{Known, Noted, Notes};
 
 /// One parameter of a file.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Wanted {
+pub struct ParameterComparison {
     /// its name
     pub name: String,
     /// what the vehicle has; `None` where it does not answer
     pub found: Option<f64>,
     /// what the file has
-    pub wanted: f64,
+    pub in_file: f64,
 }
 
-impl Wanted {
+impl ParameterComparison {
     /// Whether the vehicle has another value.
     #[must_use]
     pub fn differs(&self) -> bool {
-        self.found.is_some_and(|found| found != self.wanted)
+        self.found.is_some_and(|found| found != self.in_file)
     }
 }
 
@@ -28,7 +28,7 @@ impl Wanted {
 pub struct Loading {
     known: Known,
     /// every parameter of the file, in its order
-    pub wanted: Vec<Wanted>,
+    pub parameters: Vec<ParameterComparison>,
 }
 
 /// Asks the vehicle for the parameters of a file. Nothing else is sent but heartbeats.
@@ -38,16 +38,20 @@ pub struct Loading {
 pub async fn compare(session: &mut Session, file: &[(String, f64)]) -> Result<Loading, OnboardError> {
     let names: Vec<&str> = file.iter().map(|(name, _)| name.as_str()).collect();
     let known = read(session, &names).await?;
-    let mut wanted = Vec::new();
+    let mut parameters = Vec::new();
     for (name, value) in file {
         if known.is_whole(name) && value.fract() != 0.0 {
             return Err(OnboardError::Refused(format!(
                 "{name}: expected a whole number, as the vehicle has it, got {value}"
             )));
         }
-        wanted.push(Wanted { name: name.clone(), found: known.value(name), wanted: *value });
+        parameters.push(ParameterComparison {
+            name: name.clone(),
+            found: known.value(name),
+            in_file: *value,
+        });
     }
-    Ok(Loading { known, wanted })
+    Ok(Loading { known, parameters })
 }
 
 /// Notes what was found, sets what differs, and reads it back.
@@ -57,11 +61,11 @@ pub async fn compare(session: &mut Session, file: &[(String, f64)]) -> Result<Lo
 /// [`Session::talk`].
 pub async fn load(session: &mut Session, loading: &Loading, notes: &Notes) -> Result<(), OnboardError> {
     let at = Some(session.moment().await?);
-    let noted = |wanted: &Wanted| {
-        Some(Noted { name: wanted.name.clone(), found: wanted.found?, set: wanted.wanted, at })
+    let noted = |parameter: &ParameterComparison| {
+        Some(Noted { name: parameter.name.clone(), found: parameter.found?, set: parameter.in_file, at })
     };
     let changes: Vec<Noted> =
-        loading.wanted.iter().filter(|wanted| wanted.differs()).filter_map(noted).collect();
+        loading.parameters.iter().filter(|parameter| parameter.differs()).filter_map(noted).collect();
     set(session, &loading.known, &changes, notes).await?;
     let names: Vec<&str> = changes.iter().map(|change| change.name.as_str()).collect();
     let now = read(session, &names).await?;

@@ -94,7 +94,7 @@ pub async fn change(
     let noted = |change: &LogChange| Noted {
         name: change.parameter.to_owned(),
         found: change.found,
-        set: change.wanted,
+        set: change.needed,
         at,
     };
     set(session, &state.known, &changes.iter().map(noted).collect::<Vec<_>>(), notes).await

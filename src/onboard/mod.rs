@@ -22,7 +22,7 @@ mod setting;
 
 pub use download::{Download, Listed, Progress, fetch, list};
 pub use error::OnboardError;
-pub use loading::{Loading, Wanted, compare, load};
+pub use loading::{Loading, ParameterComparison, compare, load};
 pub use logging::{LoggingState, PutBack, change, look, needs_restart, put_back};
 pub use parameter_file::{ParameterFileError, read_parameter_file};
 pub use parameters::read_as_needed;

@@ -1,6 +1,7 @@
 //! A vehicle on a link, and the conversation with it.
 
-use crate::wire::heartbeat::{ARMED, BASE_MODE_AT, HEARTBEAT, HEARTBEAT_PERIOD};
+use crate::wire::heartbeat::{ARMED, BASE_MODE_AT, HEARTBEAT_PERIOD};
+use crate::wire::message_id::HEARTBEAT;
 use std::pin::Pin;
 use std::time::Duration;
 

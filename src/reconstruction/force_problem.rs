@@ -128,7 +128,7 @@ fn groups(flight: &Arc<Flight>) -> Vec<Group> {
     let driving = Vector3::repeat(if quiet { 0.01 } else { 0.1 } * (2.0 * STEP_S).sqrt());
     let mechanization = group("mechanization", Mechanization(flight.clone()), driving);
     let velocity = EstimatedVelocity { flight: flight.clone(), intervals: seen };
-    let by_receiver = cells.receiver.seen.iter().map(|seen| seen.cell).collect();
+    let by_receiver = cells.receiver.samples.iter().map(|seen| seen.cell).collect();
     let receiver = ReceiverVelocity { flight: flight.clone(), intervals: by_receiver };
     let receiver = group("receiver", receiver, Vector3::repeat(0.1));
     let mut groups = vec![
@@ -140,7 +140,7 @@ fn groups(flight: &Arc<Flight>) -> Vec<Group> {
         learned(mechanization, Vector3::repeat(2e-5), (4, ONWARD)),
         group("velocity", velocity, Vector3::repeat(0.003)),
     ];
-    if !cells.receiver.seen.is_empty() {
+    if !cells.receiver.samples.is_empty() {
         groups.push(learned(receiver, Vector3::repeat(RECEIVER_FLOOR_M_S), (4, ONWARD)));
     }
     groups

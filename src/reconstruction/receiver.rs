@@ -14,7 +14,7 @@ const LEAST_SAMPLES: usize = 20;
 
 /// One sample.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Seen {
+pub(super) struct ReceiverSample {
     /// in which it was measured
     pub(super) cell: usize,
     /// place in the cell, 0 to 1
@@ -29,7 +29,7 @@ pub(super) struct Seen {
 #[derive(Debug, Default)]
 pub struct Received {
     /// samples in the air
-    pub(super) seen: Vec<Seen>,
+    pub(super) samples: Vec<ReceiverSample>,
 }
 
 impl Received {
@@ -51,9 +51,9 @@ impl Received {
             if !climbs {
                 velocity_m_s.z = 0.0;
             }
-            Some(Seen { cell, share: (t - time_s[cell]) / STEP_S, velocity_m_s, climbs })
+            Some(ReceiverSample { cell, share: (t - time_s[cell]) / STEP_S, velocity_m_s, climbs })
         };
-        Self { seen: samples.iter().filter_map(one).collect() }
+        Self { samples: samples.iter().filter_map(one).collect() }
     }
 }
 
@@ -93,8 +93,8 @@ mod tests {
         let stream = Stream { time_s, width: 3, values: seen };
         let cells: Vec<f64> = (0..600).map(|index| f64::from(index) * STEP_S).collect();
         let received = Received::of(&stream, (&grid, &estimated), &cells);
-        assert!(received.seen.len() > 190, "{}", received.seen.len());
-        for seen in &received.seen {
+        assert!(received.samples.len() > 190, "{}", received.samples.len());
+        for seen in &received.samples {
             let true_m_s = at(cells[seen.cell] + seen.share * STEP_S);
             assert!((seen.velocity_m_s - true_m_s).xy().norm() < 1e-3 && !seen.climbs, "{seen:?}");
         }
@@ -105,6 +105,6 @@ mod tests {
         let stream = Stream { time_s: vec![1.0, 1.2], width: 3, values: vec![0.0; 6] };
         let grid = Grid { start_s: 0.0, step_s: 0.01, count: 300 };
         let still = vec![Vector3::zeros(); 300];
-        assert!(Received::of(&stream, (&grid, &still), &[0.0, 1.0, 2.0]).seen.is_empty());
+        assert!(Received::of(&stream, (&grid, &still), &[0.0, 1.0, 2.0]).samples.is_empty());
     }
 }

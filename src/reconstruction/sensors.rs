@@ -8,7 +8,7 @@ use super::blocks::{Columns, Pair, STATE, State, WIDTH};
 use super::forces::{Flight, part};
 use super::place::STEP_S;
 use super::places::{BIAS, ERROR, LATE_ATTITUDE, LATE_RECEIVER, LATE_VELOCITY, TILT, VELOCITY};
-use super::receiver::Seen;
+use super::receiver::ReceiverSample;
 use super::residuals::{Residuals, Row};
 
 /// Share of the accelerometer that the autopilot's velocity integrates. Estimators predict with the accelerometer and
@@ -197,7 +197,7 @@ impl Residuals for ReceiverVelocity {
     }
 
     fn row(&self, row: usize, a: &State, b: &State, theta: &[f64]) -> Row {
-        let Seen { share, velocity_m_s, climbs, .. } = self.flight.cells.receiver.seen[row];
+        let ReceiverSample { share, velocity_m_s, climbs, .. } = self.flight.cells.receiver.samples[row];
         let share = share - theta[LATE_RECEIVER] / STEP_S;
         let told = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, if climbs { 1.0 } else { 0.0 }));
         let (before, after) = (part(a, VELOCITY), part(b, VELOCITY));

@@ -2,21 +2,91 @@
 
 use super::names::{Coordinate, is_secret_parameter, is_suspicious};
 use super::pass::{Kind, Pass};
+use crate::wire::message_id as id;
 use crate::wire::{Check, CrcSeeds, Frame, MARKER_V2, Payload, STAMP_BYTES, checksum};
 
-/// Messages that hold neither a position on the Earth nor a name of the hardware, by number.
+/// Messages that hold neither a position on the Earth nor a name of the hardware.
 const HARMLESS: &[u32] = &[
-    0, 1, 2, 26, 27, 28, 29, 30, 31, 32, 35, 36, 42, 46, 61, 62, 64, 65, 66, 69, 70, 74, 77, 81, 82, 83, 84,
-    85, 89, 102, 103, 104, 105, 106, 107, 111, 116, 125, 129, 132, 134, 137, 138, 139, 140, 143, 147, 152,
-    163, 165, 168, 173, 193, 225, 226, 230, 231, 241, 244, 245, 290, 291, 331, 375, 436, 11030, 11031, 11032,
+    id::HEARTBEAT,
+    id::SYS_STATUS,
+    id::SYSTEM_TIME,
+    id::SCALED_IMU,
+    id::RAW_IMU,
+    id::RAW_PRESSURE,
+    id::SCALED_PRESSURE,
+    id::ATTITUDE,
+    id::ATTITUDE_QUATERNION,
+    id::LOCAL_POSITION_NED,
+    id::RC_CHANNELS_RAW,
+    id::SERVO_OUTPUT_RAW,
+    id::MISSION_CURRENT,
+    id::MISSION_ITEM_REACHED,
+    id::ATTITUDE_QUATERNION_COV,
+    id::NAV_CONTROLLER_OUTPUT,
+    id::LOCAL_POSITION_NED_COV,
+    id::RC_CHANNELS,
+    id::REQUEST_DATA_STREAM,
+    id::MANUAL_CONTROL,
+    id::RC_CHANNELS_OVERRIDE,
+    id::VFR_HUD,
+    id::COMMAND_ACK,
+    id::MANUAL_SETPOINT,
+    id::SET_ATTITUDE_TARGET,
+    id::ATTITUDE_TARGET,
+    id::SET_POSITION_TARGET_LOCAL_NED,
+    id::POSITION_TARGET_LOCAL_NED,
+    id::LOCAL_POSITION_NED_SYSTEM_GLOBAL_OFFSET,
+    id::VISION_POSITION_ESTIMATE,
+    id::VISION_SPEED_ESTIMATE,
+    id::VICON_POSITION_ESTIMATE,
+    id::HIGHRES_IMU,
+    id::OPTICAL_FLOW_RAD,
+    id::HIL_SENSOR,
+    id::TIMESYNC,
+    id::SCALED_IMU2,
+    id::POWER_STATUS,
+    id::SCALED_IMU3,
+    id::DISTANCE_SENSOR,
+    id::TERRAIN_DATA,
+    id::SCALED_PRESSURE2,
+    id::ATT_POS_MOCAP,
+    id::SET_ACTUATOR_CONTROL_TARGET,
+    id::ACTUATOR_CONTROL_TARGET,
+    id::SCALED_PRESSURE3,
+    id::BATTERY_STATUS,
+    id::MEMINFO,
+    id::AHRS,
+    id::HWSTATUS,
+    id::WIND,
+    id::RANGEFINDER,
+    id::EKF_STATUS_REPORT,
+    id::EFI_STATUS,
+    id::RPM,
+    id::ESTIMATOR_STATUS,
+    id::WIND_COV,
+    id::VIBRATION,
+    id::MESSAGE_INTERVAL,
+    id::EXTENDED_SYS_STATE,
+    id::ESC_INFO,
+    id::ESC_STATUS,
+    id::ODOMETRY,
+    id::ACTUATOR_OUTPUT_STATUS,
+    id::CURRENT_MODE,
+    id::ESC_TELEMETRY_1_TO_4,
+    id::ESC_TELEMETRY_5_TO_8,
+    id::ESC_TELEMETRY_9_TO_12,
 ];
 /// Messages with a latitude and a longitude in 1e-7 degrees, and where these stand.
-const POSITIONS: &[(u32, usize)] =
-    &[(24, 8), (33, 4), (49, 0), (87, 4), (124, 8), (164, 36), (178, 16), (242, 0)];
-const PARAM_VALUE: u32 = 22;
-const COMMAND_LONG: u32 = 76;
-const AUTOPILOT_VERSION: u32 = 148;
-const STATUSTEXT: u32 = 253;
+const POSITIONS: &[(u32, usize)] = &[
+    (id::GPS_RAW_INT, 8),
+    (id::GLOBAL_POSITION_INT, 4),
+    (id::GPS_GLOBAL_ORIGIN, 0),
+    (id::POSITION_TARGET_GLOBAL_INT, 4),
+    (id::GPS2_RAW, 8),
+    (id::SIMSTATE, 36),
+    (id::AHRS2, 16),
+    (id::HOME_POSITION, 0),
+];
 /// The flag that says that a signature is there.
 const SIGNED: u8 = 1;
 
@@ -65,32 +135,32 @@ pub(super) fn walk(log: &[u8], pass: &mut Pass) -> Vec<u8> {
 
 /// A frame without what is not to be shared, unsigned; `None` where it is left out.
 fn redacted(frame: &Frame<'_>, pass: &mut Pass, seeds: &CrcSeeds) -> Option<Vec<u8>> {
-    let id = frame.header().message_id;
+    let message = frame.header().message_id;
     let mut payload = frame.payload().0.to_vec();
     let sent = payload.len();
-    match id {
-        PARAM_VALUE => {
+    match message {
+        id::PARAM_VALUE => {
             if is_secret_parameter(&Payload(&payload).text(8, 16)) {
                 pass.empty(payload.get_mut(0..4)?);
             }
         }
         // parameters five and six are a place in many commands
-        COMMAND_LONG => pass.empty(grown(&mut payload, 24).get_mut(16..24)?),
-        AUTOPILOT_VERSION => {
+        id::COMMAND_LONG => pass.empty(grown(&mut payload, 24).get_mut(16..24)?),
+        id::AUTOPILOT_VERSION => {
             pass.empty(grown(&mut payload, 78).get_mut(8..16)?);
             pass.empty(payload.get_mut(60..78)?);
         }
-        STATUSTEXT if is_suspicious(&Payload(&payload).text(1, 50)) => return None,
-        STATUSTEXT => {}
-        _ if HARMLESS.contains(&id) => {}
+        id::STATUSTEXT if is_suspicious(&Payload(&payload).text(1, 50)) => return None,
+        id::STATUSTEXT => {}
+        _ if HARMLESS.contains(&message) => {}
         _ => {
-            let (_, from) = *POSITIONS.iter().find(|(of, _)| *of == id)?;
+            let (_, from) = *POSITIONS.iter().find(|(of, _)| *of == message)?;
             grown(&mut payload, from + 8);
             pass.move_in(Coordinate::Latitude, Kind::E7, payload.get_mut(from..from + 4)?);
             pass.move_in(Coordinate::Longitude, Kind::E7, payload.get_mut(from + 4..from + 8)?);
         }
     }
-    Some(rebuilt(frame.bytes(), payload, sent, seeds.get(id)?))
+    Some(rebuilt(frame.bytes(), payload, sent, seeds.get(message)?))
 }
 
 /// The payload with so many bytes at least: zeros at its end are not sent.

@@ -96,7 +96,7 @@ pub fn paper_models(
         let filtered_phi = phi.next(vertical.momentum[i], vertical.rest[i], &filtered.rate[i]);
         let wrench = filtered.wrench[i];
         let filtered_wrench =
-            Vector4::from_fn(|entry, _| pair.next_low_pass(&mut low_wrench[entry], wrench[entry]));
+            Vector4::from_fn(|entry, _| pair.step_low_pass(&mut low_wrench[entry], wrench[entry]));
         let Some(run) = runs.peek().filter(|run| run.contains(&i)) else { continue };
         let force = vertical.rate[i] + vertical.rest[i];
         let time_s = signals.grid.time_s(i);

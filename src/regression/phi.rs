@@ -69,13 +69,13 @@ impl FilteredPhi {
         let [of_rest, of_products @ ..] = &mut self.rest;
         let (mixed, squares) = products(omega);
         let mut low = |from: usize, values: [f64; 3]| {
-            std::array::from_fn(|i| pair.next_low_pass(&mut of_products[from + i], values[i]))
+            std::array::from_fn(|i| pair.step_low_pass(&mut of_products[from + i], values[i]))
         };
         Phi {
-            vertical: pair.next_rate(of_w, w) + pair.next_low_pass(of_rest, rest),
+            vertical: pair.step_rate(of_w, w) + pair.step_low_pass(of_rest, rest),
             mixed: low(0, mixed),
             squares: low(3, squares),
-            turning: std::array::from_fn(|i| pair.next_rate(&mut turning[i], omega[i])),
+            turning: std::array::from_fn(|i| pair.step_rate(&mut turning[i], omega[i])),
         }
     }
 }
@@ -94,7 +94,7 @@ mod tests {
             let (w, rest) = (0.3 * s, 9.7 - 0.02 * s);
             let (momentum, gyroscopic) = (momentum_regressor(w, &omega), gyroscopic_regressor(rest, &omega));
             let each = memories.iter_mut().enumerate().map(|(entry, [of_momentum, of_rest])| {
-                pair.next_rate(of_momentum, momentum[entry]) + pair.next_low_pass(of_rest, gyroscopic[entry])
+                pair.step_rate(of_momentum, momentum[entry]) + pair.step_low_pass(of_rest, gyroscopic[entry])
             });
             let expected = SMatrix::<f64, 4, 7>::from_iterator(each);
             assert_eq!(filtered.next(w, rest, &omega).matrix(), expected);

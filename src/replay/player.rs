@@ -1,6 +1,7 @@
 //! Plays a recorded flight back at the pace of its stamps.
 
-use crate::wire::heartbeat::{AUTOPILOT_AT, HEARTBEAT, NO_AUTOPILOT, TYPE_AT};
+use crate::wire::heartbeat::{AUTOPILOT_AT, NO_AUTOPILOT, TYPE_AT};
+use crate::wire::message_id::HEARTBEAT;
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::path::{Path, PathBuf};

@@ -13,18 +13,18 @@ const TOLD: usize = 8;
 /// Takes, of each parameter that changed and on which the way from command to thrust or the vehicle's build depends, the value
 /// that stood longest in the air: one that was set after the flight says nothing of it. The motor at an output stays there,
 /// whatever drives the output afterwards.
-pub fn settle_parameters(recording: &mut Recording) {
+pub fn adopt_in_flight_parameters(recording: &mut Recording) {
     if recording.parameter_changes.is_empty() {
         return;
     }
     let airborne_s = said_airborne(recording);
-    let settled = settled_parameters(recording.autopilot, &recording.parameter_changes, &airborne_s);
+    let settled = in_flight_parameters(recording.autopilot, &recording.parameter_changes, &airborne_s);
     recording.parameters.extend(settled);
 }
 
 /// Name and value of each such parameter; `airborne_s` are spans in s. One that never stood in them is left out.
 #[must_use]
-pub fn settled_parameters(
+pub fn in_flight_parameters(
     autopilot: Autopilot,
     changes: &[ParameterChange],
     airborne_s: &[(f64, f64)],
@@ -219,7 +219,7 @@ mod tests {
             change(38.0, "SERVO2_FUNCTION", 34.0, 1.0),
         ];
         let airborne_s = [(10.0, 60.0)];
-        let taken = settled_parameters(Autopilot::ArduPilot, &changes, &airborne_s).into_iter().collect();
+        let taken = in_flight_parameters(Autopilot::ArduPilot, &changes, &airborne_s).into_iter().collect();
         let notes = changes_in_the_air(Autopilot::ArduPilot, &changes, &airborne_s, &taken);
         let texts: Vec<&str> = notes.iter().map(|note| note.text.as_str()).collect();
         assert_eq!(texts.len(), 4, "{texts:?}");
@@ -249,10 +249,10 @@ mod tests {
             change(12.0, "SERVO2_FUNCTION", 34.0, 1.0),
             change(40.0, "ATC_RAT_RLL_P", 0.1, 0.2),
         ];
-        let settled = settled_parameters(Autopilot::ArduPilot, &changes, &[(10.0, 32.0), (34.0, 60.0)]);
+        let settled = in_flight_parameters(Autopilot::ArduPilot, &changes, &[(10.0, 32.0), (34.0, 60.0)]);
         let expected = [("MOT_THST_EXPO", 0.65), ("SERVO1_FUNCTION", 33.0), ("SERVO2_FUNCTION", 34.0)];
         assert_eq!(settled, expected.map(|(name, value)| (name.to_owned(), value)));
-        assert_eq!(settled_parameters(Autopilot::ArduPilot, &changes, &[]), []);
+        assert_eq!(in_flight_parameters(Autopilot::ArduPilot, &changes, &[]), []);
         let key = StreamKey { quantity: Quantity::Armed, source: "EV", instance: 0 };
         let armed =
             Stream { time_s: vec![0.0, 10.0, 60.0, 80.0], width: 1, values: vec![0.0, 1.0, 0.0, 0.0] };
@@ -263,7 +263,7 @@ mod tests {
             streams: [(key, armed)].into(),
             ..Recording::default()
         };
-        settle_parameters(&mut recording);
+        adopt_in_flight_parameters(&mut recording);
         let values = [recording.parameters["MOT_THST_EXPO"], recording.parameters["MOT_THST_HOVER"]];
         assert_eq!(values, [0.65, 0.3]);
     }

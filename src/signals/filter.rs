@@ -16,7 +16,7 @@ impl Biquad {
         let Some(&first) = column.first() else { return };
         let mut memory = self.steady(first);
         for value in column {
-            *value = self.next(&mut memory, *value);
+            *value = self.step(&mut memory, *value);
         }
     }
 
@@ -25,7 +25,7 @@ impl Biquad {
         [input * (1.0 - self.b[0]), input * (self.b[2] - self.a[1])]
     }
 
-    fn next(&self, [z1, z2]: &mut [f64; 2], input: f64) -> f64 {
+    fn step(&self, [z1, z2]: &mut [f64; 2], input: f64) -> f64 {
         let output = self.b[0] * input + *z1;
         *z1 = self.b[1] * input - self.a[0] * output + *z2;
         *z2 = self.b[2] * input - self.a[1] * output;
@@ -72,11 +72,11 @@ impl Butterworth {
 
     /// Causal filter, sample by sample, with the same phase for all signals. Starts from the steady state of its first
     /// sample.
-    pub fn next(&self, memory: &mut ButterworthMemory, input: f64) -> f64 {
+    pub fn step(&self, memory: &mut ButterworthMemory, input: f64) -> f64 {
         let mut value = input;
         let sections = memory.0.get_or_insert_with(|| self.sections.map(|section| section.steady(input)));
         for (section, memory) in self.sections.iter().zip(sections) {
-            value = section.next(memory, value);
+            value = section.step(memory, value);
         }
         value
     }
@@ -215,23 +215,23 @@ impl FilterPair {
     #[must_use]
     pub fn low_pass(&self, column: &[f64]) -> Vec<f64> {
         let mut memory = PairMemory::default();
-        column.iter().map(|input| self.next_low_pass(&mut memory, *input)).collect()
+        column.iter().map(|input| self.step_low_pass(&mut memory, *input)).collect()
     }
 
     /// `g_D` of the column: `gain (input - f_D input)`.
     #[must_use]
     pub fn rate(&self, column: &[f64]) -> Vec<f64> {
         let mut memory = PairMemory::default();
-        column.iter().map(|input| self.next_rate(&mut memory, *input)).collect()
+        column.iter().map(|input| self.step_rate(&mut memory, *input)).collect()
     }
 
     /// [`Self::low_pass`] sample by sample.
-    pub fn next_low_pass(&self, memory: &mut PairMemory, input: f64) -> f64 {
+    pub fn step_low_pass(&self, memory: &mut PairMemory, input: f64) -> f64 {
         self.step(memory, input, self.midpoint)
     }
 
     /// [`Self::rate`] sample by sample.
-    pub fn next_rate(&self, memory: &mut PairMemory, input: f64) -> f64 {
+    pub fn step_rate(&self, memory: &mut PairMemory, input: f64) -> f64 {
         self.rate_gain * (input - self.step(memory, input, false))
     }
 

@@ -36,7 +36,7 @@ pub use actuators::{
 };
 pub use align::StreamOffset;
 pub use changed::{
-    changes_in_the_air, other_settings, resting_on_defaults, settle_parameters, settled_parameters,
+    adopt_in_flight_parameters, changes_in_the_air, in_flight_parameters, other_settings, resting_on_defaults,
 };
 pub use condition::{ConditionSettings, WEAK_HALF_WIDTH_S, condition, stride};
 pub use error::SignalsError;

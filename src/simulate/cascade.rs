@@ -100,7 +100,7 @@ impl Pid {
 
 /// What a cascade last asked of its inner loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RequestedEffects {
+pub struct InnerLoopSetpoint {
     /// body to world
     pub attitude: UnitQuaternion<f64>,
     /// body, rad/s
@@ -117,7 +117,7 @@ pub struct AutopilotCascade {
     allocation: Allocation,
     velocity: Pid,
     rates: Pid,
-    wanted: RequestedEffects,
+    inner: InnerLoopSetpoint,
 }
 
 /// Cosine of the lean beyond which no more thrust makes up for it (-).
@@ -135,7 +135,7 @@ impl AutopilotCascade {
             allocation: Allocation::new(vehicle, command_min)?,
             velocity: Pid::new(gains.velocity, gains.derivative_pole_rad_s),
             rates: Pid::new(gains.rates, gains.derivative_pole_rad_s),
-            wanted: RequestedEffects {
+            inner: InnerLoopSetpoint {
                 attitude: UnitQuaternion::identity(),
                 rates_rad_s: Vector3::zeros(),
                 thrust_n: 0.0,
@@ -145,8 +145,8 @@ impl AutopilotCascade {
 
     /// What the last call of [`Self::commands`] or [`Self::turn`] asked of the inner loops.
     #[must_use]
-    pub fn wanted(&self) -> &RequestedEffects {
-        &self.wanted
+    pub fn inner_loop_setpoint(&self) -> &InnerLoopSetpoint {
+        &self.inner
     }
 
     /// Forgets integrals and derivatives, as at arming.
@@ -162,7 +162,7 @@ impl AutopilotCascade {
         let up = estimate.attitude * Vector3::z();
         let rates = self.rates_wanted(&attitude, estimate, setpoint.yaw_rate_rad_s);
         let thrust_n = self.body.mass_kg * acceleration.dot(&up);
-        self.wanted = RequestedEffects { attitude, rates_rad_s: rates, thrust_n };
+        self.inner = InnerLoopSetpoint { attitude, rates_rad_s: rates, thrust_n };
         self.rate_commands(estimate, period_s)
     }
 
@@ -214,13 +214,13 @@ impl AutopilotCascade {
             Some(attitude) => self.rates_wanted(attitude, estimate, rates_rad_s.z),
             None => rates_rad_s.zip_map(&most, |rate, most| rate.clamp(-most, most)),
         };
-        self.wanted =
-            RequestedEffects { attitude: attitude.unwrap_or(estimate.attitude), rates_rad_s, thrust_n };
+        self.inner =
+            InnerLoopSetpoint { attitude: attitude.unwrap_or(estimate.attitude), rates_rad_s, thrust_n };
         self.rate_commands(estimate, period_s)
     }
 
     fn rate_commands(&mut self, estimate: &State, period_s: f64) -> [f64; MAX_ROTORS] {
-        let RequestedEffects { rates_rad_s: rates, thrust_n, .. } = self.wanted;
+        let InnerLoopSetpoint { rates_rad_s: rates, thrust_n, .. } = self.inner;
         let turning = self.rates.update(&rates, &estimate.rates_rad_s, period_s);
         let w = &estimate.rates_rad_s;
         let torque = self.body.inertia_kg_m2 * turning + w.cross(&(self.body.inertia_kg_m2 * w));
@@ -278,7 +278,7 @@ mod tests {
             for _ in 0..100 {
                 cascade.turn_at_height(None, &Vector3::zeros(), &setpoint, (&estimate, 0.004));
             }
-            cascade.wanted().thrust_n
+            cascade.inner_loop_setpoint().thrust_n
         };
         let still_n = thrust_n(0.0, 0.0);
         assert!(still_n > 1.5 * vehicle.body.mass_kg * vehicle.gravity_m_s2, "{still_n}");

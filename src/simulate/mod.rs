@@ -21,7 +21,7 @@ mod vehicles;
 
 pub use allocation::Allocation;
 pub use capacity::PLANT_STATES;
-pub use cascade::{AutopilotCascade, AutopilotGains, LoopGains, RequestedEffects};
+pub use cascade::{AutopilotCascade, AutopilotGains, InnerLoopSetpoint, LoopGains};
 pub use controller::{CascadeController, CascadeGains, Setpoint};
 pub use error::SimulateError;
 pub use flight::{Disturbance, FlightSettings, SimulatedFlight, Truth, simulate_flight};

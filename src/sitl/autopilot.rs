@@ -179,7 +179,7 @@ impl Autopilot {
         let state = &self.estimator.state;
         let stands = self.guidance.wants_down(&self.setpoint, state)
             && state.velocity_m_s.z.abs() < STANDING_M_S
-            && self.cascade.wanted().thrust_n < STANDING_THRUST * self.weight_n;
+            && self.cascade.inner_loop_setpoint().thrust_n < STANDING_THRUST * self.weight_n;
         if !stands {
             self.standing_since = None;
             return;

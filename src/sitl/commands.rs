@@ -6,12 +6,12 @@ use std::time::Duration;
 use mavlink::dialects::ardupilotmega::{COMMAND_ACK_DATA, MESSAGE_INTERVAL_DATA, MavResult, MavSeverity};
 
 use super::message::Message;
-use super::message_id::{AUTOPILOT_VERSION, HEARTBEAT, HOME_POSITION};
 use super::streams::IntervalRefusal;
 use super::{Mode, Vehicle};
 use crate::autopilot::Numbering;
 use crate::units::whole;
 use crate::wire::Payload;
+use crate::wire::message_id::{AUTOPILOT_VERSION, HEARTBEAT, HOME_POSITION};
 
 /// MAV_CMD.
 mod cmd {

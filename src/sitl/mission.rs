@@ -11,12 +11,12 @@ use mavlink::dialects::ardupilotmega::{
 use super::Vehicle;
 use super::fence::Fence;
 use super::message::Message;
-use super::request_id as id;
 use super::upload::Upload;
 use crate::fence::{CIRCLE_INSIDE, CIRCLE_OUTSIDE, FenceItem, POLYGON_INSIDE, POLYGON_OUTSIDE};
 use crate::frames::Geodetic;
 use crate::units::{narrow, whole};
 use crate::wire::Payload;
+use crate::wire::message_id as id;
 
 /// MAV_MISSION_TYPE_FENCE
 const FENCE: u8 = 1;

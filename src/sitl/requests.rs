@@ -8,8 +8,8 @@ use mavlink::dialects::ardupilotmega::MavSeverity;
 use super::Vehicle;
 use super::commands::Command;
 use super::ping::ping;
-use super::request_id as id;
 use super::telemetry::Telemetry;
+use crate::wire::message_id as id;
 use crate::wire::{Frame, Payload};
 
 /// MAV_TYPE_GCS

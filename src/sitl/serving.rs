@@ -5,9 +5,9 @@ use mavlink::dialects::ardupilotmega::FILE_TRANSFER_PROTOCOL_DATA;
 use super::Vehicle;
 use super::files::{Answer, Sent};
 use super::message::Message;
-use super::request_id as id;
 use crate::wire::Payload;
 use crate::wire::file_transfer::Transfer;
+use crate::wire::message_id as id;
 
 impl Vehicle {
     /// A message of the file transfer or of the log messages.

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use super::message_id::{
+use super::{Firmware, LinkRole};
+use crate::wire::message_id::{
     ACTUATOR_OUTPUT_STATUS, ALTITUDE, ATTITUDE, ATTITUDE_QUATERNION, ATTITUDE_TARGET, AUTOPILOT_VERSION,
     BATTERY_STATUS, CURRENT_EVENT_SEQUENCE, CURRENT_MODE, EKF_STATUS_REPORT, ESC_INFO, ESC_STATUS,
     ESC_TELEMETRY_1_TO_4, ESTIMATOR_STATUS, EXTENDED_SYS_STATE, GLOBAL_POSITION_INT, GPS_GLOBAL_ORIGIN,
@@ -11,7 +12,6 @@ use super::message_id::{
     POSITION_TARGET_LOCAL_NED, RAW_IMU, RC_CHANNELS, RPM, SCALED_IMU2, SERVO_OUTPUT_RAW, SYS_STATUS,
     SYSTEM_TIME, TIMESYNC, VFR_HUD,
 };
-use super::{Firmware, LinkRole};
 
 /// Messages of PX4 with rates on its ground-station link and on its onboard link, Hz.
 const PX4: &[(u32, f64, f64)] = &[

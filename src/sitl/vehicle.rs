@@ -14,7 +14,6 @@ use super::files::{FileServer, LogSender};
 use super::link::Link;
 use super::logger::{Keeper, Now};
 use super::message::Message;
-use super::message_id::HEARTBEAT;
 use super::parameters::{Parameters, Pulses};
 use super::telemetry::{PROTOCOL, Snapshot, Telemetry};
 use super::tuning::Tuning;
@@ -22,6 +21,7 @@ use super::upload::Upload;
 use super::{Fault, LinkId, LinkRole, Mode, Outgoing, Settings, SitlError};
 use crate::link::{Signing, SigningKey, time_of};
 use crate::physics::MAX_ROTORS;
+use crate::wire::message_id::HEARTBEAT;
 use crate::wire::{Check, CrcSeeds, Frame, Payload};
 
 /// MAV_COMP_ID_AUTOPILOT1
@@ -50,7 +50,7 @@ pub struct Vehicle {
     pulses: Pulses,
     seeds: CrcSeeds,
     /// time of the next loop period, since the vehicle was made
-    next: Duration,
+    next_loop: Duration,
     /// the latest time that was heard of
     clock: Duration,
     booted: Duration,
@@ -90,7 +90,7 @@ impl Vehicle {
             pulses,
             links: Vec::new(),
             seeds: CrcSeeds::new(),
-            next: Duration::ZERO,
+            next_loop: Duration::ZERO,
             clock: Duration::ZERO,
             booted: Duration::ZERO,
             silent_until: Duration::ZERO,
@@ -176,10 +176,10 @@ impl Vehicle {
     /// Goes on until a time since the vehicle was made; returns what has arrived at the other ends by then,
     /// link by link in the order of its arrival. A time in the past changes nothing.
     pub fn advance(&mut self, to: Duration) -> Vec<Outgoing> {
-        while self.next <= to {
-            self.clock = self.clock.max(self.next);
+        while self.next_loop <= to {
+            self.clock = self.clock.max(self.next_loop);
             self.run_loop();
-            self.next += self.settings.autopilot.loop_period();
+            self.next_loop += self.settings.autopilot.loop_period();
         }
         self.clock = self.clock.max(to);
         self.send_texts();
@@ -196,7 +196,7 @@ impl Vehicle {
     /// Time of the next loop period since the vehicle was made: nothing new happens by itself before.
     #[must_use]
     pub fn next_loop(&self) -> Duration {
-        self.next
+        self.next_loop
     }
 
     /// The vehicle as it is now.
@@ -257,7 +257,7 @@ impl Vehicle {
     }
 
     fn run_loop(&mut self) {
-        let now = self.next.saturating_sub(self.booted);
+        let now = self.next_loop.saturating_sub(self.booted);
         let kind = self.settings.autopilot;
         let period_s = kind.loop_period().as_secs_f64();
         self.craft.set_battery_v(self.autopilot.battery.volts());
@@ -366,7 +366,7 @@ impl Vehicle {
         if let Ok(autopilot) = Autopilot::new(&self.settings, tuning) {
             self.autopilot = autopilot;
         }
-        self.booted = self.next;
+        self.booted = self.next_loop;
         self.upload = None;
         self.keeper.reboot(&self.parameters);
         for link in &mut self.links {

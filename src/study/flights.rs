@@ -10,7 +10,9 @@ use crate::log::{
 };
 use crate::note::{About, Note};
 use crate::recording::{Recording, shared_share};
-use crate::signals::{ConditionSettings, ReportedState, Signals, outputs_off_mixer, settle_parameters};
+use crate::signals::{
+    ConditionSettings, ReportedState, Signals, adopt_in_flight_parameters, outputs_off_mixer,
+};
 use crate::text;
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
@@ -195,7 +197,7 @@ fn of_log(flights: Vec<LogFlight>, log: &InputFile, logged_by: LoggedBy) -> Vec<
         if let Some(first) = off_mixer.first() {
             flight.recording.end_at(first.left_s);
         }
-        settle_parameters(&mut flight.recording);
+        adopt_in_flight_parameters(&mut flight.recording);
         let mut input = log.clone();
         if index > 0 {
             input.notes.clear();

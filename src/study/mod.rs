@@ -38,7 +38,7 @@ pub use error::StudyError;
 pub use explain::{
     AlongFlights, AxisFit, AxisResidual, AxisShare, BodyParameter, Estimate, ExplainRequest, ExplainStudy,
     Field, Figures, FlownPath, Followed, Given, Harmonics, Heat, LeftAlongTime, Located, Predicted,
-    QUANTITIES, RecordedAndSimulated, ShownOn, StateShare, Tried, TriedAs, explain, for_readers,
+    QUANTITIES, RecordedAndSimulated, StateShare, Tried, TriedAs, ValidationData, explain, for_readers,
     stored_trajectory,
 };
 pub use flights::{ReadSettings, unread};

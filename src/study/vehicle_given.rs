@@ -9,7 +9,7 @@ use crate::draft::{Draft, DraftError, Given, draft};
 use crate::log::{Hold, open_flights};
 use crate::note::{About, Note};
 use crate::recording::Recording;
-use crate::signals::settle_parameters;
+use crate::signals::adopt_in_flight_parameters;
 use crate::stand::{StandError, measured_propulsion, read_table};
 use crate::text;
 use crate::vehicle::{Guessed, Vehicle};
@@ -179,7 +179,7 @@ pub fn draft_from_log(log: &Path, read: &ReadSettings, given: &Given) -> Result<
     let Some(flight) = opened.flights.flights.first_mut() else {
         return Err(StudyError::File { file: text::path(&log), why: "expected a flight, got none".into() });
     };
-    settle_parameters(&mut flight.recording);
+    adopt_in_flight_parameters(&mut flight.recording);
     drafted(&flight.recording, &text::path(&log), given)
 }
 

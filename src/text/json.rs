@@ -25,14 +25,14 @@ pub fn json_line(document: &impl Serialize) -> serde_json::Result<String> {
 
 fn written(document: &impl Serialize, form: impl Formatter) -> serde_json::Result<String> {
     let mut bytes = Vec::new();
-    document.serialize(&mut Serializer::with_formatter(&mut bytes, Seen(form)))?;
+    document.serialize(&mut Serializer::with_formatter(&mut bytes, VisibleFormatter(form)))?;
     String::from_utf8(bytes).map_err(|error| serde_json::Error::io(io::Error::other(error)))
 }
 
 /// Any form of JSON. Characters that a terminal obeys become `\uXXXX`, also where JSON would allow them as they are.
-struct Seen<F>(F);
+struct VisibleFormatter<F>(F);
 
-impl<F: Formatter> Formatter for Seen<F> {
+impl<F: Formatter> Formatter for VisibleFormatter<F> {
     fn write_string_fragment<W: ?Sized + Write>(&mut self, to: &mut W, fragment: &str) -> io::Result<()> {
         let mut units = [0; 2];
         let mut rest = fragment;

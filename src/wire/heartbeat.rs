@@ -1,11 +1,7 @@
-//! HEARTBEAT: its number, the places of what it tells in its payload, and their values (MAVLink's `minimal.xml`).
+//! HEARTBEAT: the places of what it tells in its payload, and their values (MAVLink's `minimal.xml`).
 
 use std::time::Duration;
 
-/// Number of the message.
-pub const HEARTBEAT: u32 = 0;
-/// The same as a command takes it.
-pub const HEARTBEAT_ID: u16 = 0;
 /// Time between two of them.
 pub const HEARTBEAT_PERIOD: Duration = Duration::from_secs(1);
 /// Place of `type`, MAV_TYPE.

@@ -15,6 +15,7 @@ pub mod file_transfer;
 mod frame;
 pub mod heartbeat;
 pub mod mav_frame;
+pub mod message_id;
 mod sender;
 mod splitter;
 mod stamped;

@@ -122,7 +122,7 @@ fn cut_propellers_are_found_from_20_mm_on_and_smaller_cuts_get_no_name() {
     let Some(shared) = support::shared() else { return };
     let folder = shared.join("onboard/propeller_cut");
     let whole = ["09", "04", "02"];
-    for (flight, mm) in [("15", 20), ("08", 25)] {
+    for (flight, mm) in [("15", 20), ("12", 20), ("08", 25)] {
         let study = compared(&folder, &whole, flight);
         let changes = &study.compared.as_ref().unwrap().changes;
         assert_eq!(changes.len(), 1, "{mm} mm: {changes:?}");

@@ -11,13 +11,13 @@ mod support;
 
 mod blind_flights;
 mod compare;
-mod diagnose_show;
 mod every_effect;
 mod explain_at_bounds;
 mod explain_command;
 mod explain_names;
 mod feedback;
 mod fleet;
+mod hold_out_and_next_flight;
 mod identify;
 mod identify_with;
 mod paper_twin;

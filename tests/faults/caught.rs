@@ -7,7 +7,7 @@ use mavid::sitl::Beheld;
 
 use crate::harness::laws::{Law, check};
 use crate::harness::ours::Given;
-use crate::harness::trace::{Part, Report, Seen, Trace};
+use crate::harness::trace::{Observation, Part, Report, Trace};
 use crate::harness::wire::{Left, SetpointSeen};
 
 const GUIDED: u32 = 4;
@@ -25,37 +25,39 @@ fn ms(value: u64) -> Duration {
 struct Made(Trace);
 
 impl Made {
-    fn at(mut self, at: u64, seen: Seen) -> Self {
+    fn at(mut self, at: u64, seen: Observation) -> Self {
         self.0.add(ms(at), seen);
         self
     }
 
     fn vehicle(self, at: u64, mode: u32, armed: bool) -> Self {
-        self.at(at, Seen::Vehicle(Beheld { custom_mode: mode, armed, landed: !armed }))
+        self.at(at, Observation::Vehicle(Beheld { custom_mode: mode, armed, landed: !armed }))
     }
 
     /// A report that the vehicle sends, and that is read at once.
     fn report(self, at: u64, mode: u32) -> Self {
         let report = Report { mode, armed: Some(true), said: Some(ms(at)) };
-        self.at(at, Seen::Came).at(at, Seen::Reached(report)).at(at, Seen::Heard(report, ms(at)))
+        self.at(at, Observation::Came)
+            .at(at, Observation::Reached(report))
+            .at(at, Observation::Heard(report, ms(at)))
     }
 
     fn setpoint(self, at: u64, made: u64, position_m: [f64; 3]) -> Self {
         let setpoint = SetpointSeen { made: ms(made), position_m, velocity_m_s: [0.0; 3] };
-        self.at(at, Seen::Left(Left::Setpoint(setpoint)))
+        self.at(at, Observation::Left(Left::Setpoint(setpoint)))
     }
 
     fn says(self, at: u64, kind: &'static str, text: &str) -> Self {
-        self.at(at, Seen::Note(Note::new(ms(at), Level::Error, kind, text)))
+        self.at(at, Observation::Note(Note::new(ms(at), Level::Error, kind, text)))
     }
 
     fn left(self, at: u64, left: Left) -> Self {
-        self.at(at, Seen::Left(left))
+        self.at(at, Observation::Left(left))
     }
 
     fn over(self, at: u64, ending: Ending) -> Self {
         let outcome = Outcome { cause: None, ending, flown: FlightStatistics::default(), losses: Vec::new() };
-        self.at(at, Seen::Over(outcome))
+        self.at(at, Observation::Over(outcome))
     }
 
     fn breaks(&self) -> Vec<Law> {
@@ -122,9 +124,9 @@ fn a_command_without_a_report_of_our_mode_after_its_reason_is_caught() {
     // what came to the socket long before is no news, however late it is read
     let old = Report { mode: GUIDED, armed: None, said: Some(ms(1300)) };
     let queued = flying()
-        .at(1300, Seen::Reached(old))
+        .at(1300, Observation::Reached(old))
         .says(1900, "abort", "late")
-        .at(1950, Seen::Heard(old, ms(1300)))
+        .at(1950, Observation::Heard(old, ms(1300)))
         .left(1950, Left::Mode(BRAKE));
     assert_eq!(over(queued).breaks(), [Law::Stale]);
     let long_ago = flying()
@@ -158,7 +160,7 @@ fn setpoints_into_a_silence_of_more_than_five_seconds_are_caught() {
 #[test]
 fn what_leaves_while_a_part_stands_still_is_caught() {
     // where nothing comes, nothing tells that its way stands still
-    let parked = |part| flying().at(1300, Seen::Parked(part, ms(2500))).at(1300, Seen::Came);
+    let parked = |part| flying().at(1300, Observation::Parked(part, ms(2500))).at(1300, Observation::Came);
     for part in [Part::Link, Part::Telemetry, Part::Supervisor, Part::Setpoints] {
         let early = parked(part).setpoint(1440, 1440, [0.0, 0.0, 2.0]);
         assert_eq!(landed(early, 3000).breaks(), [], "{part:?}");
@@ -185,7 +187,8 @@ fn an_end_that_is_not_safe_or_not_true_is_caught() {
     assert_eq!(flying().breaks(), [Law::Time]);
     // who is told that another flies it lets go
     let forged = Report { mode: LOITER, armed: Some(true), said: None };
-    let told = flying().at(1300, Seen::Heard(forged, ms(1300))).over(5000, Ending::InTheAir("GUIDED".into()));
+    let told =
+        flying().at(1300, Observation::Heard(forged, ms(1300))).over(5000, Ending::InTheAir("GUIDED".into()));
     assert_eq!(told.breaks(), []);
     let killed = Outcome {
         cause: Some(Cause::Killed),
@@ -193,5 +196,5 @@ fn an_end_that_is_not_safe_or_not_true_is_caught() {
         flown: FlightStatistics::default(),
         losses: Vec::new(),
     };
-    assert_eq!(flying().at(5000, Seen::Over(killed)).breaks(), []);
+    assert_eq!(flying().at(5000, Observation::Over(killed)).breaks(), []);
 }

@@ -4,7 +4,7 @@ use mavid::autopilot::{Autopilot, LogAwaited};
 use mavid::config::load_vehicle;
 use mavid::fence::{FenceItem, Zone};
 use mavid::fly::finding::{Finding, Level, worst};
-use mavid::fly::parameters::{Download, DownloadSettings, Parameters, wanted};
+use mavid::fly::parameters::{Download, DownloadSettings, Parameters, requested_parameters};
 use mavid::fly::preflight::{BatteryState, Fence, Judged, Readiness, Situation, judge};
 use mavid::fly::requests::{
     Answer, Capacity, LinkKind, Need, RequestSettings, Requests, request_set, slow_request_set,
@@ -95,7 +95,8 @@ fn downloaded(
     mut wire: Wire,
 ) -> (Parameters, u32, Duration) {
     let vehicle = vehicle_of(autopilot);
-    let mut download = Download::new(vehicle, wanted(autopilot, 4), DownloadSettings::default());
+    let mut download =
+        Download::new(vehicle, requested_parameters(autopilot, 4), DownloadSettings::default());
     let mut decoder = Decoder::new(vehicle, None, 0);
     let (mut now, mut sent) = (Duration::ZERO, 0);
     while !download.is_done(now) {
@@ -172,7 +173,7 @@ fn a_lossy_link_costs_time_and_no_parameter() {
 fn a_dead_link_ends_the_download() {
     let (parameters, ..) = downloaded(Autopilot::Px4, (&BTreeMap::new(), &[]), Wire::new(1.0, 0));
     assert!(parameters.values.is_empty());
-    assert_eq!(parameters.unanswered.len(), wanted(Autopilot::Px4, 4).len());
+    assert_eq!(parameters.unanswered.len(), requested_parameters(Autopilot::Px4, 4).len());
 }
 
 /// Refuses and grants as the autopilots were seen to do; what is accepted runs at the granted rate.
@@ -812,7 +813,7 @@ fn the_fence_is_checked_with_its_margin_and_with_every_area() {
 #[test]
 fn a_fence_that_is_enabled_in_flight_is_asked_for_and_declared() {
     let asked: Vec<String> =
-        wanted(Autopilot::ArduPilot, 4).into_iter().flat_map(|wanted| wanted.names).collect();
+        requested_parameters(Autopilot::ArduPilot, 4).into_iter().flat_map(|wanted| wanted.names).collect();
     assert!(asked.iter().any(|name| name == "FENCE_AUTOENABLE"));
     let mut scene = Scene::good();
     scene.parameters = ardupilot(&[("FENCE_ENABLE", 0.0), ("FENCE_AUTOENABLE", 3.0)]);

@@ -4,7 +4,9 @@
 use mavid::config::load_vehicle;
 use mavid::fence::FenceItem;
 use mavid::fly::finding::{Level, worst};
-use mavid::fly::parameters::{Download, DownloadSettings, Parameters, failsafe_declaration, wanted};
+use mavid::fly::parameters::{
+    Download, DownloadSettings, Parameters, failsafe_declaration, requested_parameters,
+};
 use mavid::fly::preflight::{Fence, FenceDownload, FenceOutcome};
 use mavid::fly::requests::{Capacity, LinkKind, Need, RatesReport, RequestSettings, Requests, request_set};
 use mavid::frames::Geodetic;
@@ -81,7 +83,8 @@ impl Peer {
 
 fn downloaded(peer: &mut Peer, kind: Firmware) -> Parameters {
     let vehicle = Peer::identity(kind);
-    let mut download = Download::new(vehicle, wanted(vehicle.autopilot, 4), DownloadSettings::default());
+    let mut download =
+        Download::new(vehicle, requested_parameters(vehicle.autopilot, 4), DownloadSettings::default());
     while !download.is_done(peer.now) {
         while let Some(message) = download.poll(peer.now) {
             peer.send(&message);

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use mavid::autopilot::Autopilot;
 use mavid::autopilot::{ARDUPILOT, Mode, PX4, Purpose};
-use mavid::fly::parameters::{Download, DownloadSettings, RequestedParameter, wanted};
+use mavid::fly::parameters::{Download, DownloadSettings, RequestedParameter, requested_parameters};
 use mavid::fly::preflight::FenceDownload;
 use mavid::fly::requests::{Capacity, LinkKind, Need, RequestSettings, Requests, StreamRequest};
 use mavid::fly::{MessageId, Order, ParameterName, Period, Setpoint, Target, heartbeat};
@@ -201,7 +201,7 @@ fn what_is_not_in_range_is_refused_and_not_changed() {
 fn what_is_sent_in_every_flight_is_in_range() {
     check(&heartbeat()).unwrap();
     for autopilot in [Autopilot::Px4, Autopilot::ArduPilot] {
-        for name in wanted(autopilot, 8).iter().flat_map(|wanted| &wanted.names) {
+        for name in requested_parameters(autopilot, 8).iter().flat_map(|wanted| &wanted.names) {
             assert!(ParameterName::new(name).is_ok(), "{name}");
         }
         for set in [mavid::fly::requests::request_set, mavid::fly::requests::slow_request_set] {

@@ -168,7 +168,7 @@ fn two_vehicles_and_none_with_a_heartbeat_are_inspected() {
     let absent = OpenOptions { system: Some(SystemId(9)), ..OpenOptions::default() };
     assert!(matches!(
         inspect(&path, &absent, None, &mut |_| ()),
-        Err(LogError::SystemAbsent { wanted: SystemId(9), .. })
+        Err(LogError::SystemAbsent { requested: SystemId(9), .. })
     ));
 
     let silent = written("inspect-silent.tlog", &tlog(&support::attitudes(100)));

@@ -65,7 +65,7 @@ fn several_vehicles_are_named_and_one_is_chosen() {
         assert_eq!(recording.autopilot, Autopilot::Px4);
     }
     let refused = log::open(&log.0, &of_system(3)).unwrap_err();
-    assert!(matches!(refused, LogError::SystemAbsent { wanted: SystemId(3), .. }), "{refused}");
+    assert!(matches!(refused, LogError::SystemAbsent { requested: SystemId(3), .. }), "{refused}");
 }
 
 #[test]

@@ -16,8 +16,8 @@ use std::time::Duration;
 use ground::{Ground, settings};
 use mavid::autopilot::Autopilot;
 use mavid::fetch::{
-    Begun, Checked, Dialogue, Download, FetchError, Fetched, List, Part, PartError, Place, Protocol,
-    ReadParameters, RemoteLog, SetParameters, Sum, Survey, Uptime, Wanted,
+    Begun, Checked, Dialogue, Download, FetchError, Fetched, List, LogSelection, Part, PartError, Place,
+    Protocol, ReadParameters, RemoteLog, SetParameters, Sum, Survey, Uptime,
 };
 use mavid::log::{self, Input, OpenOptions};
 use mavid::sitl::{Firmware, Settings};
@@ -138,7 +138,7 @@ impl Way {
     }
 
     fn list(&mut self, other: &mut impl Other, autopilot: Autopilot, protocol: Protocol) -> Vec<RemoteLog> {
-        let mut list = List::new(vehicle(autopilot), protocol, Wanted::All).unwrap();
+        let mut list = List::new(vehicle(autopilot), protocol, LogSelection::All).unwrap();
         self.talk(&mut list, other, |_| false).unwrap();
         list.logs()
     }
@@ -334,7 +334,7 @@ impl Other for Silent {
 #[test]
 fn silence_ends_with_what_was_expected() {
     for (protocol, words) in [(Protocol::Ftp, "the list of /APM/LOGS"), (Protocol::Log, "the list of logs")] {
-        let mut list = List::new(vehicle(Autopilot::ArduPilot), protocol, Wanted::All).unwrap();
+        let mut list = List::new(vehicle(Autopilot::ArduPilot), protocol, LogSelection::All).unwrap();
         let error = Way::of_liar().talk(&mut list, &mut Silent, |_| false).unwrap_err();
         let text = error.to_string();
         assert!(text.contains(words) && text.contains("nothing came in 12 tries"), "{text}");
@@ -389,7 +389,7 @@ fn names_that_are_no_names_are_left_out() {
         0 => (operation::ACK, 0, listed.clone()),
         _ => (operation::NAK, 0, vec![refusal::END]),
     });
-    let mut list = List::new(vehicle(Autopilot::ArduPilot), Protocol::Ftp, Wanted::All).unwrap();
+    let mut list = List::new(vehicle(Autopilot::ArduPilot), Protocol::Ftp, LogSelection::All).unwrap();
     Way::of_liar().talk(&mut list, &mut liar, |_| false).unwrap();
     let paths: Vec<_> = list.logs().into_iter().map(|log| (log.id, log.place, log.size)).collect();
     let place = |path: &str| Place::Path(path.to_owned());
@@ -425,7 +425,7 @@ impl Other for Entries {
 #[test]
 fn logs_are_counted_from_where_the_vehicle_counts() {
     for (first, last_told) in [(1, 3), (5, 7), (0, 2), (0, 3)] {
-        let mut list = List::new(vehicle(Autopilot::Px4), Protocol::Log, Wanted::All).unwrap();
+        let mut list = List::new(vehicle(Autopilot::Px4), Protocol::Log, LogSelection::All).unwrap();
         Way::of_liar().talk(&mut list, &mut Entries { first, last_told }, |_| false).unwrap();
         let sizes: Vec<u64> = list.logs().iter().map(|log| log.size).collect();
         let from = 1000 + u64::from(first);
@@ -440,7 +440,7 @@ fn a_list_without_an_end_ends() {
         count += 1;
         (operation::ACK, 0, format!("Fx{count}.bin\t1\0Dd{count}\0").into_bytes())
     });
-    let mut list = List::new(vehicle(Autopilot::ArduPilot), Protocol::Ftp, Wanted::Last).unwrap();
+    let mut list = List::new(vehicle(Autopilot::ArduPilot), Protocol::Ftp, LogSelection::Last).unwrap();
     Way::of_liar().talk(&mut list, &mut liar, |_| false).unwrap();
     assert!(list.logs().len() <= 4096);
 }
@@ -529,7 +529,7 @@ fn parameters_of_logging_are_read_and_set_as_each_autopilot_encodes_them() {
         };
         let known = read(&mut way, &mut embedded);
         let plan = kind.stack().log_plan(|name| known.value(name));
-        assert_eq!((plan.changes[0].parameter, plan.changes[0].wanted), (name, wanted));
+        assert_eq!((plan.changes[0].parameter, plan.changes[0].needed), (name, wanted));
         assert_eq!(known.value("NOT_THERE"), None);
         let mut setting = SetParameters::new(vehicle(autopilot), &known, &[(name, wanted)]).unwrap();
         way.talk(&mut setting, &mut embedded, |_| false).unwrap();

@@ -147,9 +147,9 @@ fn heartbeat() -> MavMessage {
     })
 }
 
-type Told<'a> = (&'a Hidden, Conditions);
+type SensorConditions<'a> = (&'a Hidden, Conditions);
 
-fn attitude(time: f64, now: &Instant, (hidden, with): Told, dice: &mut impl Rng) -> MavMessage {
+fn attitude(time: f64, now: &Instant, (hidden, with): SensorConditions, dice: &mut impl Rng) -> MavMessage {
     let seen = if hidden.attitude_in_frame {
         hidden.frame_turned.inverse().matrix() * now.rotation
     } else {
@@ -177,7 +177,7 @@ fn attitude(time: f64, now: &Instant, (hidden, with): Told, dice: &mut impl Rng)
     })
 }
 
-fn inertial(time: f64, now: &Instant, (hidden, with): Told, dice: &mut impl Rng) -> MavMessage {
+fn inertial(time: f64, now: &Instant, (hidden, with): SensorConditions, dice: &mut impl Rng) -> MavMessage {
     let from = hidden.imu_at;
     let carried = now.angular.cross(&from) + now.rates.cross(&now.rates.cross(&from));
     let felt = hidden.imu_turned * (now.specific_force + carried) + noise(0.1 * with.noise, dice);
@@ -202,7 +202,7 @@ fn inertial(time: f64, now: &Instant, (hidden, with): Told, dice: &mut impl Rng)
     })
 }
 
-fn position(time: f64, now: &Instant, (hidden, with): Told, dice: &mut impl Rng) -> MavMessage {
+fn position(time: f64, now: &Instant, (hidden, with): SensorConditions, dice: &mut impl Rng) -> MavMessage {
     let into = hidden.frame_turned.inverse();
     let [x, y, z] = mirrored(&(into * now.position + noise(0.004 * with.noise, dice)));
     let [vx, vy, vz] = mirrored(&(into * now.velocity + noise(0.015 * with.noise, dice)));

@@ -54,7 +54,7 @@ pub fn answer(case: &RealCase, flown: &Flown) -> Value {
             "imu": case.streams.inertial, "actuator": case.streams.commands, "esc": case.streams.speeds,
             "skew_attitude": case.streams.skew_attitude, "skew_position": case.streams.skew_position,
         },
-        "seen": flown.seen.axes,
+        "seen": flown.visibility.axes,
         "draw": [inside.seed, case.draw],
     })
 }

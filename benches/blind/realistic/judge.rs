@@ -11,7 +11,7 @@ use crate::maker::realistic::case::RealCase;
 
 /// A flight to be made and explained.
 #[derive(Debug, Clone, Copy)]
-pub struct Wanted {
+pub struct Request {
     pub seed: u64,
     pub entries: &'static [&'static str],
 }
@@ -68,13 +68,13 @@ const ASKEW: [&str; 2] = ["imu_misalignment", "frame_misalignment"];
 const AXES: [&str; 6] = ["force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z"];
 
 /// Makes, explains and judges all, side by side; a line of each that is not right.
-pub fn all(wanted: &[Wanted]) -> Vec<Judged> {
+pub fn all(requests: &[Request]) -> Vec<Judged> {
     let tell_all = std::env::var_os("BLIND_TELL").is_some();
-    wanted
+    requests
         .par_iter()
-        .filter_map(|wanted| {
-            let told = format!("  seed {} {:?}", wanted.seed, wanted.entries);
-            match one(*wanted) {
+        .filter_map(|requests| {
+            let told = format!("  seed {} {:?}", requests.seed, requests.entries);
+            match one(*requests) {
                 Ok((judged, line)) => {
                     if tell_all || !judged.right {
                         println!("{told}: {line}");
@@ -90,9 +90,9 @@ pub fn all(wanted: &[Wanted]) -> Vec<Judged> {
         .collect()
 }
 
-fn one(wanted: Wanted) -> Result<(Judged, String), String> {
-    let (case, flown) = RealCase::flown(wanted.seed, wanted.entries)?;
-    let name = format!("mavid_blind_{}_{}_{}", std::process::id(), wanted.seed, wanted.entries.join("_"));
+fn one(requests: Request) -> Result<(Judged, String), String> {
+    let (case, flown) = RealCase::flown(requests.seed, requests.entries)?;
+    let name = format!("mavid_blind_{}_{}_{}", std::process::id(), requests.seed, requests.entries.join("_"));
     let kept = std::env::var_os("BLIND_KEEP").map(PathBuf::from);
     let folder = kept.clone().unwrap_or_else(std::env::temp_dir).join(&name);
     put_down(&folder, &name, (&case, &flown));
@@ -109,8 +109,8 @@ fn one(wanted: Wanted) -> Result<(Judged, String), String> {
     let said = serde_json::to_value(ExplanationDocument::new(&study?)).map_err(|error| error.to_string())?;
     let truth = answer(&case, &flown[0]);
     let judged = Judged {
-        axes: (axes_said(&said), flown[0].seen.where_it_is()),
-        ..judged(wanted.entries, &said, &truth)
+        axes: (axes_said(&said), flown[0].visibility.where_it_is()),
+        ..judged(requests.entries, &said, &truth)
     };
     if kept.is_none() || judged.right {
         let _ = std::fs::remove_dir_all(&folder);

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use crate::maker::realistic::case::{EFFECTS, SEVERAL};
 use crate::support::Arguments;
-use judge::Wanted;
+use judge::Request;
 
 /// Runs what is asked for.
 pub fn run(arguments: &Arguments) {
@@ -30,18 +30,18 @@ pub fn run(arguments: &Arguments) {
         arguments.number("--several", if all { 24_u64 } else { 0 }),
     );
     let known = EFFECTS.iter().filter(|effect| only.as_ref().is_none_or(|only| only == *effect));
-    let mut wanted: Vec<Wanted> =
-        (0..clean).map(|place| Wanted { seed: seed + place, entries: &[] }).collect();
+    let mut requests: Vec<Request> =
+        (0..clean).map(|place| Request { seed: seed + place, entries: &[] }).collect();
     for effect in known {
-        wanted.extend(
-            (0..cases).map(|place| Wanted { seed: seed + place, entries: std::slice::from_ref(effect) }),
+        requests.extend(
+            (0..cases).map(|place| Request { seed: seed + place, entries: std::slice::from_ref(effect) }),
         );
     }
     for (place, entries) in (0..several).zip(SEVERAL.iter().cycle()) {
-        wanted.push(Wanted { seed: seed + place, entries });
+        requests.push(Request { seed: seed + place, entries });
     }
-    let judged = judge::all(&wanted);
-    let command = format!("cargo bench --bench blind -- {}", arguments.line());
+    let judged = judge::all(&requests);
+    let command = arguments.command("blind");
     let figures = report::figures((command, seed), &judged);
     report::tell(&figures);
     if let Some(file) = arguments.text("--out") {

@@ -20,7 +20,7 @@ pub fn tell(seed: u64, count: u64) {
             match made {
                 Err(why) if !capture => println!("  seed {seed} {effect}: {why}"),
                 Ok((case, [first, _])) if case.senses.source.motion_capture == capture => {
-                    let axes = first.seen.axes.map(|axis| format!("{axis:.0}")).join(" ");
+                    let axes = first.visibility.axes.map(|axis| format!("{axis:.0}")).join(" ");
                     println!("  seed {seed} draw {} {effect}: seen {axes}", case.draw);
                     errors.push(first.errors);
                 }

@@ -13,6 +13,8 @@ use rayon::prelude::*;
 
 use super::made::{LEFT, several_with};
 use crate::maker::dice;
+use crate::support::fleet::Histories;
+use crate::support::recorded::alarms;
 
 /// Flights of a history, and the first of them with the weak rotor.
 const FLIGHTS: usize = 40;
@@ -31,7 +33,7 @@ struct Flown {
 }
 
 /// Makes the histories of `count` vehicles and reports them as one fleet.
-pub fn run(seed: u64, count: u64, shuffles: u32) {
+pub fn run(seed: u64, count: u64, shuffles: u32) -> Histories {
     let began = Instant::now();
     let flown: Vec<Flown> = (seed..seed + count).filter_map(flown).collect();
     println!("{} of {count} vehicles flown in {:.0} s", flown.len(), began.elapsed().as_secs_f64());
@@ -45,7 +47,9 @@ pub fn run(seed: u64, count: u64, shuffles: u32) {
     let began = Instant::now();
     let report = FleetReport::of(&rows, &ReportSettings { false_alarms: 0.005, shuffles });
     println!("{} histories reported in {:.0} s", report.vehicles.len(), began.elapsed().as_secs_f64());
-    tell(&report, &truth);
+    let figures = figures(&report, &truth);
+    tell(&figures);
+    Histories { vehicles: flown.len(), ..figures }
 }
 
 fn flown(seed: u64) -> Option<Flown> {
@@ -126,11 +130,18 @@ fn renamed(flight: &LogRows, vehicle: &str, place: usize) -> LogRows {
     rows
 }
 
-fn tell(report: &FleetReport, truth: &BTreeMap<String, Option<usize>>) {
-    let (mut same, mut called, mut weak, mut found, mut named) = (0, 0, 0, 0, 0);
+fn figures(report: &FleetReport, truth: &BTreeMap<String, Option<usize>>) -> Histories {
+    let mut figures = Histories {
+        flights: FLIGHTS,
+        weak_flights: FROM,
+        factor: LEFT,
+        near: NEAR,
+        alarms: alarms(&report.alarms),
+        ..Histories::default()
+    };
     for vehicle in &report.vehicles {
         let study = &vehicle.history.study;
-        let told: Vec<String> = study
+        let steps: Vec<String> = study
             .history
             .iter()
             .map(|step| {
@@ -142,31 +153,41 @@ fn tell(report: &FleetReport, truth: &BTreeMap<String, Option<usize>>) {
             .collect();
         match truth.get(&vehicle.history.name).copied().flatten() {
             None => {
-                same += 1;
-                called += usize::from(vehicle.has_changed());
+                figures.unchanged += 1;
+                figures.called_changed += usize::from(vehicle.has_changed());
                 if vehicle.has_changed() {
-                    println!("  {}: called changed: {}", vehicle.history.name, told.join("; "));
+                    println!("  {}: called changed: {}", vehicle.history.name, steps.join("; "));
                 }
             }
             Some(rotor) => {
-                weak += 1;
+                figures.weakened += 1;
                 let near = |from: usize| from.abs_diff(FROM) <= NEAR;
                 let step = study.history.iter().find(|step| near(step.from));
                 let is_named = step.is_some_and(|step| {
                     step.change.changes.iter().any(|one| one.what == Changed::Rotor(rotor))
                 });
-                found += usize::from(step.is_some());
-                named += usize::from(is_named);
+                figures.found += usize::from(step.is_some());
+                figures.named += usize::from(is_named);
                 if !is_named {
-                    println!("  {}, rotor {rotor}: {}", vehicle.history.name, told.join("; "));
+                    println!("  {}, rotor {rotor}: {}", vehicle.history.name, steps.join("; "));
                 }
             }
         }
     }
-    println!("{called} of {same} histories without a change were called changed");
+    figures
+}
+
+fn tell(figures: &Histories) {
     println!(
-        "a rotor at {LEFT} from flight {} of {FLIGHTS} on: {found} of {weak} found within {NEAR} flights, {named} of them with the rotor",
-        FROM + 1
+        "{} of {} histories without a change were called changed",
+        figures.called_changed, figures.unchanged
     );
-    println!("{:?} {:?}", report.alarms, report.alarms.rate());
+    println!(
+        "a rotor at {LEFT} from flight {} of {FLIGHTS} on: {} of {} found within {NEAR} flights, {} of them with the rotor",
+        FROM + 1,
+        figures.found,
+        figures.weakened,
+        figures.named
+    );
+    println!("{:?}", figures.alarms);
 }

@@ -1,14 +1,18 @@
-//! Several flights of one vehicle, with an estimator in the loop: pairs that are compared, eight that are put together, and
-//! histories of forty.
+//! Several flights of one vehicle, with an estimator in the loop: pairs that are compared (`--compared N`), eight that are
+//! explained together (`--together N`), and histories of forty (`--history N`). `--out FILE` stores the figures in sections of a
+//! file, of which the book is made.
 
 mod histories;
 mod made;
 mod pairs;
-mod together;
+mod pooled;
 
 use std::path::PathBuf;
 
 use crate::support::Arguments;
+use crate::support::comparison::{Pairs, Pooled};
+use crate::support::fleet::Histories;
+use crate::support::sections::store;
 
 /// Runs what is asked for.
 pub fn run(arguments: &Arguments) {
@@ -17,16 +21,22 @@ pub fn run(arguments: &Arguments) {
         made::write(&folder, seed, arguments.number("--count", 40_u64), arguments.number("--flights", 2_u64));
         return;
     }
+    let out = arguments.text("--out");
+    let command = arguments.command("blind");
     let histories = arguments.number("--history", 0_u64);
     if histories > 0 {
-        return histories::run(seed, histories, arguments.number("--shuffles", mavid::fleet::SHUFFLES));
+        let shuffles = arguments.number("--shuffles", mavid::fleet::SHUFFLES);
+        let figures = Histories { command, ..histories::run(seed, histories, shuffles) };
+        return out.iter().for_each(|file| store(file, "histories", &figures));
     }
     let compared = arguments.number("--compared", 40_u64);
     if compared > 0 {
-        pairs::run(seed, compared);
+        let figures = Pairs { command: command.clone(), ..pairs::run(seed, compared) };
+        out.iter().for_each(|file| store(file, "pairs", &figures));
     }
     let vehicles = arguments.number("--together", 0_u64);
     if vehicles > 0 {
-        together::run(seed, vehicles, arguments.number("--flights", 8_u64));
+        let figures = Pooled { command, ..pooled::run(seed, vehicles, arguments.number("--flights", 8_u64)) };
+        out.iter().for_each(|file| store(file, "pooled", &figures));
     }
 }

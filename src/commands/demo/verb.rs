@@ -27,10 +27,10 @@ const FOLDER: &str = "mavid-demo";
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &DemoArgs) -> Result<Outcome, CommandError> {
     let (args, stderr) = (args.clone(), stderr.clone());
-    live::run(move |work| show((json, &stderr), &args, work))
+    live::run(move |work| run_demo((json, &stderr), &args, work))
 }
 
-fn show(out: (bool, &StandardError), args: &DemoArgs, work: &Work) -> Result<Outcome, CommandError> {
+fn run_demo(out: (bool, &StandardError), args: &DemoArgs, work: &Work) -> Result<Outcome, CommandError> {
     if let Some(file) = &args.effects {
         // a file that cannot be used is told before the work
         let vehicle = parse_vehicle(DEFAULT_VEHICLE, "the vehicle within the program")?.vehicle;

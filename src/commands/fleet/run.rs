@@ -58,7 +58,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &FleetRunArgs) -> Result<Ou
     if json {
         output::json(&tally)?;
     } else {
-        output::text(&told(&tally, out))?;
+        output::text(&summary(&tally, out))?;
     }
     Ok(if tally.errors == 0 { Outcome::Done } else { Outcome::DoneWithLoss })
 }
@@ -108,7 +108,7 @@ fn settings(args: &FleetRunArgs) -> Result<LogSettings, CommandError> {
     Ok(LogSettings { depth: args.depth.into(), vehicles, csv_map: args.csv_map.clone(), files })
 }
 
-fn told(tally: &Tally, out: &std::path::Path) -> String {
+fn summary(tally: &Tally, out: &std::path::Path) -> String {
     let Tally { logs, done_before, twins, flown, no_flight, inspected, errors, rows, parts } = tally;
     let mut page = format!(
         "{logs} logs: {flown} with a flight, {no_flight} without one that can be used, {errors} that could not be read"

@@ -23,9 +23,9 @@ const ENDS_MAX: u32 = 20;
 
 /// Whether the page before the flight was shown to its end. Clones tell the same.
 #[derive(Debug, Clone, Default)]
-pub struct Shown(Arc<Mutex<bool>>);
+pub struct PageShown(Arc<Mutex<bool>>);
 
-impl Shown {
+impl PageShown {
     /// Of a flight that has no such page, or has one that is yet to be shown.
     pub fn new(has_page: bool) -> Self {
         Self(Arc::new(Mutex::new(!has_page)))
@@ -92,7 +92,7 @@ fn judge(line: &Line) -> Result<KeyCommand, String> {
 }
 
 /// Each line a command, until there are no more or the flight is over.
-pub fn read_keys(pressed: &UnboundedSender<KeyCommand>, shown: &Shown) {
+pub fn read_keys(pressed: &UnboundedSender<KeyCommand>, shown: &PageShown) {
     let (mut lines, mut bytes, mut ends) = (Lines::default(), [0; LINE_MAX], 0);
     let mut told_early = false;
     loop {
@@ -132,7 +132,7 @@ pub fn read_keys(pressed: &UnboundedSender<KeyCommand>, shown: &Shown) {
 /// Standard input, read as it comes. Whether the page was shown is looked at in the same instant.
 #[cfg(unix)]
 mod input {
-    use super::Shown;
+    use super::PageShown;
     use rustix::event::{PollFd, PollFlags, Timespec, poll};
     use rustix::io::{read as read_some, retry_on_intr};
     use rustix::termios::{QueueSelector, tcflush};
@@ -146,7 +146,7 @@ mod input {
     /// what is typed afterwards is for whoever asks next.
     pub(super) fn read(
         bytes: &mut [u8],
-        shown: &Shown,
+        shown: &PageShown,
         over: &dyn Fn() -> bool,
     ) -> io::Result<Option<(usize, bool)>> {
         let stdin = io::stdin();
@@ -181,13 +181,13 @@ mod input {
 /// Standard input, read as it comes.
 #[cfg(not(unix))]
 mod input {
-    use super::Shown;
+    use super::PageShown;
     use std::io::{self, Read};
 
     /// The bytes that came, and whether that was after the page; none at its end.
     pub(super) fn read(
         bytes: &mut [u8],
-        shown: &Shown,
+        shown: &PageShown,
         _over: &dyn Fn() -> bool,
     ) -> io::Result<Option<(usize, bool)>> {
         let count = io::stdin().lock().read(bytes)?;

@@ -10,7 +10,7 @@ use mavid::fly::{self, Console, Record, Ride};
 use ratatui::crossterm::{event, terminal};
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 
-use super::typed::{KEYS, Shown, read_keys};
+use super::typed::{KEYS, PageShown, read_keys};
 use crate::commands::last_word::{PATIENCE, last_word};
 use crate::commands::live::Work;
 use crate::commands::standard_error::StandardError;
@@ -97,7 +97,7 @@ fn tell(
     pictures: &Receiver<ViewModel>,
     pressed: &UnboundedSender<KeyCommand>,
 ) {
-    let shown = Shown::new(has_page);
+    let shown = PageShown::new(has_page);
     if typed {
         let (pressed, shown) = (pressed.clone(), shown.clone());
         // it ends soon after the flight

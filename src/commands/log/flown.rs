@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use mavid::fetch::Wanted;
+use mavid::fetch::LogSelection;
 use mavid::onboard::{self, Flow, Progress};
 use mavid::wire::SystemId;
 
@@ -96,7 +96,7 @@ async fn fetched(
 ) -> Result<Option<PathBuf>, CommandError> {
     let mut session = open_as(link, station, AFTER).await?;
     let offer = session.offer().await?;
-    let logs = onboard::list(&mut session, (&offer, None), Wanted::Last).await?.logs;
+    let logs = onboard::list(&mut session, (&offer, None), LogSelection::Last).await?.logs;
     output::folder(folder)?;
     let mut path = None;
     match logs.last() {

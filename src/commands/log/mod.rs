@@ -5,16 +5,16 @@ mod documents;
 mod flown;
 mod hint;
 mod link;
+mod logging_needs;
 mod prepare;
 mod state;
 mod verb;
-mod wanted;
 
 pub use before::{before_flight, link_of, put_back};
 pub use flown::{Fetching, after_flight};
 pub use hint::link_options;
 pub use link::{Answered, open, parameters_of_vehicle};
+pub use logging_needs::logging_needs;
 pub use prepare::{agreed, all_put_back, put_back_page};
 pub use state::notes_of_loaded;
 pub use verb::run;
-pub use wanted::wanted;

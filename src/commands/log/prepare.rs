@@ -98,7 +98,7 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
         let line = |change: &LogChange| ChangeLine {
             parameter: change.parameter,
             found: change.found,
-            wanted: change.wanted,
+            wanted: change.needed,
             restarts: change.restarts,
             set,
         };
@@ -159,7 +159,7 @@ fn says(session: &Session, prepared: &LoggingState) -> String {
         });
     }
     for change in changes {
-        let LogChange { parameter, found, wanted, restarts } = change;
+        let LogChange { parameter, found, needed, restarts } = change;
         let restart = if *restarts { ", after a restart of the autopilot" } else { "" };
         let setting =
             session.stack.log_settings.settings.iter().find(|setting| setting.parameter == *parameter);
@@ -197,7 +197,7 @@ pub fn expect_rates(session: &Session, state: &LoggingState) -> Result<(), Comma
 /// What is changed, for people.
 pub fn changes_page(changes: &[LogChange]) -> String {
     let one =
-        |change: &LogChange| format!("{} = {} instead of {}", change.parameter, change.wanted, change.found);
+        |change: &LogChange| format!("{} = {} instead of {}", change.parameter, change.needed, change.found);
     changes.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 

@@ -1,6 +1,6 @@
 //! The runs of `mavid log list` and `mavid log fetch`.
 
-use mavid::fetch::{Offer, RemoteLog, Wanted};
+use mavid::fetch::{LogSelection, Offer, RemoteLog};
 use mavid::onboard::{self, Flow, Progress, Session};
 
 use super::documents::{FetchDocument, ListDocument, page};
@@ -32,7 +32,7 @@ async fn list(json: bool, args: &LogListArgs) -> Result<Outcome, CommandError> {
     let offer = session.offer().await?;
     remind(&args.link, &session, &offer);
     let asked = args.protocol.map(Into::into);
-    let listed = onboard::list(&mut session, (&offer, asked), Wanted::All).await?;
+    let listed = onboard::list(&mut session, (&offer, asked), LogSelection::All).await?;
     let document = ListDocument::new(&session, &listed);
     if json {
         output::json(&document)?
@@ -46,7 +46,7 @@ async fn fetch(json: bool, stderr: &StandardError, args: &LogFetchArgs) -> Resul
     let mut session = open(&args.link).await?;
     let offer = session.offer().await?;
     remind(&args.link, &session, &offer);
-    let wanted = if args.id.is_some() { Wanted::All } else { Wanted::Last };
+    let wanted = if args.id.is_some() { LogSelection::All } else { LogSelection::Last };
     let asked = args.protocol.map(Into::into);
     let logs = onboard::list(&mut session, (&offer, asked), wanted).await?.logs;
     output::folder(&args.out)?;

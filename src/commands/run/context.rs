@@ -31,7 +31,7 @@ pub struct Context<'a> {
     pub stderr: &'a StandardError,
     /// what a signal may do
     pub work: &'a Work,
-    told: RefCell<Vec<String>>,
+    steps: RefCell<Vec<String>>,
 }
 
 impl<'a> Context<'a> {
@@ -41,13 +41,13 @@ impl<'a> Context<'a> {
         (folder, ask): (Folder, Ask),
         (stderr, work): (&'a StandardError, &'a Work),
     ) -> Self {
-        Self { args, recipe, folder, ask, stderr, work, told: RefCell::default() }
+        Self { args, recipe, folder, ask, stderr, work, steps: RefCell::default() }
     }
 
     /// Says a step before it is done, and remembers it.
     pub fn tell(&self, step: &Step) {
         step.tell();
-        self.told.borrow_mut().push(step.line());
+        self.steps.borrow_mut().push(step.line());
     }
 
     /// The heading of a stage.
@@ -59,7 +59,7 @@ impl<'a> Context<'a> {
 
     /// The steps so far, as they are typed.
     pub fn steps(&self) -> Vec<String> {
-        self.told.borrow().clone()
+        self.steps.borrow().clone()
     }
 
     /// Flights at most.

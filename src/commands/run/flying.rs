@@ -37,24 +37,24 @@ pub fn may_set_logging(context: &Context<'_>, target: &Target) -> Result<bool, C
         .maybe("--system-id", link.system_id.map(|system| system.to_string()));
     context.tell(&step);
     context.work.ends_itself();
-    let wanted = log::wanted(&link);
+    let needs = log::logging_needs(&link);
     context.work.waits();
-    let wanted = match wanted {
+    let needs = match needs {
         Err(error @ CommandError::Ended(_)) => return Err(error),
         // a vehicle that does not say how it logs flies all the same: the link's recording is there
         Err(error) => {
             output::warning(&format!("how the vehicle logs is not known: {error}"));
             return Ok(false);
         }
-        Ok(wanted) => wanted,
+        Ok(needs) => needs,
     };
-    wanted.logs.iter().for_each(|line| output::message(&format!("it logs {line}")));
-    if wanted.changes.is_empty() {
+    needs.logs.iter().for_each(|line| output::message(&format!("it logs {line}")));
+    if needs.changes.is_empty() {
         output::message("that is enough for an identification");
         return Ok(false);
     }
-    let restart = if wanted.restarts { " (this needs a restart of the autopilot)" } else { "" };
-    let change = format!("{}{restart}", wanted.changes);
+    let restart = if needs.restarts { " (this needs a restart of the autopilot)" } else { "" };
+    let change = format!("{}{restart}", needs.changes);
     if !context.ask.is_person() {
         output::message(&format!("--set-logging would set {change}, and put it back after the flight"));
     }

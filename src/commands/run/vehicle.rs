@@ -7,7 +7,7 @@ use mavid::autopilot::{Autopilot, Stack};
 use mavid::config::read_vehicle;
 use mavid::draft::{Draft, Given, parameters_of};
 use mavid::files::write_whole;
-use mavid::fly::parameters::{Parameters, wanted};
+use mavid::fly::parameters::{Parameters, requested_parameters};
 use mavid::study::{draft_from_parameters, implausible};
 use mavid::text;
 use mavid::vehicle::{Guessed, Vehicle};
@@ -96,14 +96,15 @@ fn drafted(context: &Context<'_>, target: &mut Target, path: &Path) -> Result<()
     let init = step.init()?;
     let draft = draft_of(&init.shape.given(init.mass))?;
     vehicle::write(&init, &draft)?;
-    output::message(&told(&draft));
+    output::message(&basis(&draft));
     doubtless(context, &draft, path)
 }
 
 /// The parameters of the vehicle, which are written into the folder. From now on it is the vehicle of the run.
 pub fn asked(context: &Context<'_>, target: &mut Target, given: &Given) -> Result<Answered, CommandError> {
     let needed = |stack: &'static Stack, known: &BTreeMap<String, f64>| -> BTreeSet<String> {
-        let of_flight = wanted(stack.autopilot, ROTORS).into_iter().flat_map(|wanted| wanted.names);
+        let of_flight =
+            requested_parameters(stack.autopilot, ROTORS).into_iter().flat_map(|wanted| wanted.names);
         let rehearsed = context.args.rehearse.then_some(of_flight).into_iter().flatten();
         parameters_of(stack, given, known).into_iter().chain(rehearsed).collect()
     };
@@ -162,7 +163,7 @@ fn size(context: &Context<'_>, draft: &Draft) -> Result<Option<f64>, CommandErro
 }
 
 /// One line on what the file rests on.
-fn told(draft: &Draft) -> String {
+fn basis(draft: &Draft) -> String {
     let guesses: Vec<&str> = draft.vehicle.guesses.iter().map(|guess| guess.of.words()).collect();
     let rests = if guesses.is_empty() { String::new() } else { format!("; guessed: {}", guesses.join(", ")) };
     format!("{} rotors, {} kg{rests}", draft.vehicle.rotors.len(), draft.vehicle.body.mass_kg)

@@ -131,7 +131,10 @@ fn all_flights(context: &Context<'_>) -> Result<FlownFlights, CommandError> {
         else {
             break;
         };
-        if study.is_certain() || !matches!(&study.next, Some(Ok(_))) || !wanted(context, study)? {
+        if study.is_certain()
+            || !matches!(&study.next_flight, Some(Ok(_)))
+            || !wants_next_flight(context, study)?
+        {
             break;
         }
         context.stage("Next flight");
@@ -147,7 +150,10 @@ fn nothing_flown() -> CommandError {
 }
 
 /// Whether a further flight is wanted.
-fn wanted(context: &Context<'_>, study: &mavid::study::ExplainStudy) -> Result<bool, CommandError> {
+fn wants_next_flight(
+    context: &Context<'_>,
+    study: &mavid::study::ExplainStudy,
+) -> Result<bool, CommandError> {
     answer(study).lines().for_each(output::message);
     context.ask.agreed("Fly it?", true)
 }

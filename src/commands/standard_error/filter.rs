@@ -65,7 +65,7 @@ mod tests {
         Verbosity { verbose, quiet: false }
     }
 
-    fn told(variable: &str) -> String {
+    fn refusal(variable: &str) -> String {
         filter(&verbosity(0), Some(OsStr::new(variable))).unwrap_err().to_string()
     }
 
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn a_wrong_variable_is_told_with_what_was_expected() {
         for wrong in ["mavid=loud", "loud", "mavid=info,debugg", "mavid[=info", "\u{1b}[31m"] {
-            let told = told(wrong);
+            let told = refusal(wrong);
             assert!(told.starts_with("RUST_LOG: expected a level (off, error, warn, info"), "{told}");
             assert!(!told.contains('\u{1b}'), "{told}");
         }

@@ -19,12 +19,12 @@ const COLUMNS: u16 = 80;
 /// Lines for standard error, by a thread of their own. What finds no room is left out, and counted.
 #[derive(Debug)]
 pub(super) struct Teller {
-    to: SyncSender<Told>,
+    to: SyncSender<TellerMessage>,
     left_out: Arc<AtomicU64>,
 }
 
 #[derive(Debug)]
-enum Told {
+enum TellerMessage {
     /// stays
     Line(String),
     /// until the next
@@ -45,7 +45,7 @@ impl Teller {
 
     /// A line, which is clean already.
     pub(super) fn line(&self, line: String) {
-        if self.to.try_send(Told::Line(line)).is_err() {
+        if self.to.try_send(TellerMessage::Line(line)).is_err() {
             self.left_out.fetch_add(1, Ordering::Relaxed);
         }
     }
@@ -53,30 +53,30 @@ impl Teller {
     /// How things stand, in place of what was said so last.
     pub(super) fn status(&self, text: &str) {
         // the next one follows soon
-        let _ = self.to.try_send(Told::Status(text::clean(text)));
+        let _ = self.to.try_send(TellerMessage::Status(text::clean(text)));
     }
 
     /// Waits until all is told, and takes the status away.
     pub(super) fn flush(&self) {
         let (done, told) = channel();
         // one that panicked says no more
-        if self.to.send(Told::Flush(done)).is_ok() {
+        if self.to.send(TellerMessage::Flush(done)).is_ok() {
             let _ = told.recv();
         }
     }
 }
 
-fn tell(told: &Receiver<Told>, lines: &Lines, left_out: &AtomicU64) {
+fn tell(told: &Receiver<TellerMessage>, lines: &Lines, left_out: &AtomicU64) {
     let mut stands = false;
     for told in told {
         clear(lines, &mut stands);
         match told {
-            Told::Line(line) => lines.write(&line),
-            Told::Status(status) => {
+            TellerMessage::Line(line) => lines.write(&line),
+            TellerMessage::Status(status) => {
                 draw(lines, &status);
                 stands = true;
             }
-            Told::Flush(done) => {
+            TellerMessage::Flush(done) => {
                 tell_missing(lines, left_out);
                 // whoever asked may have given up
                 let _ = done.send(());

@@ -3,11 +3,11 @@
 use super::bootstrap::Interval;
 use super::carried::{carried_over, pair};
 use super::error::HoldoutError;
+use super::holdout_fit::HoldoutFit;
 use super::open_loop::OpenLoop;
 use super::rate_law::RateLaw;
 use super::ready::{Ready, trace_of};
 use super::settings::{Explained, HeldOut, HoldoutSettings};
-use super::shown::HoldoutFit;
 use super::{closed_loop, open_loop, other_vehicle, weak};
 use crate::note::{About, Note};
 use crate::vehicle::Vehicle;

@@ -1,6 +1,6 @@
 //! The form of each effect: all forms are fitted, and the most likely one is taken.
 
-use super::wanted::RequestedEffects;
+use super::requested::RequestedEffects;
 use crate::diagnose::base::{Base, lift_load};
 use crate::diagnose::fit::{Newton, fit};
 use crate::diagnose::recorded::Recorded;

@@ -1,6 +1,6 @@
 //! Why effects cannot be identified.
 
-use super::wanted;
+use super::requested;
 use crate::diagnose::trace_error::TraceError;
 use crate::physics::PhysicsError;
 
@@ -8,7 +8,7 @@ use crate::physics::PhysicsError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum JointError {
     /// no effect of this name
-    #[error("no effect `{id}`; expected one or more of {}", wanted::names())]
+    #[error("no effect `{id}`; expected one or more of {}", requested::names())]
     Unknown {
         /// the requested name
         id: String,
@@ -22,7 +22,7 @@ pub enum JointError {
     /// a parameter that is always identified
     #[error(
         "{id} is identified with mass and inertia in any case; name the effects beside them: {}",
-        wanted::names()
+        requested::names()
     )]
     Always {
         /// which

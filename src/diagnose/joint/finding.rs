@@ -2,7 +2,7 @@
 
 use super::held::{FittedForm, Held};
 use super::latency::{LEAST_LAG_S, Split};
-use super::wanted::RequestedEffects;
+use super::requested::RequestedEffects;
 use crate::diagnose::base::follows_force;
 use crate::diagnose::fit::Fitted;
 use crate::diagnose::gates::Gates;
@@ -31,7 +31,7 @@ pub enum Found {
         /// the bound, in the parameter's unit
         value: f64,
         /// the estimate without the bound
-        wanted: f64,
+        unbounded: f64,
         /// its standard error
         std: f64,
     },
@@ -67,8 +67,8 @@ impl Found {
     fn times(&self, share: f64) -> Self {
         match self.clone() {
             Self::Determined { value, std } => Self::Determined { value: share * value, std: share * std },
-            Self::AtBound { value, wanted, std } => {
-                Self::AtBound { value: share * value, wanted: share * wanted, std: share * std }
+            Self::AtBound { value, unbounded, std } => {
+                Self::AtBound { value: share * value, unbounded: share * unbounded, std: share * std }
             }
             other => other,
         }
@@ -174,8 +174,8 @@ fn of_columns(
                     if scaled { scale.std(column(nth), value) } else { fitted_std(fitted, column(nth)) };
                 Found::Determined { value: value * times, std }
             }
-            (None, Some(Held::AtBound { wanted, std })) => {
-                Found::AtBound { value: value * times, wanted: wanted * times, std: std * times }
+            (None, Some(Held::AtBound { unbounded, std })) => {
+                Found::AtBound { value: value * times, unbounded: unbounded * times, std: std * times }
             }
             (None, None) => match settled.chosen.tried_std {
                 Some((of, std)) if of == slot => Found::Determined { value, std },
@@ -246,7 +246,7 @@ fn of_latency(
     } else if value > least {
         Found::Determined { value, std }
     } else {
-        Found::AtBound { value: least, wanted: value, std }
+        Found::AtBound { value: least, unbounded: value, std }
     };
     let uneven = is_lag && latency.parts.uneven != 0.0;
     let RotorLag { rising_s, falling_s } = latency.parts.rotor_lag();

@@ -17,7 +17,7 @@ pub(super) enum Held {
     /// not determined, with the reason for the user
     NotDetermined(String),
     /// the estimate, with its standard error, is beyond the bound
-    AtBound { wanted: f64, std: f64 },
+    AtBound { unbounded: f64, std: f64 },
 }
 
 /// A form with the treatment of its parameters.
@@ -180,7 +180,7 @@ fn hold_at_bounds(fitted: &Fitted, place: usize, of: &mut FittedForm) -> bool {
         if outside {
             of.chosen.form.free.retain(|free| *free != slot);
             of.chosen.form.values[slot] = value;
-            of.held.push((slot, Held::AtBound { wanted, std }));
+            of.held.push((slot, Held::AtBound { unbounded: wanted, std }));
             any = true;
         }
     }

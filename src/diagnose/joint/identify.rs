@@ -3,9 +3,9 @@
 use super::error::JointError;
 use super::finding::{self, EffectFound};
 use super::held::FittedForm;
+use super::requested::RequestedEffects;
 use super::result::{JointEstimate, Physical};
 use super::scale::Kept;
-use super::wanted::RequestedEffects;
 use super::{choose, latency, swing};
 use crate::diagnose::base::Base;
 use crate::diagnose::evidence::LEAST_ROWS;

@@ -1,6 +1,6 @@
 //! Named lag and delay: the kind is kept, and their sum is estimated with everything else.
 
-use super::wanted::RequestedEffects;
+use super::requested::RequestedEffects;
 use crate::diagnose::base::Base;
 use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::latency::{LatencyFinding, held_s, lag_column, stated_lag_s, stated_uneven};

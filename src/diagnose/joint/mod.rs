@@ -11,13 +11,13 @@ mod finding;
 mod held;
 mod identify;
 mod latency;
+mod requested;
 mod result;
 mod scale;
 mod swing;
-mod wanted;
 
 pub use error::JointError;
 pub use finding::{EffectFound, Found, ParameterFound};
 pub use identify::identify_jointly;
+pub use requested::RequestedEffects;
 pub use result::{JointEstimate, Physical};
-pub use wanted::RequestedEffects;

@@ -172,11 +172,11 @@ impl Flight {
         }
         self.guide.bounds = self.bounds();
         if let Some(reference) = self.guide.setpoint(now) {
-            self.watch.tracking.told(now, reference.position_m);
+            self.watch.tracking.record_reference(now, reference.position_m);
         }
         if let Some(sent) = self.guide.sent(now) {
             self.climbed |= self.stand.is_some_and(|stand| self.room(&stand).contains(&sent.position_m));
-            self.watch.masters.told(now, sent);
+            self.watch.masters.record_setpoint(now, sent);
         }
     }
 

@@ -1,23 +1,38 @@
 //! Requests to a vehicle before the flight.
 
 use crate::autopilot::{Autopilot, Stack};
-use crate::fly::target::{Order, Period};
+use crate::fly::target::{MessageId, Order, Period};
+use mavlink::dialects::ardupilotmega as dialect;
 
-pub(super) const AUTOPILOT_VERSION: u16 = 148;
+/// The message with what the autopilot is.
+pub(super) const AUTOPILOT_VERSION: MessageId = MessageId::of::<dialect::AUTOPILOT_VERSION_DATA>();
 /// One in five datagrams lost: the version stays away once in three thousand flights.
 const VERSION_CHANCES: u32 = 4;
 
-/// Messages that the safety rules need, with their rates, Hz: LOCAL_POSITION_NED, ATTITUDE_QUATERNION, SYS_STATUS,
-/// EXTENDED_SYS_STATE, BATTERY_STATUS, CURRENT_MODE, POSITION_TARGET_LOCAL_NED, and the estimator's own report.
-const STREAMS: [(u16, u16); 7] = [(32, 30), (31, 50), (1, 2), (245, 5), (147, 1), (436, 10), (85, 27)];
-const PX4_STREAMS: [(u16, u16); 2] = [(230, 2), (331, 30)];
+/// Messages that the safety rules need of every autopilot, with their rates, Hz.
+const STREAMS: [(MessageId, u16); 7] = [
+    (MessageId::of::<dialect::LOCAL_POSITION_NED_DATA>(), 30),
+    (MessageId::of::<dialect::ATTITUDE_QUATERNION_DATA>(), 50),
+    (MessageId::of::<dialect::SYS_STATUS_DATA>(), 2),
+    (MessageId::of::<dialect::EXTENDED_SYS_STATE_DATA>(), 5),
+    (MessageId::of::<dialect::BATTERY_STATUS_DATA>(), 1),
+    (MessageId::of::<dialect::CURRENT_MODE_DATA>(), 10),
+    (MessageId::of::<dialect::POSITION_TARGET_LOCAL_NED_DATA>(), 27),
+];
+/// Beside these of PX4: its estimator's report.
+const PX4_STREAMS: [(MessageId, u16); 2] =
+    [(MessageId::of::<dialect::ESTIMATOR_STATUS_DATA>(), 2), (MessageId::of::<dialect::ODOMETRY_DATA>(), 30)];
 /// ArduPilot has no CURRENT_MODE: its HEARTBEAT tells of a pilot who takes over.
-const ARDUPILOT_STREAMS: [(u16, u16); 2] = [(193, 2), (0, 5)];
+const ARDUPILOT_STREAMS: [(MessageId, u16); 2] = [
+    (MessageId::of::<dialect::EKF_STATUS_REPORT_DATA>(), 2),
+    (MessageId::of::<dialect::HEARTBEAT_DATA>(), 5),
+];
 
 /// Requests before the flight.
 #[derive(Debug)]
 pub(super) struct Checking {
-    pub(super) wanted: Vec<Order>,
+    /// orders to be sent, the last first
+    pub(super) orders: Vec<Order>,
     /// whether it is the vehicle that this program started; `None` until it has reported what it is
     pub(super) own: Option<bool>,
     pub(super) all_asked: bool,
@@ -27,16 +42,16 @@ pub(super) struct Checking {
 
 impl Checking {
     pub(super) fn new(stack: &'static Stack) -> Self {
-        let own: &[(u16, u16)] = match stack.autopilot {
+        let own: &[(MessageId, u16)] = match stack.autopilot {
             Autopilot::Px4 => &PX4_STREAMS,
             Autopilot::ArduPilot => &ARDUPILOT_STREAMS,
             Autopilot::Other | Autopilot::Unknown => &[],
         };
         // taken from the end: the version first
-        let mut wanted: Vec<Order> =
+        let mut orders: Vec<Order> =
             own.iter().chain(&STREAMS).map(|(id, rate_hz)| interval(*id, *rate_hz)).collect();
-        wanted.push(Order::request_message(AUTOPILOT_VERSION));
-        Self { wanted, own: None, all_asked: false, version_chances: VERSION_CHANCES }
+        orders.push(Order::request_message(AUTOPILOT_VERSION));
+        Self { orders, own: None, all_asked: false, version_chances: VERSION_CHANCES }
     }
 
     pub(super) fn has_asked(&self) -> bool {
@@ -44,6 +59,6 @@ impl Checking {
     }
 }
 
-pub(super) fn interval(id: u16, rate_hz: u16) -> Order {
+pub(super) fn interval(id: MessageId, rate_hz: u16) -> Order {
     Order::interval(id, Period::of_whole_rate(rate_hz))
 }

@@ -1,6 +1,5 @@
 //! Commands to the vehicle, which wait for a report of its mode.
 
-use crate::wire::heartbeat::HEARTBEAT_ID;
 use std::time::Duration;
 
 use super::action::Action;
@@ -10,7 +9,8 @@ use crate::autopilot::Mode;
 use crate::fly::commander::{Manner, Permission};
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::safety::{Doubted, Lead};
-use crate::fly::target::{Order, timesync};
+use crate::fly::target::{MessageId, Order, timesync};
+use mavlink::dialects::ardupilotmega::HEARTBEAT_DATA;
 
 /// The flight is stepped every 10 ms. After a longer pause, its knowledge may be outdated.
 const STOOD_STILL: Duration = Duration::from_millis(100);
@@ -28,7 +28,7 @@ impl Flight {
             if let Some(number) = self.known.asks(now, waits || tries) {
                 self.actions.push_back(Action::Send(timesync(number)));
                 if waits {
-                    let question = Order::request_message(HEARTBEAT_ID);
+                    let question = Order::request_message(MessageId::of::<HEARTBEAT_DATA>());
                     self.actions.push_back(Action::Send(target.command(&question, 0)));
                 }
             }

@@ -15,7 +15,7 @@ pub(super) struct Gate {
     /// when, m off the start, m/s
     hover: VecDeque<(Duration, f64, f64)>,
     begun: Option<Duration>,
-    pub(super) told: bool,
+    pub(super) is_reported: bool,
 }
 
 impl Gate {

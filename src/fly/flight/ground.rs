@@ -13,10 +13,10 @@ use crate::fly::roster::Choice;
 use crate::fly::safety::Lead;
 use crate::fly::setpoint::Place;
 use crate::fly::sortie::Origin;
-use crate::fly::target::Order;
+use crate::fly::target::{MessageId, Order};
 use crate::fly::telemetry::Telemetry;
 use crate::wire::Payload;
-use mavlink::dialects::ardupilotmega::MavCmd;
+use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavCmd};
 
 /// The estimate must have been good for this long.
 const ESTIMATOR_GOOD: Duration = Duration::from_secs(5);
@@ -97,10 +97,10 @@ impl Flight {
 
     pub(super) fn check(&mut self, now: Duration) {
         let Phase::Check(checking) = &mut self.phase else { return };
-        let question = interval(0, 1);
+        let question = interval(MessageId::of::<HEARTBEAT_DATA>(), 1);
         let version = Order::request_message(AUTOPILOT_VERSION);
         if !self.commander.waits_for_kind(&question) && !self.commander.waits_for_kind(&version) {
-            match checking.wanted.pop() {
+            match checking.orders.pop() {
                 Some(order) => self.commander.give(now, order, QUESTION, 0),
                 // the answer's acknowledgement came and the answer itself was lost
                 None if checking.own.is_none() && checking.version_chances > 0 => {

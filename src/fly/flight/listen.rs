@@ -8,6 +8,7 @@ use crate::autopilot::Mode;
 use crate::fly::news::Novelty;
 use crate::fly::outcome::{Cause, Level};
 use crate::fly::safety::Doubted;
+use crate::wire::message_id::{AUTOPILOT_VERSION, COMMAND_ACK, TIMESYNC};
 use crate::wire::{Check, Frame};
 
 /// Time for a vehicle to follow our setpoints after its takeoff, and to report it.
@@ -44,20 +45,20 @@ impl Flight {
             }
         }
         match header.message_id {
-            // COMMAND_ACK; its addressee is an extension that may be zero
-            77 => {
+            // its addressee is an extension that may be zero
+            COMMAND_ACK => {
                 let payload = frame.payload();
                 let ours = payload.u8(8) == 0 || u32::from(payload.u8(8)) == self.sortie.settings.station.0.0;
                 if ours && let Some(answer) = self.commander.hear(now, payload) {
                     self.answered(now, &answer);
                 }
             }
-            // TIMESYNC: what asks has zero in front. The number tells whose answer it is; the addressee does not: PX4's
+            // what asks has zero in front. The number tells whose answer it is; the addressee does not: PX4's
             // TIMESYNC module leaves these two bytes as they were in its memory
-            111 if frame.payload().u64(0) != 0 => {
+            TIMESYNC if frame.payload().u64(0) != 0 => {
                 self.known.answered(frame.payload().u64(8).cast_signed(), place);
             }
-            148 => self.version(now, frame.payload()),
+            AUTOPILOT_VERSION => self.version(now, frame.payload()),
             _ => {}
         }
         for novelty in news {

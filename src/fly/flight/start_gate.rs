@@ -64,7 +64,7 @@ impl Flight {
         });
         let allowed = (stated_m.unwrap_or(hover_m), stated_m_s.unwrap_or(hover_m_s));
         if (allowed.0 > NEAR_M && stated_m.is_none() || allowed.1 > SLOW_M_S && stated_m_s.is_none())
-            && !std::mem::replace(&mut self.gate.told, true)
+            && !std::mem::replace(&mut self.gate.is_reported, true)
         {
             let text = format!(
                 "it does not hover more precisely: the start gate opens within {:.2} m and {:.2} m/s instead of \

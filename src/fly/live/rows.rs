@@ -74,21 +74,21 @@ impl Causal {
         let [p, q, r, u, v, w, up_z, fz, tx, ty, tz] = smooth;
         let mut momentum = [w, p, q, r];
         for (value, memory) in momentum.iter_mut().zip(&mut memory.momentum) {
-            *value = pair.next_rate(memory, *value);
+            *value = pair.step_rate(memory, *value);
         }
         let omega = [p, q, r];
         let mut products = RATE_PAIRS.map(|(i, j)| omega[i] * omega[j]);
         for (value, memory) in products.iter_mut().zip(&mut memory.products) {
-            *value = pair.next_low_pass(memory, *value);
+            *value = pair.step_low_pass(memory, *value);
         }
         let mut upsilon = Vector4::new(fz, tx, ty, tz);
         for (value, memory) in upsilon.iter_mut().zip(&mut memory.wrench) {
-            *value = pair.next_low_pass(memory, *value);
+            *value = pair.step_low_pass(memory, *value);
         }
         let [w_rate, p_rate, q_rate, r_rate] = momentum;
         let mut gamma = momentum_regressor(w_rate, &Vector3::new(p_rate, q_rate, r_rate))
             + gyroscopic_from_products(&products);
-        gamma[(0, 0)] += pair.next_low_pass(&mut memory.vertical, p * v - q * u + *gravity_m_s2 * up_z);
+        gamma[(0, 0)] += pair.step_low_pass(&mut memory.vertical, p * v - q * u + *gravity_m_s2 * up_z);
         (gamma, upsilon)
     }
 }

@@ -4,13 +4,13 @@ use super::{Parameters, RequestedParameter};
 use crate::fly::address::is_from;
 use crate::fly::target::{ParameterName, Target};
 use crate::recording::Event;
+use crate::wire::message_id::PARAM_ERROR;
 use crate::wire::{Frame, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// PARAM_ERROR, and the error that says that there is no such parameter.
-const PARAM_ERROR_ID: u32 = 345;
+/// The error that says that there is no such parameter: MAV_PARAM_ERROR_DOES_NOT_EXIST.
 const DOES_NOT_EXIST: u8 = 1;
 /// Largest probability with which an existing parameter is given up. A parameter that is given up is told as absent:
 /// one false word in ten thousand downloads.
@@ -138,7 +138,7 @@ impl Download {
     pub fn take_frame(&mut self, frame: &Frame<'_>) {
         let payload = frame.payload();
         if !is_from(&self.vehicle, frame)
-            || frame.header().message_id != PARAM_ERROR_ID
+            || frame.header().message_id != PARAM_ERROR
             || payload.u8(20) != DOES_NOT_EXIST
         {
             return;

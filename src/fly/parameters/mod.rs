@@ -17,7 +17,7 @@ pub use download::{Download, DownloadSettings, Progress};
 pub use failsafe::failsafe_declaration;
 pub(super) use failsafe_ardupilot::hears_station;
 pub(super) use fence_switch::FenceSwitch;
-pub use names::{RequestedParameter, wanted};
+pub use names::{RequestedParameter, requested_parameters};
 pub use parameter_set::{Parameters, ParametersError};
 pub use sentence::Sentence;
 pub use takeover::takeover_declaration;

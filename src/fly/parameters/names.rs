@@ -13,7 +13,7 @@ pub struct RequestedParameter {
 
 /// Parameters to request from a vehicle with this number of rotors, most important first; none for other autopilots.
 #[must_use]
-pub fn wanted(autopilot: Autopilot, rotors: usize) -> Vec<RequestedParameter> {
+pub fn requested_parameters(autopilot: Autopilot, rotors: usize) -> Vec<RequestedParameter> {
     let Some(stack) = autopilot.stack() else { return Vec::new() };
     let named = stack
         .parameters
@@ -50,13 +50,13 @@ mod tests {
     fn names_fit_a_parameter_and_come_once() {
         for autopilot in [Autopilot::Px4, Autopilot::ArduPilot] {
             let mut names: Vec<String> =
-                wanted(autopilot, 8).into_iter().flat_map(|wanted| wanted.names).collect();
+                requested_parameters(autopilot, 8).into_iter().flat_map(|wanted| wanted.names).collect();
             assert!(names.iter().all(|name| name.len() <= 16), "{names:?}");
             let count = names.len();
             names.sort();
             names.dedup();
             assert_eq!(names.len(), count);
         }
-        assert!(wanted(Autopilot::Other, 4).is_empty());
+        assert!(requested_parameters(Autopilot::Other, 4).is_empty());
     }
 }

@@ -82,7 +82,7 @@ impl Tried {
     }
 
     /// The worst instant to be reported: a reason for a refusal before one for a warning.
-    fn told(&self) -> Option<Worst> {
+    fn worst_reported(&self) -> Option<Worst> {
         self.hard.filter(|hard| hard.beyond_m > 0.0).or(self.worst)
     }
 
@@ -262,7 +262,7 @@ fn borders(
 
 /// `0.12 m short of the wall x_max_m at worst, if they end at 3.1 s of the trajectory`.
 fn in_words(tried: &Tried) -> String {
-    tried.told().map_or_else(
+    tried.worst_reported().map_or_else(
         || "nothing to hit".to_owned(),
         |worst| {
             let Worst { beyond_m, border, time_s, leg, .. } = worst;
@@ -342,7 +342,7 @@ fn refused(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Find
 /// What to do: a slower or smaller plan first, then a parameter.
 fn remedy(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> String {
     let misses = tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m;
-    let plan = match tried.told().filter(|worst| worst.beyond_m > 0.0 && !misses) {
+    let plan = match tried.worst_reported().filter(|worst| worst.beyond_m > 0.0 && !misses) {
         Some(worst) => format!(
             "plan slower near {}, or {:.1} m further from it",
             worst.border,

@@ -4,13 +4,12 @@ use crate::fence::FenceItem;
 use crate::fly::address::is_from;
 use crate::fly::target::Target;
 use crate::frames::Geodetic;
+use crate::wire::message_id::{MISSION_ACK, MISSION_COUNT, MISSION_ITEM_INT};
 use crate::wire::{Frame, Payload, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use std::time::Duration;
 
-const MISSION_COUNT_ID: u32 = 44;
-const MISSION_ACK_ID: u32 = 47;
-const MISSION_ITEM_INT_ID: u32 = 73;
+/// MAV_MISSION_TYPE_FENCE.
 const TYPE_FENCE: u8 = 1;
 
 /// Until a request counts as lost.
@@ -102,13 +101,13 @@ impl FenceDownload {
         }
         let payload = frame.payload();
         match (frame.header().message_id, self.phase) {
-            (MISSION_COUNT_ID, Phase::Counting) if payload.u8(4) == TYPE_FENCE => {
+            (MISSION_COUNT, Phase::Counting) if payload.u8(4) == TYPE_FENCE => {
                 let count = payload.u16(0);
                 self.phase = if count == 0 { Phase::Thanking } else { Phase::Reading(count) };
                 self.answered();
             }
             // an item that was asked for twice comes twice
-            (MISSION_ITEM_INT_ID, Phase::Reading(count))
+            (MISSION_ITEM_INT, Phase::Reading(count))
                 if payload.u8(37) == TYPE_FENCE && usize::from(payload.u16(28)) == self.items.len() =>
             {
                 self.items.push(item(payload));
@@ -117,7 +116,7 @@ impl FenceDownload {
                     self.phase = Phase::Thanking;
                 }
             }
-            (MISSION_ACK_ID, Phase::Counting | Phase::Reading(_)) if payload.u8(3) == TYPE_FENCE => {
+            (MISSION_ACK, Phase::Counting | Phase::Reading(_)) if payload.u8(3) == TYPE_FENCE => {
                 self.end(FenceOutcome::Refused(payload.u8(2)));
             }
             _ => {}

@@ -35,7 +35,7 @@ pub(super) fn finding(parameters: &Parameters, awaited: &[LogAwaited]) -> Option
     }
     let found = plan.changes.iter().map(|change| {
         let restart = if change.restarts { ", after a restart" } else { "" };
-        format!("{} = {} and not {}{restart}", change.parameter, change.found, change.wanted)
+        format!("{} = {} and not {}{restart}", change.parameter, change.found, change.needed)
     });
     let found: Vec<String> = found.chain(plan.logs).collect();
     Some(Finding::warning(SUBJECT, expected, found.join("; "), remedy))

@@ -5,11 +5,13 @@ use super::{Answer, Capacity, StreamRequest};
 use crate::fly::address::is_from;
 use crate::fly::target::{MessageId, Order, OutOfRange, Period, Target};
 use crate::wire::command::{ACCEPTED, IN_PROGRESS, SET_MESSAGE_INTERVAL, TEMPORARILY_REJECTED};
+use crate::wire::message_id::{
+    ACTUATOR_OUTPUT_STATUS, COMMAND_ACK, ESC_STATUS, ESC_TELEMETRY_1_TO_4, SERVO_OUTPUT_RAW,
+};
 use crate::wire::{Frame, Vehicle};
 use mavlink::dialects::ardupilotmega::MavMessage;
 use std::time::Duration;
 
-const COMMAND_ACK_ID: u32 = 77;
 /// A refused rate above this is requested once more at half of it, Hz. Half of less than 50 Hz is too slow for what
 /// is asked for.
 const WORTH_HALVING_HZ: f64 = 50.0;
@@ -22,7 +24,7 @@ pub struct RequestSettings {
     /// requests of one message
     pub tries: u32,
     /// time until streams have their new rates
-    pub settle: Duration,
+    pub settling_time: Duration,
     /// time over which arrivals are counted
     pub window: Duration,
     /// the ground station's system and component: acknowledgements for others are not ours
@@ -34,7 +36,7 @@ impl Default for RequestSettings {
         Self {
             timeout: Duration::from_millis(1500),
             tries: 6,
-            settle: Duration::from_millis(500),
+            settling_time: Duration::from_millis(500),
             window: Duration::from_secs(4),
             own: (255, 190),
         }
@@ -55,8 +57,12 @@ struct Asked {
 }
 
 /// Ranges of the values of actuator messages in their payloads; the rest are time stamps and indices.
-const VALUES: [(u32, std::ops::Range<usize>); 4] =
-    [(36, 4..20), (291, 8..56), (375, 12..140), (11_030, 0..44)];
+const VALUES: [(u32, std::ops::Range<usize>); 4] = [
+    (SERVO_OUTPUT_RAW, 4..20),
+    (ESC_STATUS, 8..56),
+    (ACTUATOR_OUTPUT_STATUS, 12..140),
+    (ESC_TELEMETRY_1_TO_4, 0..44),
+];
 
 /// Whether a message of actuators has only zeros: no outputs or sensors are behind it.
 fn is_blank(id: u32, frame: &Frame<'_>) -> bool {
@@ -116,7 +122,7 @@ impl Requests {
             match self.phase {
                 Phase::Asking { index, sent } => {
                     if index >= self.streams.len() {
-                        self.phase = Phase::Settling { until: now + self.settings.settle };
+                        self.phase = Phase::Settling { until: now + self.settings.settling_time };
                     } else if !self.is_wanted(index) {
                         self.phase = Phase::Asking { index: index + 1, sent: None };
                     } else if sent.is_some_and(|sent| now < sent + self.settings.timeout) {
@@ -171,7 +177,7 @@ impl Requests {
             stream.count += 1;
             stream.telling += u32::from(!is_blank(id, frame));
         }
-        if id == COMMAND_ACK_ID {
+        if id == COMMAND_ACK {
             self.acknowledged(frame);
         }
     }
@@ -184,7 +190,7 @@ impl Requests {
 
     /// Starts a new measurement of the rates, from now on.
     pub fn measure_again(&mut self, now: Duration) {
-        self.phase = Phase::Settling { until: now + self.settings.settle };
+        self.phase = Phase::Settling { until: now + self.settings.settling_time };
     }
 
     /// Messages answered and asked for.

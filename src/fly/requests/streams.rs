@@ -1,5 +1,8 @@
 //! The messages, their rates and purposes.
 
+use mavlink::MessageData;
+use mavlink::dialects::ardupilotmega as dialect;
+
 use crate::autopilot::Autopilot;
 
 /// A need of flight or identification.
@@ -75,13 +78,8 @@ pub struct StreamRequest {
     pub on_change: bool,
 }
 
-const fn stream(
-    message_id: u32,
-    name: &'static str,
-    rate_hz: f64,
-    frame_bytes: f64,
-    needs: &'static [Need],
-) -> StreamRequest {
+const fn stream<M: MessageData>(rate_hz: f64, frame_bytes: f64, needs: &'static [Need]) -> StreamRequest {
+    let (message_id, name) = (M::ID, M::NAME);
     StreamRequest { message_id, name, rate_hz, frame_bytes, needs, instead_of: None, on_change: false }
 }
 
@@ -100,34 +98,45 @@ impl StreamRequest {
 }
 
 const ATTITUDE_QUATERNION: StreamRequest =
-    stream(31, "ATTITUDE_QUATERNION", 100.0, 48.0, &[Need::BodyRates, Need::Attitude]);
+    stream::<dialect::ATTITUDE_QUATERNION_DATA>(100.0, 48.0, &[Need::BodyRates, Need::Attitude]);
 const HIGHRES_IMU: StreamRequest =
-    stream(105, "HIGHRES_IMU", 100.0, 75.0, &[Need::BodyRates, Need::Acceleration]);
+    stream::<dialect::HIGHRES_IMU_DATA>(100.0, 75.0, &[Need::BodyRates, Need::Acceleration]);
 const RAW_IMU: StreamRequest =
-    stream(27, "RAW_IMU", 100.0, 41.0, &[Need::BodyRates, Need::Acceleration]).instead_of(105);
+    stream::<dialect::RAW_IMU_DATA>(100.0, 41.0, &[Need::BodyRates, Need::Acceleration])
+        .instead_of(HIGHRES_IMU.message_id);
 const SCALED_IMU: StreamRequest =
-    stream(26, "SCALED_IMU", 100.0, 36.0, &[Need::BodyRates, Need::Acceleration]).instead_of(27);
-const LOCAL_POSITION_NED: StreamRequest = stream(32, "LOCAL_POSITION_NED", 50.0, 40.0, &[Need::Position]);
-const ODOMETRY: StreamRequest = stream(331, "ODOMETRY", 20.0, 245.0, &[Need::Position]);
-const SERVO_OUTPUT_RAW: StreamRequest = stream(36, "SERVO_OUTPUT_RAW", 100.0, 49.0, &[Need::Actuators]);
+    stream::<dialect::SCALED_IMU_DATA>(100.0, 36.0, &[Need::BodyRates, Need::Acceleration])
+        .instead_of(RAW_IMU.message_id);
+const LOCAL_POSITION_NED: StreamRequest =
+    stream::<dialect::LOCAL_POSITION_NED_DATA>(50.0, 40.0, &[Need::Position]);
+const ODOMETRY: StreamRequest = stream::<dialect::ODOMETRY_DATA>(20.0, 245.0, &[Need::Position]);
+const SERVO_OUTPUT_RAW: StreamRequest =
+    stream::<dialect::SERVO_OUTPUT_RAW_DATA>(100.0, 49.0, &[Need::Actuators]);
 const ACTUATOR_OUTPUT_STATUS: StreamRequest =
-    stream(375, "ACTUATOR_OUTPUT_STATUS", 100.0, 40.0, &[Need::Actuators]);
-const ESC_STATUS: StreamRequest = stream(291, "ESC_STATUS", 100.0, 69.0, &[Need::Actuators]);
-const ESC_TELEMETRY: StreamRequest = stream(11030, "ESC_TELEMETRY_1_TO_4", 100.0, 56.0, &[Need::Actuators]);
-const ATTITUDE_TARGET: StreamRequest = stream(83, "ATTITUDE_TARGET", 50.0, 49.0, &[Need::Setpoints]);
+    stream::<dialect::ACTUATOR_OUTPUT_STATUS_DATA>(100.0, 40.0, &[Need::Actuators]);
+const ESC_STATUS: StreamRequest = stream::<dialect::ESC_STATUS_DATA>(100.0, 69.0, &[Need::Actuators]);
+const ESC_TELEMETRY: StreamRequest =
+    stream::<dialect::ESC_TELEMETRY_1_TO_4_DATA>(100.0, 56.0, &[Need::Actuators]);
+const ATTITUDE_TARGET: StreamRequest =
+    stream::<dialect::ATTITUDE_TARGET_DATA>(50.0, 49.0, &[Need::Setpoints]);
 /// Each 37 ms: at a period that goes into another station's 20, 50 or 100 ms, every report may fall on our setpoint, and
 /// none on another's between ours. (Of 30 setpoints of another to an ArduPilot, 50 ms apart, 30 reports 50 ms
 /// apart showed none.)
 const POSITION_TARGET: StreamRequest =
-    stream(85, "POSITION_TARGET_LOCAL_NED", 27.0, 63.0, &[Need::Setpoints]);
-const BATTERY_STATUS: StreamRequest = stream(147, "BATTERY_STATUS", 2.0, 53.0, &[Need::Battery]);
-const SYS_STATUS: StreamRequest = stream(1, "SYS_STATUS", 2.0, 43.0, &[Need::Battery, Need::State]);
-const EXTENDED_SYS_STATE: StreamRequest = stream(245, "EXTENDED_SYS_STATE", 5.0, 14.0, &[Need::State]);
-const CURRENT_MODE: StreamRequest = stream(436, "CURRENT_MODE", 10.0, 21.0, &[Need::State]).on_change();
-const ESTIMATOR_STATUS: StreamRequest = stream(230, "ESTIMATOR_STATUS", 5.0, 54.0, &[Need::Estimator]);
-const EKF_STATUS_REPORT: StreamRequest = stream(193, "EKF_STATUS_REPORT", 5.0, 38.0, &[Need::Estimator]);
-const HOME_POSITION: StreamRequest = stream(242, "HOME_POSITION", 0.5, 72.0, &[]);
-const GPS_GLOBAL_ORIGIN: StreamRequest = stream(49, "GPS_GLOBAL_ORIGIN", 0.5, 32.0, &[]);
+    stream::<dialect::POSITION_TARGET_LOCAL_NED_DATA>(27.0, 63.0, &[Need::Setpoints]);
+const BATTERY_STATUS: StreamRequest = stream::<dialect::BATTERY_STATUS_DATA>(2.0, 53.0, &[Need::Battery]);
+const SYS_STATUS: StreamRequest =
+    stream::<dialect::SYS_STATUS_DATA>(2.0, 43.0, &[Need::Battery, Need::State]);
+const EXTENDED_SYS_STATE: StreamRequest =
+    stream::<dialect::EXTENDED_SYS_STATE_DATA>(5.0, 14.0, &[Need::State]);
+const CURRENT_MODE: StreamRequest =
+    stream::<dialect::CURRENT_MODE_DATA>(10.0, 21.0, &[Need::State]).on_change();
+const ESTIMATOR_STATUS: StreamRequest =
+    stream::<dialect::ESTIMATOR_STATUS_DATA>(5.0, 54.0, &[Need::Estimator]);
+const EKF_STATUS_REPORT: StreamRequest =
+    stream::<dialect::EKF_STATUS_REPORT_DATA>(5.0, 38.0, &[Need::Estimator]);
+const HOME_POSITION: StreamRequest = stream::<dialect::HOME_POSITION_DATA>(0.5, 72.0, &[]);
+const GPS_GLOBAL_ORIGIN: StreamRequest = stream::<dialect::GPS_GLOBAL_ORIGIN_DATA>(0.5, 32.0, &[]);
 
 const PX4: &[StreamRequest] = &[
     ATTITUDE_QUATERNION,

@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
-use super::question::{Answer, Question, Told};
+use super::question::{Answer, FenceAndHome, Question};
 
 use mavlink::dialects::ardupilotmega::MavMessage;
 
 use crate::fly::finding::{Finding, Level};
 use crate::fly::flight::Flight;
-use crate::fly::parameters::{Download, DownloadSettings, Parameters, wanted};
+use crate::fly::parameters::{Download, DownloadSettings, Parameters, requested_parameters};
 use crate::fly::preflight::{Fence, FenceDownload, FenceOutcome, Judged, Page};
 use crate::fly::requests::{
     Capacity, LinkKind, Need, RequestSettings, Requests, request_set, slow_request_set,
@@ -16,14 +16,12 @@ use crate::fly::requests::{
 use crate::fly::safety::Feeding;
 use crate::frames::{Geodetic, world_from_ned};
 use crate::vehicle::Vehicle;
+use crate::wire::message_id::{GPS_GLOBAL_ORIGIN, HOME_POSITION};
 use crate::wire::{self, Decoder, Frame, Payload, Record};
 use nalgebra::Vector3;
 
 /// Subjects that the flight itself waits for before it arms: no refusal here.
 const AWAITED: [&str; 4] = ["estimate", "pre-arm", "home", "health"];
-
-const GPS_GLOBAL_ORIGIN: u32 = 49;
-const HOME_POSITION: u32 = 242;
 
 /// Result of the checks.
 #[derive(Debug)]
@@ -82,7 +80,11 @@ pub(super) struct Clearance {
 
 impl Clearance {
     pub(super) fn new(vehicle: wire::Vehicle, rotors: usize, link: LinkKind) -> Self {
-        let download = Download::new(vehicle, wanted(vehicle.autopilot, rotors), DownloadSettings::default());
+        let download = Download::new(
+            vehicle,
+            requested_parameters(vehicle.autopilot, rotors),
+            DownloadSettings::default(),
+        );
         let (stage, fence) = (Stage::Parameters(Box::new(download)), FenceDownload::new(vehicle));
         Self {
             vehicle,
@@ -184,7 +186,7 @@ impl Clearance {
             let of = of.map_or("an unknown number of".to_owned(), |of| of.to_string());
             fence.unknown.push(format!("{came} of {of} items came"));
         }
-        Some(Question::of(flight, vehicle, now, (parameters, Told { fence, home_m: self.home_m })))
+        Some(Question::of(flight, vehicle, now, (parameters, FenceAndHome { fence, home_m: self.home_m })))
     }
 
     /// The result, once, with what the checks came to.

@@ -143,7 +143,7 @@ impl Drive {
 
     /// Executes the actions of the supervisor.
     fn act(&mut self, now: Duration) {
-        self.guide.set(self.supervisor.flight().guide(), self.supervisor.seen());
+        self.guide.set(self.supervisor.flight().guide(), self.supervisor.known_until());
         self.tell_stream();
         while let Some(action) = self.supervisor.next_action() {
             match action {
@@ -218,7 +218,7 @@ impl Drive {
     }
 
     /// Passes on notes and pictures of the state, without waiting.
-    pub(super) fn report(&mut self, journal: &Journal, show: &SyncSender<ViewModel>) {
+    pub(super) fn report(&mut self, journal: &Journal, view: &SyncSender<ViewModel>) {
         let now = self.clock.elapsed();
         self.model.elapsed_s = now.as_secs_f64();
         if let Some((path, text)) = self.to_keep.take() {
@@ -242,7 +242,7 @@ impl Drive {
         self.picture(now);
         self.shown = now;
         // nobody has to watch
-        let unseen = matches!(show.try_send(self.model.clone()), Err(TrySendError::Full(_)));
+        let unseen = matches!(view.try_send(self.model.clone()), Err(TrySendError::Full(_)));
         self.tell_view(now, unseen);
     }
 

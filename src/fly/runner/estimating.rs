@@ -17,7 +17,7 @@ const WAITING: usize = 4096;
 
 /// Messages to the thread.
 #[derive(Debug)]
-enum Told {
+enum EstimatorInput {
     /// start of the identification
     Begin(Box<(Decoder, LiveIdentification)>),
     /// a frame of the vehicle
@@ -29,7 +29,7 @@ enum Told {
 /// The live identification of one flight.
 #[derive(Debug)]
 pub(super) struct Estimating {
-    to: SyncSender<Told>,
+    to: SyncSender<EstimatorInput>,
     from: Receiver<LiveEstimate>,
     began: bool,
 }
@@ -37,29 +37,29 @@ pub(super) struct Estimating {
 impl Estimating {
     /// Starts its thread with the priority of the calling one, which must be an ordinary one.
     pub(super) fn start() -> io::Result<Self> {
-        let (to, told) = sync_channel(WAITING);
+        let (to, inputs) = sync_channel(WAITING);
         let (say, from) = channel();
         // it ends with the flight, which does not wait for it
-        thread::Builder::new().name("live".into()).spawn(move || estimate(&told, &say))?;
+        thread::Builder::new().name("live".into()).spawn(move || estimate(&inputs, &say))?;
         Ok(Self { to, from, began: false })
     }
 
     /// Frames from now on are decoded by `decoder`, and identified.
     pub(super) fn begin(&mut self, decoder: Decoder, live: LiveIdentification) {
-        self.began = self.to.try_send(Told::Begin(Box::new((decoder, live)))).is_ok();
+        self.began = self.to.try_send(EstimatorInput::Begin(Box::new((decoder, live)))).is_ok();
     }
 
     pub(super) fn frame(&self, frame: ReceivedFrame) {
         if self.began {
             // a thread that cannot keep up, or is no more, says less
-            let _ = self.to.try_send(Told::Frame(frame));
+            let _ = self.to.try_send(EstimatorInput::Frame(frame));
         }
     }
 
     /// Sets whether the trajectory is flown: other motion is not identified.
     pub(super) fn set_active(&self, active: bool) {
         if self.began {
-            let _ = self.to.try_send(Told::Active(active));
+            let _ = self.to.try_send(EstimatorInput::Active(active));
         }
     }
 
@@ -69,15 +69,15 @@ impl Estimating {
     }
 }
 
-fn estimate(told: &Receiver<Told>, say: &Sender<LiveEstimate>) {
+fn estimate(inputs: &Receiver<EstimatorInput>, say: &Sender<LiveEstimate>) {
     let seeds = CrcSeeds::new();
     let mut at_work: Option<Box<(Decoder, LiveIdentification)>> = None;
     let mut said = Instant::now();
-    for told in told {
-        match (told, at_work.as_deref_mut()) {
-            (Told::Begin(work), _) => at_work = Some(work),
-            (Told::Active(active), Some((_, live))) => live.set_active(active),
-            (Told::Frame(received), Some((decoder, live))) => {
+    for inputs in inputs {
+        match (inputs, at_work.as_deref_mut()) {
+            (EstimatorInput::Begin(work), _) => at_work = Some(work),
+            (EstimatorInput::Active(active), Some((_, live))) => live.set_active(active),
+            (EstimatorInput::Frame(received), Some((decoder, live))) => {
                 let Some(frame) = Frame::at_start(received.bytes()) else { continue };
                 let known = frame.check(&seeds) == Check::Right;
                 let record = Record { stamp_us: received.stamp.utc_us, offset: 0, known, frame };
@@ -90,7 +90,7 @@ fn estimate(told: &Receiver<Told>, say: &Sender<LiveEstimate>) {
                     return;
                 }
             }
-            (Told::Active(_) | Told::Frame(_), None) => {}
+            (EstimatorInput::Active(_) | EstimatorInput::Frame(_), None) => {}
         }
     }
 }

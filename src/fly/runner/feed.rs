@@ -56,7 +56,7 @@ pub(super) struct State {
     /// what the system last said
     pub(super) failure: Option<String>,
     /// of this much trouble somebody was told
-    pub(super) told: bool,
+    pub(super) is_reported: bool,
 }
 
 impl State {

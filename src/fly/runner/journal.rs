@@ -67,8 +67,8 @@ impl Journal {
     /// A failure, reported once.
     pub(super) fn news(&self) -> Option<String> {
         let mut state = locked(&self.state);
-        let trouble = state.trouble().filter(|_| !state.told)?;
-        state.told = true;
+        let trouble = state.trouble().filter(|_| !state.is_reported)?;
+        state.is_reported = true;
         Some(trouble)
     }
 

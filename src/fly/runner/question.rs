@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 
 /// What the vehicle told beside its state and its parameters.
 #[derive(Debug)]
-pub(super) struct Told {
+pub(super) struct FenceAndHome {
     pub(super) fence: Fence,
     /// home in the autopilot's local frame, m, NWU
     pub(super) home_m: Option<Vector3<f64>>,
@@ -32,7 +32,7 @@ pub(super) struct Question {
     parameters: Box<Parameters>,
     log_awaited: Vec<LogAwaited>,
     release: Option<(u8, u8)>,
-    told: Told,
+    fence_and_home: FenceAndHome,
     battery: BatteryState,
     readiness: Readiness,
     own_system: u8,
@@ -51,7 +51,7 @@ impl Question {
         flight: &Flight,
         vehicle: &Vehicle,
         now: Duration,
-        (parameters, told): (Box<Parameters>, Told),
+        (parameters, fence_and_home): (Box<Parameters>, FenceAndHome),
     ) -> Self {
         let (status, sortie) = (flight.status(now), flight.sortie());
         let stand_m = status.position_m.map(Vector3::from);
@@ -75,12 +75,12 @@ impl Question {
                 unhealthy: status.unhealthy.into_iter().map(str::to_owned).collect(),
                 estimate_good_for: status.estimate_good_for,
                 estimate_faults: status.estimator_faults,
-                home_set: told.home_m.is_some(),
+                home_set: fence_and_home.home_m.is_some(),
                 position_arrives: status.position_m.is_some(),
                 armed: status.armed,
                 ..Readiness::default()
             },
-            told,
+            fence_and_home,
             own_system: u8::try_from(sortie.settings.station.0.0).unwrap_or(u8::MAX),
         }
     }
@@ -91,14 +91,14 @@ impl Question {
             path: &self.path,
             origin_m: self.origin_m,
             stand_m: self.stand_m,
-            home_m: self.told.home_m,
+            home_m: self.fence_and_home.home_m,
             vehicle: &self.vehicle,
             limits: &self.limits,
             tracking_max_m: self.tracking_max_m,
             parameters: &self.parameters,
             log_awaited: &self.log_awaited,
             release: self.release,
-            fence: &self.told.fence,
+            fence: &self.fence_and_home.fence,
             battery: &self.battery,
             readiness: &self.readiness,
             own_system: self.own_system,

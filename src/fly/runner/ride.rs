@@ -61,7 +61,7 @@ pub struct Ride {
 #[derive(Debug)]
 pub struct Console {
     /// gets the state a few times a second; a picture that finds no room is left out
-    pub show: SyncSender<ViewModel>,
+    pub view: SyncSender<ViewModel>,
     /// what the operator asks for
     pub keys: UnboundedReceiver<KeyCommand>,
 }
@@ -200,10 +200,10 @@ async fn conduct(
                 None => keyed = false,
             },
             Some(gap) = stalls.recv() => drive.handle(Event::Stalled(gap)),
-            name = ends.next() => drive.handle(Event::Stop(name.to_owned())),
+            name = ends.next_signal() => drive.handle(Event::Stop(name.to_owned())),
         }
         parking.halt(Part::Supervisor).runs();
-        drive.report(&journal, &console.show);
+        drive.report(&journal, &console.view);
         if let Some(outcome) = drive.outcome() {
             return Ok((outcome, journal.finish().await));
         }

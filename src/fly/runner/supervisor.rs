@@ -32,7 +32,7 @@ pub struct Supervisor {
     /// something of the link was taken since the last tick
     took: bool,
     /// when something of the link was last taken, or nothing waited
-    seen: Duration,
+    known_until: Duration,
     /// frames and events that waited at a tick before and are not taken yet
     to_read: usize,
 }
@@ -52,7 +52,7 @@ impl Supervisor {
             actions: VecDeque::new(),
             told_waiting: false,
             took: true,
-            seen: Duration::ZERO,
+            known_until: Duration::ZERO,
             to_read: 0,
         }
     }
@@ -102,7 +102,7 @@ impl Supervisor {
     /// out once all that waited at an earlier tick is read: the next frame may say that the pilot took over.
     pub fn tick(&mut self, now: Duration, waiting: usize) {
         if waiting == 0 {
-            self.seen = now;
+            self.known_until = now;
         }
         if std::mem::replace(&mut self.took, false) || waiting == 0 {
             self.flight.set_unread(self.to_read > 0 && waiting > 0);
@@ -116,12 +116,12 @@ impl Supervisor {
 
     /// Until when all is known that the link brought. What is to be sent is not renewed by anything that happens later.
     #[must_use]
-    pub fn seen(&self) -> Duration {
-        self.seen
+    pub fn known_until(&self) -> Duration {
+        self.known_until
     }
 
     fn took(&mut self, now: Duration) {
-        (self.took, self.seen) = (true, now);
+        (self.took, self.known_until) = (true, now);
         self.to_read = self.to_read.saturating_sub(1);
     }
 

@@ -25,7 +25,7 @@ impl Ends {
         Ok(Self {})
     }
 
-    pub(super) async fn next(&mut self) -> &'static str {
+    pub(super) async fn next_signal(&mut self) -> &'static str {
         #[cfg(unix)]
         tokio::select! {
             _ = tokio::signal::ctrl_c() => "Ctrl-C",

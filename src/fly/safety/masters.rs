@@ -1,6 +1,8 @@
 //! Detection of another station that commands the vehicle.
 
-use crate::wire::heartbeat::HEARTBEAT;
+use crate::wire::message_id::{
+    HEARTBEAT, SET_ATTITUDE_TARGET, SET_POSITION_TARGET_GLOBAL_INT, SET_POSITION_TARGET_LOCAL_NED,
+};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -30,15 +32,15 @@ const DRAINS: Duration = Duration::from_secs(20);
 const REPORTS: usize = 2;
 const WINDOW: Duration = Duration::from_secs(3);
 
-/// SET_ATTITUDE_TARGET, SET_POSITION_TARGET_LOCAL_NED, SET_POSITION_TARGET_GLOBAL_INT with the offset of
-/// their target.
-const SETPOINTS: [(u32, usize); 3] = [(82, 36), (84, 50), (86, 50)];
+/// Messages that carry setpoints, with the offset of their target.
+const SETPOINTS: [(u32, usize); 3] =
+    [(SET_ATTITUDE_TARGET, 36), (SET_POSITION_TARGET_LOCAL_NED, 50), (SET_POSITION_TARGET_GLOBAL_INT, 50)];
 
 /// Detection of a second station.
 #[derive(Debug)]
 pub struct Masters {
     own: (SystemId, ComponentId),
-    told: VecDeque<(Duration, Setpoint)>,
+    sent: VecDeque<(Duration, Setpoint)>,
     reported: Option<Duration>,
     /// time of each foreign report, and the distance of our nearest target, m
     foreign: VecDeque<(Duration, f64)>,
@@ -52,7 +54,7 @@ impl Masters {
     pub fn new(system: SystemId, component: ComponentId) -> Self {
         Self {
             own: (system, component),
-            told: VecDeque::new(),
+            sent: VecDeque::new(),
             reported: None,
             foreign: VecDeque::new(),
             silence: None,
@@ -79,10 +81,10 @@ impl Masters {
     }
 
     /// Notes the setpoint that is sent at `now`.
-    pub fn told(&mut self, now: Duration, setpoint: Setpoint) {
-        self.told.push_back((now, setpoint));
-        while self.told.front().is_some_and(|(at, _)| now.saturating_sub(*at) > OLDEST) {
-            self.told.pop_front();
+    pub fn record_setpoint(&mut self, now: Duration, setpoint: Setpoint) {
+        self.sent.push_back((now, setpoint));
+        while self.sent.front().is_some_and(|(at, _)| now.saturating_sub(*at) > OLDEST) {
+            self.sent.pop_front();
         }
     }
 
@@ -102,7 +104,7 @@ impl Masters {
         // while ours do not arrive the last is flown for so long: by the time-out's default
         let alone = stack.setpoints.timeout_default;
         let age = |at: Duration| now.saturating_sub(at);
-        let ours = self.told.iter().filter(|(at, _)| age(*at) <= late + alone);
+        let ours = self.sent.iter().filter(|(at, _)| age(*at) <= late + alone);
         let away_m = match target_m {
             Some(target_m) => {
                 let moved = |at: Duration| match stack.setpoints.last_setpoint {
@@ -196,7 +198,7 @@ mod tests {
         let mut masters = Masters::new(SystemId(255), ComponentId(190));
         (from..to).step_by(10).find(|&t| {
             if t % 20 == 0 {
-                masters.told(ms(t), ours(t));
+                masters.record_setpoint(ms(t), ours(t));
             }
             t % 50 == 0 && masters.check(ms(t), reported(t), stack).is_some()
         })
@@ -242,7 +244,7 @@ mod tests {
     fn what_a_silence_held_back_is_ours() {
         let mut masters = Masters::new(SystemId(255), ComponentId(190));
         for t in (1000..6000).step_by(20) {
-            masters.told(ms(t), ours(t));
+            masters.record_setpoint(ms(t), ours(t));
             if t < 2000 {
                 assert!(masters.check(ms(t), Some(ours(t).position_m), &PX4).is_none());
             }

@@ -94,7 +94,7 @@ pub enum Streamed {
 #[derive(Debug)]
 pub struct Streamer {
     period: Duration,
-    next: Duration,
+    next_due: Duration,
     /// last time it was asked while there was something to stream
     polled: Option<Duration>,
     stalled: bool,
@@ -104,23 +104,23 @@ impl Streamer {
     /// One setpoint each `period`.
     #[must_use]
     pub fn new(period: Duration) -> Self {
-        Self { period, next: Duration::ZERO, polled: None, stalled: false }
+        Self { period, next_due: Duration::ZERO, polled: None, stalled: false }
     }
 
     /// When it is to be asked next.
     #[must_use]
     pub fn due(&self) -> Duration {
-        self.next
+        self.next_due
     }
 
     /// What to send at `now`. After a stall it stays silent until the flight has nothing to stream.
     pub fn poll(&mut self, now: Duration, guide: &Guide) -> Option<Streamed> {
-        if now < self.next {
+        if now < self.next_due {
             return None;
         }
         self.advance(now);
         let (Some(setpoint), Some((target, _))) = (guide.sent(now), guide.target) else {
-            *self = Self { next: self.next, ..Self::new(self.period) };
+            *self = Self { next_due: self.next_due, ..Self::new(self.period) };
             return None;
         };
         let own = self.polled.replace(now).map_or(Duration::ZERO, |last| now.saturating_sub(last));
@@ -140,9 +140,9 @@ impl Streamer {
 
     /// To the next instant of the grid, the multiples of the period; those that were missed are gone.
     fn advance(&mut self, now: Duration) {
-        let late = now.saturating_sub(self.next).as_nanos() / self.period.as_nanos().max(1);
+        let late = now.saturating_sub(self.next_due).as_nanos() / self.period.as_nanos().max(1);
         let missed = u32::try_from(late).unwrap_or(u32::MAX);
-        self.next += self.period.saturating_mul(missed.saturating_add(1));
+        self.next_due += self.period.saturating_mul(missed.saturating_add(1));
     }
 }
 

@@ -30,7 +30,7 @@ pub struct Tracking {
 
 impl Tracking {
     /// What the vehicle is told at `now`, m, world.
-    pub fn told(&mut self, now: Duration, reference_m: Vector3<f64>) {
+    pub fn record_reference(&mut self, now: Duration, reference_m: Vector3<f64>) {
         self.references.push_back((now, reference_m));
         while self.references.front().is_some_and(|(at, _)| now.saturating_sub(*at) > DELAY) {
             self.references.pop_front();
@@ -113,7 +113,7 @@ mod tests {
         let mut tracking = Tracking::default();
         let place = |t: u64| Vector3::new(3e-3 * t as f64, 0.0, 1.0);
         (1000..3000).step_by(10).find(|t| {
-            tracking.told(ms(*t), place(*t));
+            tracking.record_reference(ms(*t), place(*t));
             let seen = place(t - delay_ms) + Vector3::new(0.0, aside_m, 0.0);
             tracking.check(ms(*t), &seen, 1.0, 0.0).is_some()
         })
@@ -134,7 +134,7 @@ mod tests {
     fn a_position_of_great_noise_is_given_more_room() {
         let mut tracking = Tracking::default();
         for t in (0..2000).step_by(10) {
-            tracking.told(ms(t), Vector3::zeros());
+            tracking.record_reference(ms(t), Vector3::zeros());
             assert!(tracking.check(ms(t), &Vector3::new(1.4, 0.0, 0.0), 1.0, 0.5).is_none());
         }
     }

@@ -3,6 +3,7 @@
 //! An autopilot converts what it is sent without a look: one `MAV_CMD_DO_SET_MODE` with a number that its cast has
 //! no room for stops ArduCopter's simulator (ArduPilot/ardupilot#33410).
 
+use mavlink::MessageData;
 use std::ops::RangeInclusive;
 
 use crate::units::narrow;
@@ -55,6 +56,12 @@ impl MessageId {
             got: id.to_string(),
         };
         (id <= Self::MAX).then_some(Self(id)).ok_or_else(error)
+    }
+
+    /// Of a message of MAVLink's definitions.
+    #[must_use]
+    pub const fn of<M: MessageData>() -> Self {
+        Self(M::ID)
     }
 
     /// As a command's parameter.

@@ -16,14 +16,13 @@ use super::status::RecorderStatus;
 use super::store::Store;
 use super::worker::{Order, work};
 use crate::link::clock::HostStamp;
+use crate::wire::message_id::SETUP_SIGNING;
 use crate::wire::{Frame, STAMP_BYTES};
 
 /// Bytes that may wait for a slow disk: 20 minutes of a lively link.
 const WAITING_BYTES: usize = 64 << 20;
 /// A disk that takes nothing for so long has failed.
 const PATIENCE: Duration = Duration::from_secs(3);
-/// SETUP_SIGNING carries the signing key: it is left out.
-const SETUP_SIGNING: u32 = 256;
 
 /// The recording of one or more links. Clones write to the same file, which is complete when the last of
 /// them is gone, or after [`finish`](Self::finish).
@@ -76,6 +75,7 @@ impl Recorder {
         if self.is_over() {
             return true;
         }
+        // it carries the signing key
         if frame.header().message_id == SETUP_SIGNING {
             self.state.redacted.fetch_add(1, Ordering::Relaxed);
             return true;

@@ -1,6 +1,7 @@
 //! Notices that a vehicle arms, disarms or changes its mode.
 
-use crate::wire::heartbeat::{ARMED, AUTOPILOT_AT, BASE_MODE_AT, HEARTBEAT, NO_AUTOPILOT};
+use crate::wire::heartbeat::{ARMED, AUTOPILOT_AT, BASE_MODE_AT, NO_AUTOPILOT};
+use crate::wire::message_id::HEARTBEAT;
 use std::collections::BTreeMap;
 
 use crate::wire::{ComponentId, Frame, SystemId};

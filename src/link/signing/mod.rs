@@ -13,17 +13,17 @@ mod distrust;
 mod error;
 mod key;
 mod owner;
+mod reported_signatures;
 mod signature;
 mod signer;
 #[cfg(test)]
 mod tests;
 mod times;
-mod told;
 
 pub(crate) use clock::time_of;
 pub use distrust::Distrust;
 pub use error::SigningError;
 pub use key::SigningKey;
+pub(super) use reported_signatures::ReportedSignatures;
 pub(crate) use signature::TAIL_BYTES;
 pub use signer::Signing;
-pub(super) use told::Told;

@@ -12,12 +12,11 @@ use super::owner;
 use super::signature::{SIGNATURE_BYTES, TAIL_BYTES, equal_in_constant_time};
 use super::times::{AHEAD, StreamKey, Times, TimesFile};
 use crate::note::{About, Note};
+use crate::wire::message_id::RADIO_STATUS;
 use crate::wire::{Frame, Version};
 
 /// Largest number of streams that are distinguished; further ones are refused.
 const STREAMS: usize = 1024;
-/// A radio's own report, which no radio signs.
-const RADIO_STATUS: u32 = 109;
 
 /// Signs what a link sends and checks what it receives. Clones share key and times: links of one process
 /// must, each with an id of its own ([`for_link`](Self::for_link)).
@@ -120,6 +119,7 @@ impl Signing {
         let header = frame.header();
         if !header.is_signed() {
             return match header.version {
+                // a radio's own report, which no radio signs
                 _ if header.message_id == RADIO_STATUS => Ok(()),
                 Version::V1 => Err(Distrust::Downgraded),
                 Version::V2 => Err(Distrust::Unsigned),

@@ -5,7 +5,7 @@ use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 
 use super::clock::{SECOND, STALE, clock_warning, now};
 use super::times::{AHEAD, StreamKey, Times};
-use super::{Distrust, Signing, SigningError, SigningKey, Told};
+use super::{Distrust, ReportedSignatures, Signing, SigningError, SigningKey};
 use crate::link::event::LinkEvent;
 use crate::wire::{ComponentId, Frame, SystemId};
 
@@ -93,7 +93,7 @@ fn only_a_radios_report_needs_no_signature() {
 
 #[test]
 fn what_is_not_believed_is_told_once_with_what_to_do() {
-    let (receiver, mut told) = (at(1, NOW), Told::default());
+    let (receiver, mut told) = (at(1, NOW), ReportedSignatures::default());
     let mut said = |bytes: &[u8], receiver: &Signing| {
         let verdict = verify(receiver, bytes, NOW);
         let events = told.events(&Frame::at_start(bytes).unwrap(), Some(receiver), verdict);
@@ -127,7 +127,7 @@ fn what_is_not_believed_is_told_once_with_what_to_do() {
 
 #[test]
 fn a_clock_that_is_behind_what_is_heard_is_told() {
-    let (receiver, mut told) = (at(1, now()), Told::default());
+    let (receiver, mut told) = (at(1, now()), ReportedSignatures::default());
     let bytes = signed(&at(1, 0), now() + 100 * STALE);
     let frame = Frame::at_start(&bytes).unwrap();
     let verdict = receiver.verify(&frame);
@@ -141,7 +141,7 @@ fn a_clock_that_is_behind_what_is_heard_is_told() {
 
 #[test]
 fn a_vehicle_that_signs_is_told_where_there_is_no_key() {
-    let mut told = Told::default();
+    let mut told = ReportedSignatures::default();
     let bytes = signed(&at(1, NOW), NOW);
     let events = told.events(&Frame::at_start(&bytes).unwrap(), None, Ok(()));
     let [event @ LinkEvent::Unchecked { .. }] = events.as_slice() else { panic!("{events:?}") };
@@ -151,7 +151,7 @@ fn a_vehicle_that_signs_is_told_where_there_is_no_key() {
 
 #[test]
 fn noise_of_many_senders_does_not_flood_who_listens() {
-    let (receiver, mut told) = (at(1, NOW), Told::default());
+    let (receiver, mut told) = (at(1, NOW), ReportedSignatures::default());
     let mut events = 0;
     for system in 1..=255 {
         let mut raw = MAVLinkV2MessageRaw::new();

@@ -10,6 +10,8 @@ const AGAIN_S: f64 = 1.0;
 const EVENTS: &[(f64, Meaning)] = &[
     (10.0, Meaning::State(Quantity::Armed, 1.0)),
     (11.0, Meaning::State(Quantity::Armed, 0.0)),
+    // auto armed: armed, and the throttle is raised. Logs can lack the event of arming
+    (15.0, Meaning::State(Quantity::Armed, 1.0)),
     // landing complete, and airborne
     (18.0, Meaning::State(Quantity::LandedState, ON_GROUND)),
     (28.0, Meaning::State(Quantity::LandedState, IN_AIR)),

@@ -67,7 +67,7 @@ fn silent_vehicle(report: &TlogReport, chosen: Option<SystemId>) -> Result<Vehic
     let systems = || speaking.iter().copied().collect();
     let Some(system) = chosen else { return Err(LogError::NoVehicle { systems: systems() }) };
     if !speaking.contains(&system) {
-        return Err(LogError::SystemAbsent { wanted: system, systems: systems() });
+        return Err(LogError::SystemAbsent { requested: system, systems: systems() });
     }
     Ok(Vehicle { system, component: AUTOPILOT_COMPONENT, autopilot: Autopilot::Unknown, kind: None })
 }

@@ -38,7 +38,7 @@ pub(super) struct Decoder {
     pub(super) places: Places,
     /// said before the first sample
     autopilot: Option<Autopilot>,
-    told: bool,
+    is_reported: bool,
     report: DecodeReport,
 }
 
@@ -157,7 +157,7 @@ impl Decoder {
     }
 
     fn tell_autopilot(&mut self, sink: &mut dyn FnMut(Event<'_>)) {
-        if !std::mem::replace(&mut self.told, true) {
+        if !std::mem::replace(&mut self.is_reported, true) {
             sink(Event::Autopilot(self.autopilot.unwrap_or_default()));
         }
     }

@@ -48,7 +48,7 @@ fn read(input: &Input<'_>, _: &OpenOptions, sink: &mut Sink<'_>) -> Result<ReadR
     }
     let at_end = Place { offset: reader.report().bytes, arrival_us: None };
     decoder.finish(&mut |event| sink(at_end, event));
-    Ok(told(reader.into_report(), &decoder, &craft, autopilot))
+    Ok(read_report(reader.into_report(), &decoder, &craft, autopilot))
 }
 
 fn read_whole(
@@ -75,12 +75,12 @@ fn read_whole(
             });
         }
         decoder.finish(&mut |event| builder.add(event));
-        Ok(told(reader.into_report(), &decoder, &craft, autopilot))
+        Ok(read_report(reader.into_report(), &decoder, &craft, autopilot))
     })
 }
 
 /// What was met while reading.
-fn told(report: UlogReport, decoder: &Decoder, craft: &Craft, autopilot: Autopilot) -> ReadReport {
+fn read_report(report: UlogReport, decoder: &Decoder, craft: &Craft, autopilot: Autopilot) -> ReadReport {
     let stale = decoder.report().stale_stamps;
     let (count, most_us) = decoder.report().ran_back;
     let mut oddities = report.oddities();

@@ -67,7 +67,7 @@ impl Path3 {
 
     fn drawing(&self) -> Markup {
         let thin = self.thinned();
-        let flat: Vec<(f64, f64)> = thin.position_m.iter().map(|at| seen(*at)).collect();
+        let flat: Vec<(f64, f64)> = thin.position_m.iter().map(|at| projected(*at)).collect();
         let (low, high) =
             flat.iter().fold(((f64::MAX, f64::MAX), (f64::MIN, f64::MIN)), |(low, high), at| {
                 ((low.0.min(at.0), low.1.min(at.1)), (high.0.max(at.0), high.1.max(at.1)))
@@ -106,7 +106,7 @@ impl Path3 {
 }
 
 /// A point on the sheet, y downwards.
-fn seen([north, west, up]: [f64; 3]) -> (f64, f64) {
+fn projected([north, west, up]: [f64; 3]) -> (f64, f64) {
     let right = -west * TURNED.cos() + north * TURNED.sin();
     let depth = north * TURNED.cos() + west * TURNED.sin();
     (right, -up * TILTED.cos() - depth * TILTED.sin())

@@ -4,7 +4,7 @@ use crate::diagnose::signatures::ALL;
 use crate::diagnose::wording::Words;
 use crate::diagnose::{Along, DetectionLimit, Named, Verdict, brief, called, clause, limit};
 use crate::report::number::significant;
-use crate::study::{ExplainStudy, Located, Predicted, ShownOn};
+use crate::study::{ExplainStudy, Located, Predicted, ValidationData};
 use crate::vehicle::AXIS_NAMES;
 use std::fmt::Write;
 
@@ -117,7 +117,7 @@ fn gain(study: &ExplainStudy) -> String {
 }
 
 fn whose(study: &ExplainStudy) -> &'static str {
-    if matches!(study.shown_on, ShownOn::HeldBack { .. }) {
+    if matches!(study.shown_on, ValidationData::HeldBack { .. }) {
         "something changed in the part of the flight that was held back"
     } else {
         "the hold-out is of another vehicle"

@@ -4,7 +4,7 @@ use crate::compare::SIGNALS;
 use crate::diagnose::holdout::{AtEnd, Compared, HoldoutFit, OpenLoop};
 use crate::diagnose::{AXES, CHANNEL_NAMES};
 use crate::note::Note;
-use crate::study::{ExplainStudy, Predicted, QUANTITIES, ShownOn};
+use crate::study::{ExplainStudy, Predicted, QUANTITIES, ValidationData};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -107,9 +107,9 @@ struct OwnValue {
 
 pub(super) fn fit_values(study: &ExplainStudy) -> FitValues {
     let (held_back_from_s, reason) = match &study.shown_on {
-        ShownOn::Flights(_) | ShownOn::LeftOut { .. } => (None, None),
-        ShownOn::HeldBack { from_s, .. } => (Some(*from_s), None),
-        ShownOn::Nothing { reason } => (None, Some(reason.clone())),
+        ValidationData::Flights(_) | ValidationData::LeftOut { .. } => (None, None),
+        ValidationData::HeldBack { from_s, .. } => (Some(*from_s), None),
+        ValidationData::Nothing { reason } => (None, Some(reason.clone())),
     };
     let mut holdout = pair(study.holdout.as_ref());
     holdout.shown = study.shown.as_ref().map(shown);
@@ -121,10 +121,10 @@ pub(super) fn fit_values(study: &ExplainStudy) -> FitValues {
         identify: pair(study.identify.as_ref()),
         holdout,
         shown_on: match study.shown_on {
-            ShownOn::Flights(_) => "holdout",
-            ShownOn::HeldBack { .. } => "held_back",
-            ShownOn::LeftOut { .. } => "left_out",
-            ShownOn::Nothing { .. } => "nothing",
+            ValidationData::Flights(_) => "holdout",
+            ValidationData::HeldBack { .. } => "held_back",
+            ValidationData::LeftOut { .. } => "left_out",
+            ValidationData::Nothing { .. } => "nothing",
         },
         held_back_from_s,
         reason,

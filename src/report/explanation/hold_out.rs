@@ -5,7 +5,7 @@ use crate::diagnose::holdout::{AtEnd, Compared, HoldoutFit, OpenLoop};
 use crate::diagnose::{AXES, CHANNEL_NAMES};
 use crate::report::html::{Cell, note, number, section, table, text, warning};
 use crate::report::number::{percent, significant, spoken, with_error};
-use crate::study::{ExplainStudy, Predicted, QUANTITIES, ShownOn};
+use crate::study::{ExplainStudy, Predicted, QUANTITIES, ValidationData};
 use maud::{Markup, html};
 
 const COMPARED: [&str; 6] = ["", "before|", "after|", "noise alone|", "better by|", "unit"];
@@ -20,7 +20,7 @@ pub(super) fn hold_out(study: &ExplainStudy) -> Markup {
         } @else if let Some(predicted) = &study.identify {
             (at_horizon("flights explained", predicted))
         }
-        @if let ShownOn::Nothing { reason } = &study.shown_on {
+        @if let ValidationData::Nothing { reason } = &study.shown_on {
             (warning(&format!("Not shown on unused data: {reason}.")))
         }
         (note("Open-loop prediction from the measured state with the recorded actuators. Before: the rigid body identified on \

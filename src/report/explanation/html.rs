@@ -255,7 +255,7 @@ fn evidence(study: &ExplainStudy) -> Markup {
 }
 
 fn next_flight(study: &ExplainStudy) -> Markup {
-    let Some(next) = &study.next else { return Markup::default() };
+    let Some(next) = &study.next_flight else { return Markup::default() };
     let content = match next {
         Ok(next) => paragraph(&format!("{}.", next.sentence())),
         Err(why) => note(&format!("None was designed: {why}.")),

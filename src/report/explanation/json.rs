@@ -226,7 +226,7 @@ impl ExplanationDocument {
             detection_limits: limits(study),
             too_little_excitation: study.explanation.too_little_excitation,
             data_quality: data_quality(study),
-            next_flight: next(study),
+            next_flight: next_value(study),
             flights_together: study.along.as_ref().map(AlongValue::new),
             warnings: study.notes.iter().map(Note::sentence).collect(),
         }
@@ -350,8 +350,8 @@ fn limits(study: &ExplainStudy) -> Vec<LimitValue> {
         .collect()
 }
 
-fn next(study: &ExplainStudy) -> Option<NextValue> {
-    Some(match study.next.as_ref()? {
+fn next_value(study: &ExplainStudy) -> Option<NextValue> {
+    Some(match study.next_flight.as_ref()? {
         Err(why) => NextValue {
             reason: Some(why.to_string()),
             seconds: None,

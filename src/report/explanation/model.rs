@@ -5,7 +5,7 @@ use crate::config::{ConfigError, vehicle_to_toml};
 use crate::diagnose::NO_LATENCY;
 use crate::estimate::{Finding, ThrustScale};
 use crate::report::model_parts::{self, correlation_lines, effect_tables, files};
-use crate::study::{ExplainStudy, ShownOn};
+use crate::study::{ExplainStudy, ValidationData};
 use crate::text::toml_string;
 use std::fmt::Write;
 
@@ -62,13 +62,13 @@ fn identified(text: &mut String, study: &ExplainStudy) {
 fn provenance(text: &mut String, study: &ExplainStudy) {
     text.push_str(&model_parts::provenance(&study.given.inputs));
     match &study.shown_on {
-        ShownOn::Flights(inputs) => {
+        ValidationData::Flights(inputs) => {
             let _ = writeln!(text, "holdout = {}", files(inputs));
         }
-        ShownOn::HeldBack { from_s, .. } => {
+        ValidationData::HeldBack { from_s, .. } => {
             let _ = writeln!(text, "held_back_from_s = {from_s:?}");
         }
-        ShownOn::LeftOut { .. } | ShownOn::Nothing { .. } => {}
+        ValidationData::LeftOut { .. } | ValidationData::Nothing { .. } => {}
     }
     let gates = &study.given.settings.gates;
     let _ = writeln!(

@@ -7,7 +7,7 @@ use crate::study::ExplainStudy;
 /// What a further flight would bring; `None` where none was designed.
 #[must_use]
 pub fn next_flight_words(study: &ExplainStudy) -> Option<String> {
-    let next = study.next.as_ref()?;
+    let next = study.next_flight.as_ref()?;
     if study.is_certain() {
         let names = if study.effects.is_empty() { "" } else { "Every name is certain: " };
         return Some(capital(&format!("{names}no further flight is needed.")));

@@ -23,7 +23,7 @@ pub fn explanation_text(study: &ExplainStudy) -> String {
     body_lines(&mut page, study);
     along_lines(&mut page, study);
     limit_lines(&mut page, study);
-    match &study.next {
+    match &study.next_flight {
         Some(Ok(next)) => drop(writeln!(page, "\n  next flight: {}", next.sentence())),
         Some(Err(why)) => drop(writeln!(page, "\n  no next flight: {why}")),
         None => {}

@@ -32,7 +32,7 @@ pub fn fleet_html(report: &FleetReport) -> String {
 fn changed(report: &FleetReport) -> Markup {
     let each = html! {
         @for vehicle in report.changed() {
-            (paragraph(&told(vehicle)))
+            (paragraph(&change_sentence(vehicle)))
             @for plot in plots(vehicle) { (figure(&plot, "Bands: 95 % intervals. Shaded: where it changed.")) }
             (remarks(vehicle))
         }
@@ -117,7 +117,7 @@ fn read(report: &FleetReport) -> Markup {
 fn provenance(report: &FleetReport) -> Markup {
     let alarms = &report.alarms;
     let settings = [
-        ("most false alarms", alarms.wanted.to_string()),
+        ("most false alarms", alarms.allowed.to_string()),
         ("shuffled histories", alarms.shuffled.to_string()),
         ("standard deviations that a change needs", alarms.least_sigmas.to_string()),
     ];

@@ -12,7 +12,7 @@ const MOST: usize = 20;
 pub fn fleet_text(report: &FleetReport) -> String {
     let mut page = format!("{}\n", answer(report));
     for vehicle in report.changed() {
-        let _ = writeln!(page, "  {}", told(vehicle));
+        let _ = writeln!(page, "  {}", change_sentence(vehicle));
     }
     let _ = writeln!(page, "\n{}", alarms(report));
     if !report.outliers.is_empty() {

@@ -50,7 +50,7 @@ pub(super) fn changes(vehicle: &ReportedVehicle) -> Vec<String> {
 }
 
 /// One sentence for a vehicle that changed.
-pub(super) fn told(vehicle: &ReportedVehicle) -> String {
+pub(super) fn change_sentence(vehicle: &ReportedVehicle) -> String {
     format!("{} changed {}.", vehicle.history.name, changes(vehicle).join("; "))
 }
 

@@ -307,11 +307,11 @@ fn said(finding: &Finding) -> (String, String) {
 fn found(found: &Found) -> (String, String) {
     match found {
         Found::Determined { value, std } => (with_error(*value, *std), String::new()),
-        Found::AtBound { value, wanted, std } => (
+        Found::AtBound { value, unbounded, std } => (
             significant(*value, 4),
             format!(
                 "at the bound of what is physically possible; the estimate without the bound is {}",
-                with_error(*wanted, *std)
+                with_error(*unbounded, *std)
             ),
         ),
         Found::Given { value, why } => (significant(*value, 4), why.clone()),

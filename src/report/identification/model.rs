@@ -98,8 +98,8 @@ fn effect_entry(parameter: &ParameterFound) -> String {
         Found::Determined { value, std } => {
             format!("{name} = {{ value = {value:e}, std = {std:e}, unit = \"{unit}\" }}")
         }
-        Found::AtBound { value, wanted, std } => format!(
-            "{name} = {{ value = {value:e}, std = {std:e}, unit = \"{unit}\", status = \"at_bound\", wanted = {wanted:e} }}"
+        Found::AtBound { value, unbounded, std } => format!(
+            "{name} = {{ value = {value:e}, std = {std:e}, unit = \"{unit}\", status = \"at_bound\", wanted = {unbounded:e} }}"
         ),
         Found::Given { value, why } => {
             format!(

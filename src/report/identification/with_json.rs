@@ -146,12 +146,12 @@ fn parameter_value(parameter: &ParameterFound) -> ParameterValue {
         Found::Determined { value, std } => {
             ParameterValue { value: Some(*value), std: Some(*std), status: "determined", ..empty }
         }
-        Found::AtBound { value, wanted, std } => ParameterValue {
+        Found::AtBound { value, unbounded, std } => ParameterValue {
             value: Some(*value),
             std: Some(*std),
-            wanted: Some(*wanted),
+            wanted: Some(*unbounded),
             status: "at_bound",
-            reason: Some(beyond(parameter, *wanted, *std)),
+            reason: Some(beyond(parameter, *unbounded, *std)),
             ..empty
         },
         Found::Given { value, why } => ParameterValue {

@@ -107,12 +107,12 @@ fn effect_line(effect: &EffectFound, parameter: &ParameterFound) -> String {
         Found::Determined { value, std } => {
             format!("{name:<34}{:>13}{:>13}{:>15}{:>12}  {unit}", number(*value), number(*std), "", "")
         }
-        Found::AtBound { value, wanted, std } => {
+        Found::AtBound { value, unbounded, std } => {
             format!(
                 "{name:<34}{:>13}{:>13}  {unit}; {}",
                 number(*value),
                 number(*std),
-                beyond(parameter, *wanted, *std)
+                beyond(parameter, *unbounded, *std)
             )
         }
         Found::Given { value, why } => {

@@ -100,7 +100,7 @@ fn numbers<const N: usize>(into: &mut Vec<u8>, form: &Form, values: [f64; N]) {
 /// Writes ArduPilot's log.
 #[derive(Debug, Default)]
 pub(super) struct DataflashWriter {
-    told: Option<(bool, bool, Mode)>,
+    last_state: Option<(bool, bool, Mode)>,
 }
 
 impl DataflashWriter {
@@ -113,7 +113,7 @@ impl DataflashWriter {
         parameters: &Parameters,
     ) {
         use Value::{Number, Text};
-        self.told = None;
+        self.last_state = None;
         for form in FORMS {
             let head = [f64::from(form.number), length(form) as f64].map(Number);
             let tail = [form.name, form.format, form.fields].map(Text);
@@ -207,7 +207,7 @@ impl DataflashWriter {
     /// States, when they change.
     fn states(&mut self, into: &mut Vec<u8>, at: &Moment, firmware: Firmware) {
         let state = (at.armed, at.landed, at.mode);
-        let before = self.told.replace(state);
+        let before = self.last_state.replace(state);
         let event = |into: &mut Vec<u8>, [off, on]: [f64; 2], is: bool| {
             numbers(into, &EV, [at.time_us, if is { on } else { off }]);
         };

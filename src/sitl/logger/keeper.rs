@@ -7,7 +7,7 @@ use rand_pcg::Pcg64Mcg;
 
 use super::dataflash::DataflashWriter;
 use super::date::gps_time;
-use super::moment::{Moment, Seen};
+use super::moment::{Moment, SensorReading};
 use super::schedule::{Schedule, When};
 use super::store::LogStore;
 use super::ulog::{Software, UlogWriter};
@@ -111,7 +111,7 @@ pub(in crate::sitl) struct Keeper {
     schedule: Schedule,
     was_armed: bool,
     has_armed: bool,
-    before: Option<Seen>,
+    before: Option<SensorReading>,
 }
 
 impl Keeper {
@@ -188,11 +188,11 @@ impl Keeper {
     }
 
     /// What the sensors show, with noise of the log's own.
-    fn sense(&mut self, now: &Now<'_>) -> Seen {
+    fn sense(&mut self, now: &Now<'_>) -> SensorReading {
         let mut state = self.noise.measure(&mut self.rng, &now.snapshot.shown.state);
         state.position_m += now.autopilot.estimator.shift_m();
         let force_m_s2 = self.noise.measure_force(&mut self.rng, &now.snapshot.shown.specific_force_m_s2);
-        Seen { state, force_m_s2 }
+        SensorReading { state, force_m_s2 }
     }
 
     fn open_or_end(&mut self, now: &Now<'_>, armed: bool) {

@@ -55,15 +55,15 @@ pub(super) struct Moment {
 
 /// What sensors show at one instant.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Seen {
+pub(super) struct SensorReading {
     pub(super) state: State,
     pub(super) force_m_s2: Vector3<f64>,
 }
 
 impl Moment {
     /// What the autopilot knows; outputs and means are filled in by who knows them.
-    pub(super) fn of(autopilot: &Autopilot, seen: &Seen, time_us: f64, origin: &Origin) -> Self {
-        let (wanted, setpoint) = (autopilot.cascade.wanted(), &autopilot.setpoint);
+    pub(super) fn of(autopilot: &Autopilot, seen: &SensorReading, time_us: f64, origin: &Origin) -> Self {
+        let (wanted, setpoint) = (autopilot.cascade.inner_loop_setpoint(), &autopilot.setpoint);
         let position_m = seen.state.position_m;
         let place = origin.place().moved([position_m.x, position_m.y]);
         let [rates_rad_s, force_m_s2] = [turned(&seen.state.rates_rad_s), turned(&seen.force_m_s2)];

@@ -89,7 +89,7 @@ pub(super) struct UlogWriter {
     values: Vec<f64>,
     body: Vec<u8>,
     /// armed, landed and mode, as they were written last
-    told: Option<(bool, bool, crate::sitl::Mode)>,
+    last_state: Option<(bool, bool, crate::sitl::Mode)>,
 }
 
 impl UlogWriter {
@@ -101,7 +101,7 @@ impl UlogWriter {
         software: Software,
         parameters: &Parameters,
     ) {
-        self.told = None;
+        self.last_state = None;
         into.extend(BEGIN);
         Kind::U64.put(into, time_us);
         message(into, letter::FLAGS, &[0; ULOG_FLAG_BYTES]);
@@ -147,7 +147,7 @@ impl UlogWriter {
         (now, period): (Duration, Duration),
     ) {
         let state = (at.armed, at.landed, at.mode);
-        let has_changed = self.told.replace(state) != Some(state);
+        let has_changed = self.last_state.replace(state) != Some(state);
         for (number, topic) in (0_u16..).zip(TOPICS) {
             let every = schedule.topic(topic.default, topic.identification);
             let is_state = STATES.contains(&topic.name);

@@ -7,12 +7,12 @@ use mavlink::dialects::ardupilotmega::{
 
 use super::super::demand::frd;
 use super::super::message::Message;
-use super::super::message_id as ids;
 use super::field::short;
 use super::scene::Scene;
 use super::source::Telemetry;
 use crate::frames::{Attitude, frd_ned_from_attitude, yaw_from_ned};
 use crate::units::{STANDARD_GRAVITY_M_S2, narrow};
+use crate::wire::message_id as ids;
 
 /// Bits of accelerations and rates.
 const FIELDS_UPDATED: u16 = 0b11_1111;
@@ -23,7 +23,7 @@ const FIELD_GAUSS: [f64; 3] = [0.21, 0.0, -0.43];
 
 impl Telemetry {
     pub(super) fn attitude(&self, scene: &Scene) -> Message {
-        let (roll, pitch, yaw) = scene.seen.attitude.euler_angles();
+        let (roll, pitch, yaw) = scene.measured.attitude.euler_angles();
         let [rollspeed, pitchspeed, yawspeed] = rates(scene);
         Message::from(ATTITUDE_DATA {
             time_boot_ms: scene.ms(self.skew.attitude_s),
@@ -38,7 +38,7 @@ impl Telemetry {
     }
 
     pub(super) fn attitude_quaternion(&self, scene: &Scene) -> Message {
-        let [q1, q2, q3, q4] = frd_ned_from_attitude(Attitude(scene.seen.attitude)).map(narrow);
+        let [q1, q2, q3, q4] = frd_ned_from_attitude(Attitude(scene.measured.attitude)).map(narrow);
         let [rollspeed, pitchspeed, yawspeed] = rates(scene);
         Message::from(ATTITUDE_QUATERNION_DATA {
             time_boot_ms: scene.ms(self.skew.attitude_s),
@@ -54,7 +54,7 @@ impl Telemetry {
     }
 
     pub(super) fn attitude_target(&self, scene: &Scene) -> Message {
-        let wanted = scene.autopilot.cascade.wanted();
+        let wanted = scene.autopilot.cascade.inner_loop_setpoint();
         let [body_roll_rate, body_pitch_rate, body_yaw_rate] = frd(wanted.rates_rad_s).map(narrow);
         Message::from(ATTITUDE_TARGET_DATA {
             time_boot_ms: scene.ms(0.0),
@@ -68,7 +68,7 @@ impl Telemetry {
     }
 
     fn magnetometer(scene: &Scene) -> [f64; 3] {
-        frd(scene.seen.attitude.inverse_transform_vector(&FIELD_GAUSS.into()))
+        frd(scene.measured.attitude.inverse_transform_vector(&FIELD_GAUSS.into()))
     }
 
     pub(super) fn highres_imu(&mut self, scene: &Scene) -> Message {
@@ -97,7 +97,7 @@ impl Telemetry {
     pub(super) fn raw_imu(&mut self, id: u32, scene: &Scene) -> Message {
         let force = self.noise.measure_force(&mut self.rng, &scene.at.shown.specific_force_m_s2);
         let [xacc, yacc, zacc] = frd(force).map(|a| short(1e3 * a / STANDARD_GRAVITY_M_S2));
-        let [xgyro, ygyro, zgyro] = frd(scene.seen.rates_rad_s).map(|w| short(1e3 * w));
+        let [xgyro, ygyro, zgyro] = frd(scene.measured.rates_rad_s).map(|w| short(1e3 * w));
         let [xmag, ymag, zmag] = Self::magnetometer(scene).map(|b| short(1e3 * b));
         // hundredths of a degree Celsius
         let temperature = 100 * TEMPERATURE;
@@ -137,5 +137,5 @@ impl Telemetry {
 
 /// Body rates (FRD), rad/s.
 fn rates(scene: &Scene) -> [f32; 3] {
-    frd(scene.seen.rates_rad_s).map(narrow)
+    frd(scene.measured.rates_rad_s).map(narrow)
 }

@@ -26,20 +26,20 @@ fn on_earth(origin: &Origin, position_m: &Vector3<f64>) -> [i32; 3] {
 
 /// Heading clockwise from north, degrees in 0..360.
 fn heading_deg(scene: &Scene) -> f64 {
-    yaw_from_ned(scene.seen.attitude.euler_angles().2).to_degrees().rem_euclid(360.0)
+    yaw_from_ned(scene.measured.attitude.euler_angles().2).to_degrees().rem_euclid(360.0)
 }
 
 impl Telemetry {
     pub(super) fn local_position_ned(&self, scene: &Scene) -> Message {
-        let [x, y, z] = ned(scene.seen.position_m).map(narrow);
-        let [vx, vy, vz] = ned(scene.seen.velocity_m_s).map(narrow);
+        let [x, y, z] = ned(scene.measured.position_m).map(narrow);
+        let [vx, vy, vz] = ned(scene.measured.velocity_m_s).map(narrow);
         let time_boot_ms = scene.ms(self.skew.position_s);
         Message::from(LOCAL_POSITION_NED_DATA { time_boot_ms, x, y, z, vx, vy, vz })
     }
 
     /// Position in the local frame, velocity in the body's.
     pub(super) fn odometry(&self, scene: &Scene) -> Message {
-        let seen = &scene.seen;
+        let seen = &scene.measured;
         let variance = |level: f64| {
             let mut upper = [0.0; 21];
             for diagonal in [0, 6, 11] {
@@ -73,7 +73,7 @@ impl Telemetry {
     }
 
     pub(super) fn gps_raw_int(&self, scene: &Scene) -> Message {
-        let [lat, lon, alt] = on_earth(&self.origin, &scene.seen.position_m);
+        let [lat, lon, alt] = on_earth(&self.origin, &scene.measured.position_m);
         Message::from(GPS_RAW_INT_DATA {
             time_usec: scene.us(0.0),
             lat,
@@ -82,7 +82,7 @@ impl Telemetry {
             // dilution times 100
             eph: 70,
             epv: 110,
-            vel: ushort(1e2 * scene.seen.velocity_m_s.xy().norm()),
+            vel: ushort(1e2 * scene.measured.velocity_m_s.xy().norm()),
             // not known
             cog: u16::MAX,
             fix_type: GpsFixType::GPS_FIX_TYPE_3D_FIX,
@@ -92,15 +92,15 @@ impl Telemetry {
     }
 
     pub(super) fn global_position_int(&self, scene: &Scene) -> Message {
-        let [lat, lon, alt] = on_earth(&self.origin, &scene.seen.position_m);
+        let [lat, lon, alt] = on_earth(&self.origin, &scene.measured.position_m);
         let home_m = scene.autopilot.home_m.unwrap_or_else(Vector3::zeros);
-        let [vx, vy, vz] = ned(scene.seen.velocity_m_s).map(|value| short(1e2 * value));
+        let [vx, vy, vz] = ned(scene.measured.velocity_m_s).map(|value| short(1e2 * value));
         Message::from(GLOBAL_POSITION_INT_DATA {
             time_boot_ms: scene.ms(self.skew.position_s),
             lat,
             lon,
             alt,
-            relative_alt: whole(1e3 * (scene.seen.position_m.z - home_m.z)),
+            relative_alt: whole(1e3 * (scene.measured.position_m.z - home_m.z)),
             vx,
             vy,
             vz,
@@ -131,7 +131,7 @@ impl Telemetry {
     }
 
     pub(super) fn altitude(&self, scene: &Scene) -> Message {
-        let height_m = scene.seen.position_m.z;
+        let height_m = scene.measured.position_m.z;
         let home_m = scene.autopilot.home_m.map_or(0.0, |home| home.z);
         let above_sea_m = narrow(self.origin.altitude_m + height_m);
         Message::from(ALTITUDE_DATA {
@@ -146,9 +146,9 @@ impl Telemetry {
     }
 
     pub(super) fn vfr_hud(&self, scene: &Scene) -> Message {
-        let seen = &scene.seen;
+        let seen = &scene.measured;
         let speed = narrow(seen.velocity_m_s.xy().norm());
-        let throttle = scene.autopilot.cascade.wanted().thrust_n / scene.autopilot.thrust_max_n;
+        let throttle = scene.autopilot.cascade.inner_loop_setpoint().thrust_n / scene.autopilot.thrust_max_n;
         let throttle = if scene.autopilot.is_armed() { throttle.clamp(0.0, 1.0) } else { 0.0 };
         Message::from(VFR_HUD_DATA {
             airspeed: speed,

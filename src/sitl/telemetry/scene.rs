@@ -21,7 +21,7 @@ pub(super) struct Scene<'a> {
     pub(super) at: &'a Snapshot,
     pub(super) autopilot: &'a Autopilot,
     /// what sensors show of the motion, with noise
-    pub(super) seen: State,
+    pub(super) measured: State,
 }
 
 impl Scene<'_> {

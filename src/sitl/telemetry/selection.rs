@@ -4,7 +4,7 @@ use super::scene::{Scene, Snapshot};
 use super::source::Telemetry;
 use crate::sitl::autopilot::Autopilot;
 use crate::sitl::message::Message;
-use crate::sitl::message_id as ids;
+use crate::wire::message_id as ids;
 
 impl Telemetry {
     /// The message of this id as it is now; `None` where the vehicle has nothing to say.

@@ -2,7 +2,7 @@
 
 use super::along_flights::AlongFlights;
 use super::result::ExplainStudy;
-use crate::diagnose::{ExplainSettings, each_with_model_of_all, own_wind, seen_with_air};
+use crate::diagnose::{ExplainSettings, each_with_model_of_all, own_wind, relative_to_air};
 use crate::signals::Signals;
 use crate::study::Track;
 use crate::study::flights::Prepared;
@@ -17,7 +17,7 @@ pub(super) fn with_own_winds(flights: &mut Prepared, vehicle: &Vehicle) -> Vec<O
         flights.signals.par_iter().map(|signals| own_wind(signals, vehicle, &settings)).collect();
     for (signals, wind) in flights.signals.iter_mut().zip(&found) {
         if let Some(wind) = wind {
-            *signals = seen_with_air(signals, wind);
+            *signals = relative_to_air(signals, wind);
         }
     }
     flights.drift = found.iter().map(Option::is_some).collect();

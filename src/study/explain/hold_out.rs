@@ -2,7 +2,7 @@
 
 use super::left_out::of_others;
 use super::result::ExplainStudy;
-use super::shown_on::ShownOn;
+use super::validation_data::ValidationData;
 use crate::diagnose::holdout::{
     Explained, HeldOut, HoldoutError, HoldoutFit, HoldoutSettings, IdentificationFit, Split, differing,
     on_holdout, on_identification, on_left_out, split_last_periods,
@@ -49,22 +49,22 @@ pub(super) fn refuse_shared(flights: &Prepared, held: &Prepared) -> Result<(), S
 }
 
 /// The end of the last flight, which is then not explained.
-pub(super) fn hold_back(flights: &mut Prepared) -> (ShownOn, Option<Signals>) {
+pub(super) fn hold_back(flights: &mut Prepared) -> (ValidationData, Option<Signals>) {
     let split = flights.signals.last().and_then(split_last_periods);
     let (Some(Split { identify, holdout, from_s, .. }), Some(last)) = (split, flights.signals.last_mut())
     else {
         let reason = "the flight is too short to hold a part of it back; give another with --holdout";
-        return (ShownOn::Nothing { reason: reason.to_owned() }, None);
+        return (ValidationData::Nothing { reason: reason.to_owned() }, None);
     };
     *last = identify;
     let seconds = holdout.usable.iter().filter(|used| **used).count() as f64 * holdout.grid.step_s;
-    (ShownOn::HeldBack { from_s, seconds }, Some(holdout))
+    (ValidationData::HeldBack { from_s, seconds }, Some(holdout))
 }
 
 impl ExplainStudy {
     /// Prediction errors before and after on the flights that were explained, and, of several, whether they are of one
     /// vehicle. An empirical term stands in where no mechanism serves.
-    pub(super) fn show_explained(&mut self, flights: &Prepared) {
+    pub(super) fn evaluate_explained(&mut self, flights: &Prepared) {
         let (vehicle, settings) = (&self.given.vehicle, &self.given.settings);
         self.empirical = match Empirical::fit(&self.explanation, &flights.signals, vehicle, settings) {
             Ok(empirical) => empirical,
@@ -124,42 +124,47 @@ impl ExplainStudy {
     }
 
     /// The same on flights that were not used, or on the part held back.
-    pub(super) fn show_held_out(&mut self, held: &Prepared, back: Option<&Signals>, shown_on: ShownOn) {
+    pub(super) fn evaluate_held_out(
+        &mut self,
+        held: &Prepared,
+        back: Option<&Signals>,
+        shown_on: ValidationData,
+    ) {
         let mut flights = held.held_out();
         flights.extend(back.map(|signals| HeldOut { name: "the part held back", signals, recording: None }));
         if flights.is_empty() {
             self.shown_on = shown_on;
-        } else if let Err(error) = self.shown_on(&flights, shown_on) {
+        } else if let Err(error) = self.evaluate_on(&flights, shown_on) {
             self.notes.push(Note::warning(About::HoldOut, format!("hold-out: {error}")));
-            self.shown_on = ShownOn::Nothing { reason: error.to_string() };
+            self.shown_on = ValidationData::Nothing { reason: error.to_string() };
         }
     }
 
     /// The same on each flight that was explained, by models of the others.
-    pub(super) fn show_left_out(&mut self, flights: &Prepared) {
-        let shown_on = ShownOn::LeftOut { flights: flights.signals.len() };
+    pub(super) fn evaluate_left_out(&mut self, flights: &Prepared) {
+        let shown_on = ValidationData::LeftOut { flights: flights.signals.len() };
         let settings = HoldoutSettings::default();
         let models = of_others(self, &flights.signals);
         let explained = |explanation| Explained { explanation, ..self.explained() };
         let each: Vec<Explained> = models.iter().map(explained).collect();
         match on_left_out(self.explained(), &each, &flights.held_out(), (&self.given.vehicle, &settings)) {
-            Ok(shown) => self.take_shown(shown, shown_on),
+            Ok(shown) => self.take_prediction(shown, shown_on),
             Err(error) => {
                 self.notes.push(Note::warning(About::HoldOut, format!("hold-out: {error}")));
-                self.shown_on = ShownOn::Nothing { reason: error.to_string() };
+                self.shown_on = ValidationData::Nothing { reason: error.to_string() };
             }
         }
     }
 
-    fn shown_on(&mut self, flights: &[HeldOut], shown_on: ShownOn) -> Result<(), HoldoutError> {
-        let same_flight = matches!(shown_on, ShownOn::HeldBack { .. });
+    fn evaluate_on(&mut self, flights: &[HeldOut], shown_on: ValidationData) -> Result<(), HoldoutError> {
+        let same_flight = matches!(shown_on, ValidationData::HeldBack { .. });
         let settings = HoldoutSettings { same_flight, ..HoldoutSettings::default() };
         let shown = on_holdout(self.explained(), flights, &self.given.vehicle, &settings)?;
-        self.take_shown(shown, shown_on);
+        self.take_prediction(shown, shown_on);
         Ok(())
     }
 
-    fn take_shown(&mut self, shown: HoldoutFit, shown_on: ShownOn) {
+    fn take_prediction(&mut self, shown: HoldoutFit, shown_on: ValidationData) {
         let other = shown.other_vehicle.iter();
         self.notes.extend(other.map(|other| Note::warning(About::HoldOut, other.reason.clone())));
         self.holdout = Some(Predicted::from(&shown));

@@ -17,7 +17,7 @@ mod readers;
 mod request;
 mod result;
 mod run;
-mod shown_on;
+mod validation_data;
 
 pub use along_flights::AlongFlights;
 pub use evidence::{Tried, TriedAs};
@@ -31,6 +31,6 @@ pub use request::ExplainRequest;
 pub(super) use result::BY_CONTROL;
 pub use result::{AxisFit, BodyParameter, Estimate, ExplainStudy, Given};
 pub use run::explain;
-pub use shown_on::ShownOn;
+pub use validation_data::ValidationData;
 
 pub(super) use request::check_transient;

@@ -4,7 +4,7 @@ use super::along_flights::AlongFlights;
 use super::located::Located;
 use super::predicted::Predicted;
 use super::readers::for_readers;
-use super::shown_on::ShownOn;
+use super::validation_data::ValidationData;
 use crate::diagnose::experiment::{NextError, NextFlight};
 use crate::diagnose::holdout::{Difference, HoldoutFit, RateLaw};
 use crate::diagnose::signatures::latency_kind;
@@ -66,11 +66,11 @@ pub struct ExplainStudy {
     /// a law of the rates for open-loop predictions, where the torques predict worse than no change
     pub rate_law: Option<RateLaw>,
     /// which flights those are
-    pub shown_on: ShownOn,
+    pub shown_on: ValidationData,
     /// where simulation and recording differ
     pub located: Located,
     /// what to fly to distinguish what this flight cannot; `Err`: why there is none; `None`: not asked for
-    pub next: Option<Result<NextFlight, NextError>>,
+    pub next_flight: Option<Result<NextFlight, NextError>>,
     /// what the user should know, all of it warnings
     pub notes: Vec<Note>,
     /// why the flights cannot be of one vehicle
@@ -138,13 +138,13 @@ impl ExplainStudy {
             effects: for_readers(&explanation.named),
             closest: for_readers(&explanation.closest),
             located: Located::of(&explanation),
-            next: None,
+            next_flight: None,
             identify: None,
             holdout: None,
             shown: None,
             empirical: None,
             rate_law: None,
-            shown_on: ShownOn::Nothing { reason: "no hold-out".to_owned() },
+            shown_on: ValidationData::Nothing { reason: "no hold-out".to_owned() },
             notes: Vec::new(),
             differing: None,
             drafted: None,
@@ -366,7 +366,7 @@ impl ExplainStudy {
     /// The files of the flights that were not used; none where a part of a flight was held back.
     #[must_use]
     pub fn held_out_inputs(&self) -> &[InputFile] {
-        if let ShownOn::Flights(inputs) = &self.shown_on { inputs } else { &[] }
+        if let ValidationData::Flights(inputs) = &self.shown_on { inputs } else { &[] }
     }
 
     /// Every recording that went in.

@@ -4,7 +4,7 @@ use super::along::with_own_winds;
 use super::hold_out::{hold_back, refuse_shared};
 use super::request::ExplainRequest;
 use super::result::{ExplainStudy, Given};
-use super::shown_on::ShownOn;
+use super::validation_data::ValidationData;
 use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::diagnose::signatures::signature_of;
@@ -74,9 +74,9 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     }
     let whole = flights.signals.last().cloned();
     let (shown_on, back) = match (held.is_empty(), several) {
-        (true, true) => (ShownOn::LeftOut { flights: flights.signals.len() }, None),
+        (true, true) => (ValidationData::LeftOut { flights: flights.signals.len() }, None),
         (true, false) => hold_back(&mut flights),
-        (false, _) => (ShownOn::Flights(held.inputs.clone()), None),
+        (false, _) => (ValidationData::Flights(held.inputs.clone()), None),
     };
     notes.extend(other_settings(&flights.recordings));
     notes.extend(of_data(&flights, &held));
@@ -95,7 +95,8 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     if request.design_next {
         progress.stage(Stage::Designing);
         let inside = Vehicle { limits: next_limits.unwrap_or(vehicle.limits), ..vehicle.clone() };
-        study.next = Some(design(&study.explanation, &flights.signals, &inside, &NextSettings::default()));
+        study.next_flight =
+            Some(design(&study.explanation, &flights.signals, &inside, &NextSettings::default()));
     }
     Ok(study)
 }
@@ -115,7 +116,7 @@ impl Task<'_> {
     fn explained(
         &self,
         flights: &Prepared,
-        (held, back, shown_on): (&Prepared, Option<&Signals>, ShownOn),
+        (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
     ) -> Result<ExplainStudy, StudyError> {
         let settings = ExplainSettings::default();
         let explanation = crate::diagnose::explain(&flights.signals, self.vehicle, &settings)
@@ -144,20 +145,20 @@ impl Task<'_> {
         given: Given,
         explanation: Explanation,
         flights: &Prepared,
-        (held, back, shown_on): (&Prepared, Option<&Signals>, ShownOn),
+        (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
     ) -> ExplainStudy {
         let mut study = ExplainStudy::new(given, explanation);
         study.notes.extend_from_slice(self.notes);
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
-        study.show_explained(flights);
+        study.evaluate_explained(flights);
         if flights.signals.len() > 1 {
             study.tell_along(&flights.signals, self.winds_m_s.to_vec());
         }
-        if let ShownOn::LeftOut { .. } = shown_on {
-            study.show_left_out(flights);
+        if let ValidationData::LeftOut { .. } = shown_on {
+            study.evaluate_left_out(flights);
         } else {
-            study.show_held_out(held, back, shown_on);
+            study.evaluate_held_out(held, back, shown_on);
         }
         study
     }
@@ -172,7 +173,7 @@ impl Task<'_> {
         let Some(last) = flights.signals.last_mut() else { return Ok(of_part) };
         let part = std::mem::replace(last, whole);
         self.progress.stage(Stage::ExplainingAgain);
-        let shown_on = ShownOn::Nothing { reason: CHANGES_LATE.to_owned() };
+        let shown_on = ValidationData::Nothing { reason: CHANGES_LATE.to_owned() };
         let of_whole = self.explained(flights, (&Prepared::default(), None, shown_on))?;
         if names_a_change(&of_whole) && !names_a_change(&of_part) {
             return Ok(of_whole);

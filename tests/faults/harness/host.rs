@@ -14,7 +14,7 @@ use rand_pcg::Pcg64;
 use tokio::runtime::Runtime;
 
 use super::network::Packet;
-use super::trace::{Part, Report, Seen, Trace};
+use super::trace::{Observation, Part, Report, Trace};
 
 /// Between two ticks of the flight.
 const TICK: Duration = Duration::from_millis(10);
@@ -153,10 +153,10 @@ impl Host {
         if Frame::at_start(&packet.bytes)
             .is_some_and(|frame| frame.check(&self.seeds) == Check::Right && frame.header().system.0 == 1)
         {
-            trace.add(now, Seen::Came);
+            trace.add(now, Observation::Came);
         }
         if let Some(report) = Report::of(&self.seeds, &packet.bytes, packet.said) {
-            trace.add(now, Seen::Reached(report));
+            trace.add(now, Observation::Reached(report));
         }
         self.socket.push_back((now, packet));
     }
@@ -270,7 +270,7 @@ impl Host {
             Ok(Some(Received::Frame(received))) => {
                 let (came, said) = self.behind.pop_front().unwrap_or((now, None));
                 if let Some(report) = Report::of(&self.seeds, received.bytes(), said) {
-                    trace.add(now, Seen::Heard(report, came));
+                    trace.add(now, Observation::Heard(report, came));
                 }
                 if let Some(frame) = Frame::at_start(received.bytes()) {
                     let stamp_us = received.stamp.utc_us;
@@ -294,9 +294,9 @@ impl Host {
                     // a link that takes nothing is told by its own events
                     let _ = self.writer.send_message(&message);
                 }
-                Action::Note(note) => trace.add(now, Seen::Note(note)),
+                Action::Note(note) => trace.add(now, Observation::Note(note)),
                 Action::Finished(outcome) => {
-                    trace.add(now, Seen::Over(outcome.clone()));
+                    trace.add(now, Observation::Over(outcome.clone()));
                     self.outcome = Some(outcome);
                 }
             }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use mavid::fly::{Cause, Ending};
 
 use super::ours::{Given, Ours};
-use super::trace::{Entry, Part, Report, Seen, Trace};
+use super::trace::{Entry, Observation, Part, Report, Trace};
 use super::wire::{Left, SetpointSeen};
 
 /// News of the mode counts so long after it came to the socket: two looks at the clock.
@@ -88,8 +88,8 @@ fn taken(trace: &Trace, given: &Given) -> Option<(Duration, u32)> {
     let mut armed = false;
     for Entry { at, seen } in &trace.entries {
         match seen {
-            Seen::Left(left) => ours.left(left),
-            Seen::Vehicle(state) => {
+            Observation::Left(left) => ours.left(left),
+            Observation::Vehicle(state) => {
                 // one that has landed chooses what it rests in
                 if armed && !state.armed {
                     return None;
@@ -110,7 +110,7 @@ fn told(trace: &Trace, given: &Given) -> Option<(Duration, Duration, u32)> {
     let (taken, mode) = taken(trace, given)?;
     let mut latest = Duration::ZERO;
     trace.entries.iter().find_map(|Entry { at, seen }| match seen {
-        Seen::Reached(Report { mode: reported, said: Some(said), .. }) => {
+        Observation::Reached(Report { mode: reported, said: Some(said), .. }) => {
             // one that a later one has overtaken says nothing: that one tells whether it is still so
             let news = *said >= latest;
             latest = latest.max(*said);
@@ -123,7 +123,7 @@ fn told(trace: &Trace, given: &Given) -> Option<(Duration, Duration, u32)> {
 fn takeover(trace: &Trace, given: &Given) -> Option<Broken> {
     let (told, taken, mode) = told(trace, given)?;
     trace.entries.iter().find_map(|Entry { at, seen }| {
-        let Seen::Left(left) = seen else { return None };
+        let Observation::Left(left) = seen else { return None };
         let late = if left.commands() { TOLD } else { SETPOINT_TOLD };
         let steers = left.commands() || matches!(left, Left::Setpoint(_));
         if !steers || *at <= told + late || by_the_operator(trace, *at) {
@@ -140,10 +140,9 @@ fn takeover(trace: &Trace, given: &Given) -> Option<Broken> {
 
 /// The operator's own keys are his.
 fn by_the_operator(trace: &Trace, at: Duration) -> bool {
-    trace
-        .entries
-        .iter()
-        .any(|entry| entry.at <= at && matches!(&entry.seen, Seen::Fault(what) if what.starts_with("Key")))
+    trace.entries.iter().any(|entry| {
+        entry.at <= at && matches!(&entry.observation, Observation::Fault(what) if what.starts_with("Key"))
+    })
 }
 
 fn stale(trace: &Trace, given: &Given) -> Option<Broken> {
@@ -154,7 +153,7 @@ fn stale(trace: &Trace, given: &Given) -> Option<Broken> {
     let (mut lost, mut said) = (None::<(Duration, Option<Duration>)>, Duration::ZERO);
     for Entry { at, seen } in &trace.entries {
         match seen {
-            Seen::Note(note) if note.kind == "abort" || note.kind == "phase" => {
+            Observation::Note(note) if note.kind == "abort" || note.kind == "phase" => {
                 let calls =
                     note.kind == "abort" || ["hold", "land", "return", "arm"].contains(&note.text.as_str());
                 if calls {
@@ -163,7 +162,7 @@ fn stale(trace: &Trace, given: &Given) -> Option<Broken> {
                     reason = None;
                 }
             }
-            Seen::Heard(heard, came) => {
+            Observation::Heard(heard, came) => {
                 // one that others had overtaken says nothing
                 if heard.said.is_some_and(|at| at < said) {
                     continue;
@@ -175,7 +174,7 @@ fn stale(trace: &Trace, given: &Given) -> Option<Broken> {
                 }
                 report = ours.then_some(*came);
             }
-            Seen::Left(left) if left.commands() => {
+            Observation::Left(left) if left.commands() => {
                 let engages = matches!(left, Left::Mode(mode) if *mode == given.external());
                 ours.left(left);
                 // made in the same instant, it may still have been on its way out
@@ -201,7 +200,7 @@ fn stale(trace: &Trace, given: &Given) -> Option<Broken> {
                 last = Some(left.clone());
                 reason = None;
             }
-            Seen::Left(left) => ours.left(left),
+            Observation::Left(left) => ours.left(left),
             _ => {}
         }
     }
@@ -209,8 +208,8 @@ fn stale(trace: &Trace, given: &Given) -> Option<Broken> {
 }
 
 fn setpoints(trace: &Trace) -> impl Iterator<Item = (Duration, &SetpointSeen)> {
-    trace.entries.iter().filter_map(|entry| match &entry.seen {
-        Seen::Left(Left::Setpoint(setpoint)) => Some((entry.at, setpoint)),
+    trace.entries.iter().filter_map(|entry| match &entry.observation {
+        Observation::Left(Left::Setpoint(setpoint)) => Some((entry.at, setpoint)),
         _ => None,
     })
 }
@@ -225,18 +224,19 @@ fn age(trace: &Trace) -> Option<Broken> {
 
 fn room(trace: &Trace, given: &Given) -> Option<Broken> {
     let [x_m, y_m, low_m, high_m] = given.room_m;
-    let takes_off = |entry: &&Entry| matches!(&entry.seen, Seen::Note(note) if note.kind == "phase" && note.text == "take off");
-    let flies = |entry: &&Entry| matches!(&entry.seen, Seen::Vehicle(state) if !state.landed);
+    let takes_off = |entry: &&Entry| matches!(&entry.observation, Observation::Note(note) if note.kind == "phase" && note.text == "take off");
+    let flies = |entry: &&Entry| matches!(&entry.observation, Observation::Vehicle(state) if !state.landed);
     let up = trace.entries.iter().find(takes_off).or_else(|| trace.entries.iter().find(flies));
     let up = up.map_or(Duration::MAX, |entry| entry.at);
     let (_, first) =
         setpoints(trace).take_while(|(at, _)| *at <= up).last().or_else(|| setpoints(trace).next())?;
     let origin = if given.here { [first.position_m[0], first.position_m[1]] } else { [0.0, 0.0] };
     // both lots of ground are flat and at zero, of which an estimate may be off before it takes off
-    let jumps = trace.entries.iter().filter(|entry| entry.at <= up).filter_map(|entry| match entry.seen {
-        Seen::Jumped(by_m) => Some(by_m),
-        _ => None,
-    });
+    let jumps =
+        trace.entries.iter().filter(|entry| entry.at <= up).filter_map(|entry| match entry.observation {
+            Observation::Jumped(by_m) => Some(by_m),
+            _ => None,
+        });
     let ground_m: f64 = jumps.sum();
     let mut above = false;
     setpoints(trace).find_map(|(at, setpoint)| {
@@ -262,11 +262,11 @@ fn room(trace: &Trace, given: &Given) -> Option<Broken> {
 fn silence(trace: &Trace) -> Option<Broken> {
     let mut heard = Duration::ZERO;
     trace.entries.iter().find_map(|Entry { at, seen }| match seen {
-        Seen::Came => {
+        Observation::Came => {
             heard = *at;
             None
         }
-        Seen::Left(Left::Setpoint(_)) if *at - heard > SILENCE => broken(
+        Observation::Left(Left::Setpoint(_)) if *at - heard > SILENCE => broken(
             Law::Silence,
             *at,
             format!("a setpoint {:.2} s after a frame", (*at - heard).as_secs_f64()),
@@ -279,7 +279,7 @@ fn standstill(trace: &Trace) -> Option<Broken> {
     // which part, since when, until when, and whether that can be told
     let mut stands: Vec<(Part, Duration, Duration, bool)> = Vec::new();
     trace.entries.iter().find_map(|Entry { at, seen }| match seen {
-        Seen::Parked(part, until) => {
+        Observation::Parked(part, until) => {
             // one that stands already goes on standing
             let before = stands.iter().filter(|(other, _, to, _)| other == part && to >= at);
             let before = before.map(|(_, from, _, told)| (*from, *told)).min();
@@ -288,13 +288,13 @@ fn standstill(trace: &Trace) -> Option<Broken> {
             None
         }
         // where nothing comes, nothing of it stands still
-        Seen::Came => {
+        Observation::Came => {
             for stood in stands.iter_mut().filter(|stood| stood.0 == Part::Telemetry && !stood.3) {
                 (stood.1, stood.3) = (*at, true);
             }
             None
         }
-        Seen::Left(left) if left.commands() || matches!(left, Left::Setpoint(_)) => {
+        Observation::Left(left) if left.commands() || matches!(left, Left::Setpoint(_)) => {
             // where no setpoints are made, who knows the mode may still command
             let stood = stands.iter().find(|(part, from, until, told)| {
                 *told
@@ -312,8 +312,8 @@ fn standstill(trace: &Trace) -> Option<Broken> {
 }
 
 fn range(trace: &Trace) -> Option<Broken> {
-    trace.entries.iter().find_map(|entry| match &entry.seen {
-        Seen::Left(Left::Wrong(how)) => broken(Law::Range, entry.at, how.clone()),
+    trace.entries.iter().find_map(|entry| match &entry.observation {
+        Observation::Left(Left::Wrong(how)) => broken(Law::Range, entry.at, how.clone()),
         _ => None,
     })
 }
@@ -321,33 +321,34 @@ fn range(trace: &Trace) -> Option<Broken> {
 /// What was heard, from whomever, said that the vehicle is in another mode than ours.
 fn was_told_off(trace: &Trace, given: &Given) -> bool {
     let mut ours = Ours::new(given);
-    trace.entries.iter().any(|entry| match &entry.seen {
-        Seen::Left(left) => {
+    trace.entries.iter().any(|entry| match &entry.observation {
+        Observation::Left(left) => {
             ours.left(left);
             false
         }
-        Seen::Heard(report, _) => !ours.admits(report.mode),
+        Observation::Heard(report, _) => !ours.admits(report.mode),
         _ => false,
     })
 }
 
 fn end(trace: &Trace, given: &Given) -> Option<Broken> {
-    let over = trace.entries.iter().rev().find_map(|entry| match &entry.seen {
-        Seen::Over(outcome) => Some((entry.at, outcome)),
+    let over = trace.entries.iter().rev().find_map(|entry| match &entry.observation {
+        Observation::Over(outcome) => Some((entry.at, outcome)),
         _ => None,
     });
-    let state = trace.entries.iter().rev().find_map(|entry| match &entry.seen {
-        Seen::Vehicle(state) => Some(*state),
+    let state = trace.entries.iter().rev().find_map(|entry| match &entry.observation {
+        Observation::Vehicle(state) => Some(*state),
         _ => None,
     })?;
     let Some((at, outcome)) = over else {
         return broken(Law::Time, trace.entries.last()?.at, "the program does not end");
     };
-    let then =
-        trace.entries.iter().rev().filter(|entry| entry.at <= at).find_map(|entry| match &entry.seen {
-            Seen::Vehicle(state) => Some(*state),
+    let then = trace.entries.iter().rev().filter(|entry| entry.at <= at).find_map(|entry| {
+        match &entry.observation {
+            Observation::Vehicle(state) => Some(*state),
             _ => None,
-        })?;
+        }
+    })?;
     let down = matches!(outcome.ending, Ending::Landed | Ending::NotFlown);
     if down && then.armed && !then.landed {
         return broken(Law::End, at, format!("{:?}, and it is in the air", outcome.ending));

@@ -52,7 +52,7 @@ pub enum Part {
 
 /// Something that was seen.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Seen {
+pub enum Observation {
     /// the vehicle is like this from now on
     Vehicle(Beheld),
     /// a sound frame of the vehicle came to the program's socket
@@ -79,7 +79,7 @@ pub enum Seen {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
     pub at: Duration,
-    pub seen: Seen,
+    pub seen: Observation,
 }
 
 /// All of a flight, in order.
@@ -89,19 +89,21 @@ pub struct Trace {
 }
 
 impl Trace {
-    pub fn add(&mut self, at: Duration, seen: Seen) {
+    pub fn add(&mut self, at: Duration, seen: Observation) {
         self.entries.push(Entry { at, seen });
     }
 
     /// What a person wants to see around an instant: no setpoints in a row, no frames without news.
     pub fn excerpt(&self, from: Duration, to: Duration) -> String {
         let mut lines: Vec<String> = Vec::new();
-        let mut last: Option<Seen> = None;
+        let mut last: Option<Observation> = None;
         for Entry { at, seen } in &self.entries {
             let news = match (seen, &last) {
-                (Seen::Came | Seen::Reached(_), _) | (Seen::Left(Left::Other(_)), _) => continue,
-                (Seen::Left(Left::Setpoint(_)), Some(Seen::Left(Left::Setpoint(_)))) => false,
-                (Seen::Heard(now, _), Some(Seen::Heard(before, _))) => now.mode != before.mode,
+                (Observation::Came | Observation::Reached(_), _) | (Observation::Left(Left::Other(_)), _) => {
+                    continue;
+                }
+                (Observation::Left(Left::Setpoint(_)), Some(Observation::Left(Left::Setpoint(_)))) => false,
+                (Observation::Heard(now, _), Some(Observation::Heard(before, _))) => now.mode != before.mode,
                 _ => true,
             };
             if news && (from..=to).contains(at) {
@@ -113,7 +115,7 @@ impl Trace {
     }
 }
 
-impl fmt::Display for Seen {
+impl fmt::Display for Observation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Vehicle(state) => write!(

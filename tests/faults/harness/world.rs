@@ -15,7 +15,7 @@ use super::forge::{self, Forger};
 use super::host::{Host, Wish};
 use super::lot::{Lot, Trouble, random};
 use super::network::{Packet, Way};
-use super::trace::{Seen, Trace};
+use super::trace::{Observation, Trace};
 use super::wire::Left;
 
 /// Between two looks at the clock.
@@ -146,7 +146,7 @@ impl World {
         let px4 = self.lot.kind == Firmware::PX4;
         for bytes in self.host.turn(now, &mut self.trace) {
             let left = Left::of(&self.seeds, px4, &bytes);
-            self.trace.add(now, Seen::Left(left));
+            self.trace.add(now, Observation::Left(left));
             if !self.is_cut {
                 self.up.give(now, Packet { bytes, said: Some(now) });
             }
@@ -171,7 +171,7 @@ impl World {
         }
         let beheld = self.vehicle.beheld();
         if self.beheld.replace(beheld) != Some(beheld) {
-            self.trace.add(now, Seen::Vehicle(beheld));
+            self.trace.add(now, Observation::Vehicle(beheld));
         }
     }
 
@@ -193,11 +193,11 @@ impl World {
         let now = self.now;
         match act {
             Act::Begin(trouble) => {
-                self.trace.add(now, Seen::Fault(format!("{trouble:?}")));
+                self.trace.add(now, Observation::Fault(format!("{trouble:?}")));
                 self.trouble(trouble);
             }
             Act::Pilot(mode) => {
-                self.trace.add(now, Seen::Fault(format!("the pilot chooses {mode:?}")));
+                self.trace.add(now, Observation::Fault(format!("the pilot chooses {mode:?}")));
                 self.vehicle.fault(Fault::PilotTakesOver(mode));
                 if !std::mem::replace(&mut self.taken, true) {
                     self.later(now + PILOT_LANDS, Act::Pilot(Mode::Land));
@@ -208,7 +208,7 @@ impl World {
                 for _ in 0..count {
                     let (what, bytes) = self.forger.make(&mut self.random);
                     if count < 30 {
-                        self.trace.add(now, Seen::Fault(format!("forged: {what}")));
+                        self.trace.add(now, Observation::Fault(format!("forged: {what}")));
                     }
                     self.inject(bytes);
                 }
@@ -244,7 +244,7 @@ impl World {
             Trouble::Stall { parts, pilot } => {
                 for (part, lasts_s) in parts {
                     let until = now + seconds(lasts_s);
-                    self.trace.add(now, Seen::Parked(part, until));
+                    self.trace.add(now, Observation::Parked(part, until));
                     self.host.park(part, until);
                 }
                 self.pilot_within(pilot);
@@ -279,7 +279,7 @@ impl World {
             Trouble::Station { heartbeat, lasts_s } => self.station(heartbeat, seconds(lasts_s)),
             Trouble::Reboot => self.vehicle.fault(Fault::Reboot),
             Trouble::Jump(by_m) => {
-                self.trace.add(now, Seen::Jumped(by_m[2]));
+                self.trace.add(now, Observation::Jumped(by_m[2]));
                 self.vehicle.fault(Fault::EstimatorJump(by_m));
             }
             Trouble::Battery(share) => self.vehicle.fault(Fault::Battery(share)),

@@ -12,8 +12,8 @@ use super::super::{AIR_DENSITY, dice};
 use super::flight::{Flown, Senses, fly};
 use super::inertial::Unit;
 use super::position::{Source, Trust};
-use super::seen::PLAIN;
 use super::streams::Streams;
+use super::visibility::PLAIN;
 use super::{spread, telemetry};
 
 /// What is concealed here.
@@ -85,8 +85,8 @@ impl RealCase {
             let case = Self::new(seed, draw, entries);
             match case.fly(0) {
                 Err(lost) => why = format!("{lost:?}"),
-                Ok(first) if entries.len() == 1 && first.seen.whole() < PLAIN => {
-                    why = format!("shows only {:.1}", first.seen.whole());
+                Ok(first) if entries.len() == 1 && first.visibility.whole() < PLAIN => {
+                    why = format!("shows only {:.1}", first.visibility.whole());
                 }
                 Ok(first) => match case.fly(1) {
                     Err(lost) => why = format!("hold-out: {lost:?}"),

@@ -16,7 +16,7 @@ use super::drawn_three;
 use super::estimator::Estimator;
 use super::inertial::{Inertial, Sample, Unit};
 use super::position::{Fix, Positions, Source, Trust};
-use super::seen::{Seen, Watch};
+use super::seen::{Visibility, Watch};
 
 /// What the vehicle measures and believes with.
 #[derive(Debug, Clone)]
@@ -60,7 +60,7 @@ pub struct Flown {
     pub fixes: Vec<Fix>,
     pub errors: Errors,
     /// what the concealed effects did
-    pub seen: Seen,
+    pub visibility: Visibility,
 }
 
 /// s on the ground's readings before the recording begins.
@@ -133,7 +133,7 @@ pub fn fly(
         ticks.push(Tick { truth, belief, sample });
     }
     let errors = errors(&ticks, &mind.estimator);
-    Ok(Flown { ticks, fixes: mind.fixes, errors, seen: watch.seen() })
+    Ok(Flown { ticks, fixes: mind.fixes, errors, visibility: watch.visibility() })
 }
 
 /// An estimator that has settled in hover, and its last beliefs.

@@ -10,9 +10,9 @@ pub mod inertial;
 pub mod low_pass;
 pub mod one_vehicle;
 pub mod position;
-pub mod seen;
 pub mod streams;
 pub mod telemetry;
+pub mod visibility;
 
 use nalgebra::Vector3;
 use rand::{Rng, RngExt};

@@ -3,7 +3,7 @@
 use mavid::diagnose::Explanation;
 
 /// What the search took, and what was left.
-pub fn show_search(explanation: &Explanation) {
+pub fn print_steps(explanation: &Explanation) {
     for step in &explanation.search.steps {
         println!(
             "    took {} {:?} e {:.0}",

@@ -4,7 +4,7 @@ use crate::study::InputFile;
 
 /// What the improvement is shown on.
 #[derive(Debug, Clone, PartialEq)]
-pub enum ShownOn {
+pub enum ValidationData {
     /// flights that were not used otherwise, by their files
     Flights(Vec<InputFile>),
     /// the end of the flight that was explained, held back from it
@@ -26,7 +26,7 @@ pub enum ShownOn {
     },
 }
 
-impl ShownOn {
+impl ValidationData {
     /// Words for a sentence.
     #[must_use]
     pub fn words(&self) -> &'static str {

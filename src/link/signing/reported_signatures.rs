@@ -9,7 +9,7 @@ use crate::link::event::LinkEvent;
 use crate::wire::{ComponentId, Frame, SystemId};
 
 /// Senders and reasons that are told; further ones are only counted, so that noise does not flood who listens.
-const TOLD: usize = 32;
+const MOST_REPORTED: usize = 32;
 
 /// What is told of a sender, apart from the figures in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -25,12 +25,12 @@ enum Topic {
 
 /// Remembers what was told.
 #[derive(Debug, Default)]
-pub(in crate::link) struct Told {
-    told: BTreeSet<(SystemId, ComponentId, Topic)>,
+pub(in crate::link) struct ReportedSignatures {
+    reported: BTreeSet<(SystemId, ComponentId, Topic)>,
     clock: bool,
 }
 
-impl Told {
+impl ReportedSignatures {
     /// What is to be told of a frame's signature, the first time that it is so.
     pub fn events(
         &mut self,
@@ -64,7 +64,7 @@ impl Told {
 
     fn is_new(&mut self, frame: &Frame<'_>, topic: Topic) -> bool {
         let header = frame.header();
-        self.told.len() < TOLD && self.told.insert((header.system, header.component, topic))
+        self.reported.len() < MOST_REPORTED && self.reported.insert((header.system, header.component, topic))
     }
 }
 

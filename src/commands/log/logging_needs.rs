@@ -11,7 +11,7 @@ use crate::commands::network;
 
 /// What a vehicle will log, and what an identification needs beyond.
 #[derive(Debug, Clone, Default)]
-pub struct Wanted {
+pub struct LoggingNeeds {
     /// what it will log, in sentences without their ends
     pub logs: Vec<String>,
     /// what is to be changed, in one line; empty: nothing
@@ -24,14 +24,14 @@ pub struct Wanted {
 ///
 /// # Errors
 /// It does not answer.
-pub fn wanted(link: &VehicleLinkArgs) -> Result<Wanted, CommandError> {
+pub fn logging_needs(link: &VehicleLinkArgs) -> Result<LoggingNeeds, CommandError> {
     network::block_on(async {
         let mut session = open(link).await?;
         let offer = session.offer().await?;
         let notes = state::notes(&session.known_as(&offer))?;
         let state = onboard::look(&mut session, &notes).await?;
         let names: Vec<&str> = state.plan.changes.iter().map(|change| change.parameter).collect();
-        Ok(Wanted {
+        Ok(LoggingNeeds {
             changes: changes_page(&state.plan.changes),
             restarts: onboard::needs_restart(&session, &names),
             logs: state.plan.logs,

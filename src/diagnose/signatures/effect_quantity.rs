@@ -6,22 +6,22 @@ use crate::vehicle::Vehicle;
 
 /// A quantity that one may want to know.
 #[derive(Debug, Clone, Copy)]
-pub struct Wanted {
+pub struct EffectQuantity {
     /// as in documents
     pub name: &'static str,
     /// the effect whose size it is
     pub signature: &'static Signature,
     /// size on ordinary vehicles, in the unit of the effect's first amount
     pub usual: fn(&Vehicle) -> f64,
-    /// the part of a recording that tells it
-    pub told_by: ToldBy,
+    /// the part of a recording that determines it
+    pub determined_by: DeterminedBy,
     /// what to fly for more of it
     pub fly: &'static str,
 }
 
-/// The part of a recording that tells a quantity.
+/// The part of a recording that determines a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ToldBy {
+pub enum DeterminedBy {
     /// torques, as the vehicle turns
     Torques,
     /// the mean of torques that act always
@@ -50,54 +50,54 @@ const EXPONENT: f64 = 1.5;
 const LONG_AND_CALM: &str = "30 s and more with climbs, in calm air";
 
 /// All of them, in the order of the page.
-pub static WANTED: &[Wanted] = &[
-    Wanted {
+pub static EFFECT_QUANTITIES: &[EffectQuantity] = &[
+    EffectQuantity {
         name: "thrust_curve",
         signature: &thrust_curve::SIGNATURE,
         usual: |vehicle| stated(&thrust_curve::SIGNATURE, vehicle),
-        told_by: ToldBy::Forces,
+        determined_by: DeterminedBy::Forces,
         fly: "climbs and descents, hard ones too",
     },
-    Wanted {
+    EffectQuantity {
         name: "motor_lag",
         signature: &motor_lag::SIGNATURE,
         usual: |_| LAG_S,
-        told_by: ToldBy::Torques,
+        determined_by: DeterminedBy::Torques,
         fly: "quick turns about all axes",
     },
-    Wanted {
+    EffectQuantity {
         name: "drag",
         signature: &linear_drag::SIGNATURE,
         usual: |vehicle| stated(&linear_drag::SIGNATURE, vehicle),
-        told_by: ToldBy::ForcesOverVelocity,
+        determined_by: DeterminedBy::ForcesOverVelocity,
         fly: "legs there and back at 5 m/s and more",
     },
-    Wanted {
+    EffectQuantity {
         name: "wind",
         signature: &steady_wind::SIGNATURE,
         usual: |_| BREEZE_M_S,
-        told_by: ToldBy::ForcesOverVelocity,
+        determined_by: DeterminedBy::ForcesOverVelocity,
         fly: "legs in several directions at 3 m/s and more",
     },
-    Wanted {
+    EffectQuantity {
         name: "centre_of_mass",
         signature: &com_offset::SIGNATURE,
         usual: offset_m,
-        told_by: ToldBy::MeanTorques,
+        determined_by: DeterminedBy::MeanTorques,
         fly: LONG_AND_CALM,
     },
-    Wanted {
+    EffectQuantity {
         name: "rotor_efficiency",
         signature: &weak_rotor::SIGNATURE,
         usual: |_| ROTOR,
-        told_by: ToldBy::MeanTorques,
+        determined_by: DeterminedBy::MeanTorques,
         fly: LONG_AND_CALM,
     },
-    Wanted {
+    EffectQuantity {
         name: "voltage_sag",
         signature: &battery_sag::SIGNATURE,
         usual: |_| EXPONENT,
-        told_by: ToldBy::ForcesOverVoltage,
+        determined_by: DeterminedBy::ForcesOverVoltage,
         fly: "until the battery has lost a tenth of its voltage",
     },
 ];
@@ -122,9 +122,9 @@ mod tests {
     fn every_quantity_has_a_usual_size_on_any_vehicle() {
         for seed in 0..20 {
             let vehicle = random_vehicle(seed).nominal;
-            for wanted in WANTED {
-                let usual = (wanted.usual)(&vehicle);
-                assert!(usual > 0.0 && usual.is_finite(), "{}: {usual}", wanted.name);
+            for quantity in EFFECT_QUANTITIES {
+                let usual = (quantity.usual)(&vehicle);
+                assert!(usual > 0.0 && usual.is_finite(), "{}: {usual}", quantity.name);
             }
         }
     }

@@ -9,11 +9,11 @@ use super::super::vehicle::Craft;
 /// Of each axis, forces x, y, z and torques x, y, z: root mean square over what a crude analyst's noise leaves, in
 /// standard deviations, once mass and inertia are fitted.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Seen {
+pub struct Visibility {
     pub axes: [f64; 6],
 }
 
-impl Seen {
+impl Visibility {
     /// All axes together.
     pub fn whole(&self) -> f64 {
         self.axes.iter().map(|axis| axis * axis).sum::<f64>().sqrt()
@@ -100,9 +100,9 @@ impl<'a> Watch<'a> {
     }
 
     /// What was seen.
-    pub fn seen(&self) -> Seen {
+    pub fn visibility(&self) -> Visibility {
         let seconds = self.ticks as f64 * TICK;
-        let mut seen = Seen::default();
+        let mut seen = Visibility::default();
         for ((axis, sums), noise) in seen.axes.iter_mut().zip(&self.sums).zip(NOISE) {
             let [count, yy, xx, xy] = *sums;
             let scale = if xx > 1e-9 { xy * xy / xx } else { 0.0 };
