@@ -8,5 +8,6 @@ mod require;
 mod command_line;
 mod documents;
 mod examples;
+mod knowledge;
 mod licences;
 mod requirements;
