@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test ends where it fails")]
 
+#[path = "../support/python.rs"]
+mod python;
 #[path = "../support/require.rs"]
 mod require;
 
@@ -10,4 +12,5 @@ mod documents;
 mod examples;
 mod knowledge;
 mod licences;
+mod python_module;
 mod requirements;
