@@ -33,9 +33,14 @@ const QUATERNIONS: &[[Part; 4]] = &[
     [Part::Number(1), Part::Number(2), Part::Number(3), Part::Number(4)],
 ];
 
+/// What columns of one quantity have in common: kind, whether it is a setpoint, words.
+type Key = (Kind, bool, String);
+/// Columns of one quantity by their parts, with their places in the header.
+type Family = BTreeMap<Part, (usize, Said)>;
+
 /// All whole groups of a header in the order of their first columns, and the columns that are in none.
 pub(super) fn groups(header: &[String]) -> (Vec<Group>, Vec<usize>) {
-    let mut families: BTreeMap<(Kind, bool, String), BTreeMap<Part, (usize, Said)>> = BTreeMap::new();
+    let mut families: BTreeMap<Key, Family> = BTreeMap::new();
     for (index, name) in header.iter().enumerate() {
         if let Some(said) = said(name) {
             let family = families.entry((said.kind, said.is_setpoint, said.group.clone())).or_default();
@@ -50,10 +55,7 @@ pub(super) fn groups(header: &[String]) -> (Vec<Group>, Vec<usize>) {
     (groups, unused)
 }
 
-fn group(
-    (kind, is_setpoint, _): (Kind, bool, String),
-    family: &BTreeMap<Part, (usize, Said)>,
-) -> Option<Group> {
+fn group((kind, is_setpoint, _): Key, family: &Family) -> Option<Group> {
     let has = |parts: &[Part]| parts.iter().all(|part| family.contains_key(part));
     let first_of = |orders: &[&[Part]]| orders.iter().find(|parts| has(parts)).map(|parts| parts.to_vec());
     let parts = match kind {

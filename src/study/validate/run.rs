@@ -37,7 +37,7 @@ pub fn validate(request: &ValidateRequest, progress: &dyn Progress) -> Result<Va
         progress.step();
         compared
     };
-    let one = |log| ready(log, &compared);
+    let one = |log| ready(log, compared);
     let done: Vec<_> = logs.into_par_iter().map(one).collect();
     let mut flights = Vec::new();
     for log in done {
