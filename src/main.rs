@@ -4,15 +4,14 @@
 mod cli;
 mod commands;
 
-use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = match cli::Cli::try_parse() {
+    let cli = match cli::Cli::of(std::env::args_os()) {
         Ok(cli) => cli,
         Err(usage) => return commands::usage(usage),
     };
-    let stderr = match commands::install(&cli.verbosity, cli.verb.is_live()) {
+    let stderr = match commands::install(&cli.verbosity, cli.color, cli.verb.is_live()) {
         Ok(stderr) => stderr,
         Err(error) => return error.report().into(),
     };

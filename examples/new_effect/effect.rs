@@ -3,7 +3,7 @@
 use mavid::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 use nalgebra::Vector3;
 
-/// `F = k (e_z x v_air)` at the centre of mass, body.
+/// A force across the airspeed.
 #[derive(Debug, Clone, Copy)]
 pub struct SideForce;
 
@@ -17,6 +17,10 @@ impl Effect for SideForce {
 
     fn sentence(&self) -> &'static str {
         "The air pushes the vehicle sideways: a force across the airspeed, in proportion to it."
+    }
+
+    fn equation(&self) -> &'static str {
+        "`F = k (e_z x v_air)` at the centre of mass, body."
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -21,8 +21,10 @@ pub struct FleetArgs {
 #[derive(Debug, Subcommand)]
 pub enum FleetVerb {
     /// Say which vehicles of a fleet changed, when, and which differ from the others of their type
+    #[command(after_help = "Example:\n  mavid fleet report tables")]
     Report(FleetReportArgs),
     /// Print the tables with their columns, units and meanings
+    #[command(after_help = "Example:\n  mavid fleet schema")]
     Schema,
 }
 

@@ -3,9 +3,12 @@
 mod address;
 mod compare;
 mod convert;
+mod csv_map;
+mod effects;
 mod fleet;
 mod flight;
 mod given;
+mod installed;
 mod live;
 mod model;
 mod onboard;
@@ -17,9 +20,12 @@ mod verbosity;
 
 pub use compare::CompareArgs;
 pub use convert::{ConvertArgs, ConvertForm};
+pub use csv_map::CsvMapArgs;
+pub use effects::EffectsArgs;
 pub use fleet::{FleetArgs, FleetLogArgs, FleetReportArgs, FleetRunArgs, FleetVerb, FormName};
 pub use flight::{CheckName, FlyArgs, OriginName};
 pub use given::ShapeArgs;
+pub use installed::{CompletionsArgs, ManArgs};
 pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 pub use model::{ExportArgs, ExportFormat, InitArgs, LoadArgs, SimulateArgs, VehicleArgs, VehicleVerb};
 pub use onboard::{LogArgs, LogFetchArgs, LogListArgs, LogPrepareArgs, LogVerb, VehicleLinkArgs};

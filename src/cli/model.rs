@@ -23,8 +23,14 @@ pub struct VehicleArgs {
 pub enum VehicleVerb {
     /// Write a first vehicle file from a log: rotors and thrust curve from the autopilot's parameters, thrust from the
     /// flight, the rest from rules of thumb, marked as guesses
+    #[command(
+        after_help = "Examples:\n  mavid vehicle init --from flight.ulg --mass 2.0 --out vehicle.toml\n  mavid vehicle init --from udpin:0.0.0.0:14550 --mass 2.0 --size 0.5 --out vehicle.toml"
+    )]
     Init(InitArgs),
     /// Set the parameters of a file on a vehicle: shows old and new values, asks, keeps what was found, reads back
+    #[command(
+        after_help = "Examples:\n  mavid vehicle load --connect udpin:0.0.0.0:14550 vehicle.params\n  mavid vehicle load --connect udpin:0.0.0.0:14550 --undo"
+    )]
     Load(LoadArgs),
 }
 

@@ -17,10 +17,15 @@ pub struct LogArgs {
 #[derive(Debug, Clone, Subcommand)]
 pub enum LogVerb {
     /// List the logs that a vehicle keeps
+    #[command(after_help = "Example:\n  mavid log list --connect udpin:0.0.0.0:14550")]
     List(LogListArgs),
     /// Fetch a log from a vehicle; nothing on it is erased
+    #[command(after_help = "Example:\n  mavid log fetch --connect udpin:0.0.0.0:14550 --last --out logs")]
     Fetch(LogFetchArgs),
     /// Say what a vehicle will log in flight, set what an identification needs, or put it back
+    #[command(
+        after_help = "Examples:\n  mavid log prepare --connect udpin:0.0.0.0:14550\n  mavid log prepare --connect udpin:0.0.0.0:14550 --restore"
+    )]
     Prepare(LogPrepareArgs),
 }
 

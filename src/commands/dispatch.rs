@@ -2,8 +2,8 @@
 
 use super::standard_error::StandardError;
 use super::{
-    CommandError, Outcome, compare, convert, demo, explain, export, fleet, fly, identify, inspect, log, plan,
-    prove, record, redact, replay, simulate, sitl, validate, vehicle,
+    CommandError, Outcome, compare, convert, csv_map, demo, effects, explain, export, fleet, fly, identify,
+    inspect, installed, log, plan, prove, record, redact, replay, simulate, sitl, validate, vehicle,
 };
 use crate::cli::{Cli, Verb};
 
@@ -29,7 +29,11 @@ pub fn run(cli: &Cli, stderr: &StandardError) -> Result<Outcome, CommandError> {
         Verb::Fleet(args) => fleet::run(cli.json, stderr, args),
         Verb::FleetLog(args) => fleet::run_log(args),
         Verb::Export(args) => export::run(cli.json, args),
-        Verb::Prove(args) => prove::run(cli.json, args),
+        Verb::Prove(args) => prove::run(cli.json, stderr, args),
         Verb::Redact(args) => redact::run(cli.json, args),
+        Verb::Effects(args) => effects::run(cli.json, args),
+        Verb::CsvMap(args) => csv_map::run(cli.json, args),
+        Verb::Completions(args) => installed::completions(args),
+        Verb::Man(args) => installed::man(cli.json, args),
     }
 }

@@ -27,7 +27,10 @@ pub fn make(stderr: &StandardError, args: &PlanArgs) -> Result<PlanStudy, Comman
     let (read, written): (Vec<_>, Vec<_>) =
         (args.check.iter().chain(&args.vehicle).chain(&args.limits).collect(), args.out.iter().collect());
     output::refuse_overwriting(&read, &written)?;
-    let study = plan_flight(&request(args)?, &Steps::new(stderr, "planning {bar:30} {pos}/{len} descents"))?;
+    let study = plan_flight(
+        &request(args)?,
+        &Steps::new(stderr, "planning {bar:30} {pos} of {len} descents, {eta} left"),
+    )?;
     if let Some(path) = &args.out {
         let text = trajectory_to_toml(&study.stored())?;
         output::file(path, &text)?;

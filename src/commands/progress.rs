@@ -27,14 +27,19 @@ pub fn bytes_bar(of: u64) -> ProgressBar {
     styled(ProgressBar::new(of), template)
 }
 
-/// A line that says what is done now.
+/// A line that says what is done now and for how long, or with counted steps how long it will take.
 #[derive(Debug)]
 pub struct Spinner(ProgressBar);
+
+/// A stage whose steps are not counted.
+const STAGE: &str = "{spinner} {msg}, {elapsed}";
+/// A stage of counted steps.
+const COUNTED: &str = "{spinner} {msg} {bar:20} {pos} of {len}, {eta} left";
 
 impl Spinner {
     /// Empty until the first stage.
     pub fn new(stderr: &StandardError) -> Self {
-        let bar = stderr.bar(styled(ProgressBar::new_spinner(), "{spinner} {msg}"));
+        let bar = stderr.bar(styled(ProgressBar::new_spinner(), STAGE));
         if stderr.can_draw() {
             bar.enable_steady_tick(TICK);
         }
@@ -42,9 +47,29 @@ impl Spinner {
     }
 }
 
+impl Spinner {
+    fn restyle(&self, template: &str) {
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            self.0.set_style(style);
+        }
+    }
+}
+
 impl Progress for Spinner {
     fn stage(&self, stage: Stage) {
+        self.restyle(STAGE);
+        self.0.reset_elapsed();
         self.0.set_message(stage.to_string());
+    }
+
+    fn steps(&self, count: u64) {
+        self.0.set_length(count);
+        self.0.reset();
+        self.restyle(COUNTED);
+    }
+
+    fn step(&self) {
+        self.0.inc(1);
     }
 
     fn note(&self, note: &Note) {

@@ -4,16 +4,18 @@ use std::path::PathBuf;
 
 use mavid::files::write_whole;
 use mavid::report::proof_text;
-use mavid::study::{CaseVerdict, case_folders, prove, seal, verdict};
+use mavid::study::{CaseVerdict, Progress, case_folders, prove, seal, verdict};
 use mavid::text;
 
+use super::progress::Steps;
+use super::standard_error::StandardError;
 use super::{CommandError, Outcome, output};
 use crate::cli::ProveArgs;
 
 /// Runs the verb.
-pub fn run(json: bool, args: &ProveArgs) -> Result<Outcome, CommandError> {
+pub fn run(json: bool, stderr: &StandardError, args: &ProveArgs) -> Result<Outcome, CommandError> {
     check(args)?;
-    let verdicts = verdicts(&case_folders(&args.cases)?);
+    let verdicts = verdicts(stderr, &case_folders(&args.cases)?);
     let sealed_sha256 = sealed(args, &verdicts)?;
     output::message(&format!("{} verdicts sealed, SHA-256 {sealed_sha256}", verdicts.len()));
     // the answers are read only now
@@ -40,13 +42,16 @@ fn check(args: &ProveArgs) -> Result<(), CommandError> {
 }
 
 /// One after another: each uses all cores, and its time is reported.
-fn verdicts(folders: &[PathBuf]) -> Vec<CaseVerdict> {
+fn verdicts(stderr: &StandardError, folders: &[PathBuf]) -> Vec<CaseVerdict> {
+    let progress = Steps::new(stderr, "{bar:30} {pos} of {len} cases, {eta} left");
+    progress.steps(folders.len() as u64);
     let mut verdicts = Vec::with_capacity(folders.len());
     for folder in folders {
         let verdict = verdict(folder);
         let failed = verdict.error.as_ref().map_or_else(String::new, |error| format!(": {error}"));
         output::message(&format!("{}: {}{failed}", verdict.case, verdict.verdict));
         verdicts.push(verdict);
+        progress.step();
     }
     verdicts
 }

@@ -18,7 +18,7 @@ use crate::cli::SitlArgs;
 /// The vehicle that flies where none is given.
 pub const DEFAULT_VEHICLE: &str = include_str!("../../configs/x500.toml");
 /// What messages call it.
-const EMBEDDED: &str = "the vehicle within the program";
+pub const EMBEDDED: &str = "the vehicle within the program";
 /// So far behind the pace a ground station takes the vehicle for one whose link is bad.
 const BEHIND: Duration = Duration::from_millis(500);
 /// The port on which PX4 takes its peer for a companion computer.

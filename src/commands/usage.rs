@@ -2,7 +2,6 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use mavid::text;
 
 use crate::cli::Cli;
@@ -10,8 +9,8 @@ use crate::cli::Cli;
 /// Help and version on standard output with status 0, a mistake on standard error with status 2.
 pub fn usage(usage: clap::Error) -> ExitCode {
     // an argument may command the terminal as any other text: told is what is wrong with one that does not
-    let shown = std::env::args_os().map(|argument| text::path(&argument));
-    let usage = Cli::try_parse_from(shown).err().unwrap_or(usage);
+    let shown = std::env::args_os().map(|argument| text::path(&argument).into());
+    let usage = Cli::of(shown).err().unwrap_or(usage);
     let printed = usage.print();
     match (usage.use_stderr(), printed) {
         (true, _) => ExitCode::from(2),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::form::MOST_FAULTS;
+use crate::log::csv::CsvError;
 use crate::text;
 
 /// Why a configuration file was refused.
@@ -16,6 +17,9 @@ pub enum ConfigError {
         /// what the system said
         source: std::io::Error,
     },
+    /// a table whose columns cannot be read
+    #[error(transparent)]
+    Table(#[from] CsvError),
     /// bytes that are no text
     #[error("{}: expected {expected}, got a file that is not text", text::path(path))]
     NoText {

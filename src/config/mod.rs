@@ -2,6 +2,7 @@
 
 mod check;
 mod csv_mapping;
+mod csv_proposal;
 mod effect_tables;
 mod error;
 mod faults;
@@ -16,6 +17,7 @@ mod vehicle_file;
 mod vehicle_writer;
 
 pub use csv_mapping::{load_csv_mapping, parse_csv_mapping};
+pub use csv_proposal::{CsvProposal, propose_csv_mapping};
 pub use effect_tables::{parse_effect_tables, read_effect_tables};
 pub use error::ConfigError;
 pub use trajectory::{

@@ -3,6 +3,7 @@
 use super::channels::Nuisance;
 use super::picture::Picture;
 use super::recorded::{Need, Recorded};
+use super::usual_size::UsualSize;
 use super::wording::Words;
 use crate::physics::Effect;
 use crate::vehicle::Vehicle;
@@ -27,6 +28,8 @@ pub struct Signature {
     pub refinement: Refinement,
     /// conditions of its name
     pub naming: Naming,
+    /// an example of its size on ordinary vehicles, by the parameters' names. Empty: as [`Naming::usual`] has each parameter
+    pub sizes: &'static [(&'static str, UsualSize)],
     /// how it acts, and its relations to other effects
     pub role: Role,
     /// how it is fitted by `--with`
@@ -50,6 +53,7 @@ impl Signature {
             forms: |_| Vec::new(),
             refinement: Refinement::NONE,
             naming: Naming::PLAIN,
+            sizes: &[],
             role: Role::NONE,
             joint: Joint::PLAIN,
             picture: Picture::TIME,
@@ -61,6 +65,16 @@ impl Signature {
     #[must_use]
     pub fn id(&self) -> &'static str {
         self.effect.id()
+    }
+
+    /// Name and value of each parameter at an ordinary size on this vehicle; `None` where no size is stated.
+    #[must_use]
+    pub fn usual_values(&self, vehicle: &Vehicle) -> Option<Vec<(&'static str, f64)>> {
+        if self.sizes.is_empty() {
+            let usual = |name| Some((name, (self.naming.usual)(name, vehicle)?));
+            return self.effect.parameters().iter().map(|parameter| usual(parameter.name)).collect();
+        }
+        Some(self.sizes.iter().map(|(name, size)| (*name, size.on(vehicle))).collect())
     }
 
     /// The effect at these values, of which `free` are estimated.

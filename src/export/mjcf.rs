@@ -65,13 +65,14 @@ fn thrusts(source: &mut Source<'_>, sites: &mut String, actuators: &mut String) 
         );
     }
     source.note("controls are thrusts in newtons: the law from command to thrust is the autopilot's side");
-    for (number, rotor) in source.vehicle.rotors.iter().enumerate() {
+    let factors = source.rotor_factors();
+    for (number, (rotor, factor)) in source.vehicle.rotors.iter().zip(factors).enumerate() {
         let p = rotor.position_m;
-        let torque = rotor.spin.yaw_sign() * source.vehicle.propulsion.torque_per_thrust_m;
+        let torque = factor * rotor.spin.yaw_sign() * source.vehicle.propulsion.torque_per_thrust_m;
         let _ = writeln!(sites, "      <site name=\"rotor_{number}\" pos=\"{} {} {}\"/>", p.x, p.y, p.z);
         let _ = writeln!(
             actuators,
-            "    <general name=\"rotor_{number}\" site=\"rotor_{number}\" gear=\"0 0 1 0 0 {torque}\" ctrllimited=\"true\" ctrlrange=\"0 {thrust_max_n}\" {dynamics}/>"
+            "    <general name=\"rotor_{number}\" site=\"rotor_{number}\" gear=\"0 0 {factor} 0 0 {torque}\" ctrllimited=\"true\" ctrlrange=\"0 {thrust_max_n}\" {dynamics}/>"
         );
     }
 }

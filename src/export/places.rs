@@ -15,6 +15,7 @@ pub static PLACES: &[(&str, &[Format])] = &[
     ("inflow", &[Px4Sih, ArdupilotSitl, Mjcf, Rotorpy]),
     ("translational_lift", &[Rotorpy]),
     ("steady_wind", &[Sdf, Rotorpy]),
+    ("weak_rotor", &[Sdf, Mjcf]),
 ];
 
 /// The simulators that have a place for an effect.

@@ -33,9 +33,11 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     }
     let motor = Motor { coefficient, speed_max, lags_s, drag: across / (count * hover) };
     let (mut links, mut plugins) = (base_link(&mut source), String::new());
-    for (number, rotor) in source.vehicle.rotors.iter().enumerate() {
+    let factors = source.rotor_factors();
+    for (number, (rotor, factor)) in source.vehicle.rotors.iter().zip(factors).enumerate() {
         links.push_str(&rotor_link(number, rotor));
-        plugins.push_str(&motor.plugin(number, rotor, source.vehicle.propulsion.torque_per_thrust_m));
+        let own = Motor { coefficient: coefficient * factor, ..motor };
+        plugins.push_str(&own.plugin(number, rotor, source.vehicle.propulsion.torque_per_thrust_m));
     }
     source.note(format!("the rotors' links weigh {ROTOR_KG} kg each, taken off the body; collision and visual shapes are for you to add"));
     let name = markup(&source.vehicle.name);

@@ -87,6 +87,24 @@ impl<'a> Source<'a> {
         self.vehicle.rotors.iter().map(|rotor| rotor.position_m - center).collect()
     }
 
+    /// Thrust and torque of each rotor over those of an ordinary one, by the rotors that were found weak.
+    pub(super) fn rotor_factors(&mut self) -> Vec<f64> {
+        const ID: &str = "weak_rotor";
+        self.taken.push(ID);
+        let mut factors = vec![1.0; self.vehicle.rotors.len()];
+        for active in self.effects.iter().filter(|active| active.effect().id() == ID) {
+            let value = |name: &str| {
+                let mut named = active.effect().parameters().iter().zip(active.parameters());
+                named.find(|(parameter, _)| parameter.name == name).map(|(_, value)| *value)
+            };
+            let (Some(rotor), Some(factor)) = (value("rotor"), value("factor")) else { continue };
+            let weak =
+                factors.iter_mut().enumerate().filter(|(index, _)| (*index as f64 - rotor).abs() < 0.5);
+            weak.for_each(|(_, of)| *of *= factor);
+        }
+        factors
+    }
+
     /// N, one rotor at full command.
     pub(super) fn thrust_max_n(&self) -> f64 {
         self.vehicle.propulsion.thrust_from_command_n(1.0)

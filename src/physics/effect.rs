@@ -188,6 +188,9 @@ pub trait Effect: Debug + Sync {
     /// what a person reads
     fn sentence(&self) -> &'static str;
 
+    /// equation and source, in Markdown
+    fn equation(&self) -> &'static str;
+
     /// name, unit, bounds
     fn parameters(&self) -> &'static [Parameter];
 

@@ -10,6 +10,7 @@ mod beyond;
 mod capacity;
 mod effect;
 pub mod effects;
+mod equation;
 mod error;
 mod euler;
 mod input;

@@ -4,6 +4,7 @@
 
 mod chart;
 mod comparison;
+mod effects;
 mod explanation;
 mod fleet;
 mod html;
@@ -23,6 +24,7 @@ mod vehicle_drawing;
 
 pub use chart::{Band, Bars, Line, Panel, Strip, Stroke, svg};
 pub use comparison::{ComparisonDocument, comparison_html, comparison_text};
+pub use effects::{effect_text, effects_text};
 pub use explanation::{
     ExplanationDocument, explained_model, explanation_answer, explanation_html, explanation_markdown,
     explanation_text, next_flight_words,

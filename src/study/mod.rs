@@ -17,6 +17,7 @@ mod flight;
 mod flights;
 mod identify;
 mod input;
+mod known_effect;
 mod one_vehicle;
 mod plan;
 mod progress;
@@ -46,6 +47,9 @@ pub use identify::{
     COMPONENTS, IdentifyRequest, IdentifyStudy, Misfit, RotorsAndMotion, WithEffects, identify,
 };
 pub use input::InputFile;
+pub use known_effect::{
+    KnownConfusable, KnownEffect, KnownParameter, ParameterKind, UsualOfClass, known_effects,
+};
 pub use plan::{Circle, FlightExtremes, PlanStudy, PlannedSeries, PlanningRequest, plan_flight};
 pub use progress::{Progress, Silent, Stage};
 pub use prove::{

@@ -207,7 +207,7 @@ fn nothing_missing_changes_nothing_and_no_flight_is_refused() {
     assert!(matches!(refused, Err(HoldoutError::TooShort { .. })));
     let refused = on_holdout(Explained::of(&found), &[], &vehicles.nominal, &settings);
     assert!(matches!(refused, Err(HoldoutError::NoFlight)));
-    let next = design(&found, &[flight], &vehicles.nominal, &NextSettings::default());
+    let next = design(&found, &[flight], &vehicles.nominal, &NextSettings::default(), &|| {});
     assert!(matches!(next, Err(NextError::NothingToTell)));
 }
 
@@ -318,7 +318,7 @@ fn promise_is_kept(
     let vehicles = pair();
     let (found, flight) = explained(&vehicles, concealed());
     let settings = NextSettings { starts: 2, moves: 40, ..NextSettings::default() };
-    let next = design(&found, std::slice::from_ref(&flight), &vehicles.nominal, &settings).unwrap();
+    let next = design(&found, std::slice::from_ref(&flight), &vehicles.nominal, &settings, &|| {}).unwrap();
     assert!(next.limits_are_flown && next.sentence().contains("sigma"));
     let promised = *next.pairs.iter().find(|pair| pair.named == named).unwrap();
     let both = (&vehicles.truth, &vehicles.nominal);
@@ -372,7 +372,8 @@ fn what_no_flight_tells_apart_is_said() {
     let (found, flight) = explained(&vehicles, vec![effect("inflow", &[0.2])]);
     assert_eq!(found.named[0].confusable_with[0].id, "linear_drag");
     let settings = NextSettings { starts: 1, moves: 1, ..NextSettings::default() };
-    let Err(NextError::Inseparable(pairs)) = design(&found, &[flight], &vehicles.nominal, &settings) else {
+    let Err(NextError::Inseparable(pairs)) = design(&found, &[flight], &vehicles.nominal, &settings, &|| {})
+    else {
         panic!("a flight was designed");
     };
     assert!(

@@ -132,6 +132,7 @@ impl Reader {
                 }
                 other => {
                     self.modules[at].items.extend(name_of(other));
+                    self.modules[at].items.extend(struct_in(other));
                     let mut paths = Paths(Vec::new());
                     paths.visit_item(other);
                     self.modules[at].paths.append(&mut paths.0);
@@ -171,6 +172,14 @@ fn name_of(item: &syn::Item) -> Option<String> {
         syn::Item::Macro(item) => item.ident.as_ref()?.to_string(),
         _ => return None,
     })
+}
+
+/// The structure that a macro defines as it was written.
+fn struct_in(item: &syn::Item) -> Option<String> {
+    let syn::Item::Macro(item) = item else { return None };
+    let mut tokens = item.mac.tokens.clone().into_iter();
+    tokens.find(|token| token.to_string() == "struct")?;
+    tokens.next().map(|name| name.to_string())
 }
 
 fn flatten(tree: &syn::UseTree, before: &mut Vec<String>, is_exported: bool, into: &mut Vec<Use>) {

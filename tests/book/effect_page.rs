@@ -1,11 +1,11 @@
 //! The page of one effect.
 
 use super::blocks::{listed, paragraph, table};
-use super::equation::equation;
 use super::measured::{EffectRun, Measured};
-use super::ordinary::{Size, ordinary};
+use super::ordinary::ordinary;
 use super::overview::title;
 use super::{MEASURED, WRITE};
+use mavid::diagnose::UsualSize;
 use mavid::diagnose::signatures::signature_of;
 use mavid::export::{Format, places};
 use mavid::physics::{Airframe, Effect, Parameter, REFERENCE_SIZE};
@@ -23,7 +23,7 @@ pub fn page(effect: &dyn Effect, measured: &Measured) -> String {
         parts.push(format!("![Residual force or torque with {id} concealed]({id}.svg)"));
         parts.push(paragraph(&format!("*{}*", caption(effect))));
     }
-    parts.extend(["## Equation".to_owned(), equation(id)]);
+    parts.extend(["## Equation".to_owned(), equation(effect)]);
     parts.extend(["## Parameters".to_owned(), parameters(effect), bounds_text(effect)]);
     parts.extend(["## What a flight needs".to_owned(), needs(effect)]);
     parts.extend(["## Usual size and accuracy".to_owned(), accuracy(effect, measured)]);
@@ -42,22 +42,33 @@ fn caption(effect: &dyn Effect) -> String {
 
 /// `dx` = 0.3 N/(m/s) per kg, ...: the sizes that are concealed.
 pub fn usual(effect: &dyn Effect) -> String {
-    let Some(entry) = ordinary(effect.id()) else { return String::new() };
+    let Some(signature) = signature_of(effect.id()) else { return String::new() };
     let all = || effect.parameters().iter().chain(effect.finer_parameters());
     let unit =
         |name: &str| all().find(|parameter| parameter.name == name).map_or("-", |parameter| parameter.unit);
-    let value = |(name, size): &(&str, Size)| {
+    if signature.sizes.is_empty() {
+        let names: Vec<_> =
+            effect.parameters().iter().map(|parameter| format!("`{}`", parameter.name)).collect();
+        return format!("{} of usual size", listed(&names));
+    }
+    let value = |(name, size): &(&str, UsualSize)| {
         let (number, by) = match size {
-            Size::Usual(..) => return format!("`{name}` of usual size"),
-            Size::Of(value) => (*value, ""),
-            Size::PerMass(per) => (*per, " per kg"),
-            Size::PerInertia(per) => (*per, " per kg m^2"),
+            UsualSize::Of(value) => (*value, ""),
+            UsualSize::PerMass(per) => (*per, " per kg"),
+            UsualSize::PerInertia(per) => (*per, " per kg m^2"),
         };
         let unit = if unit(name) == "-" { String::new() } else { format!(" {}", unit(name)) };
         format!("`{name}` = {}{unit}{by}", compact(number))
     };
-    let of_size = entry.sizes.iter().filter(|(_, size)| !matches!(size, Size::Of(value) if *value == 0.0));
+    let of_size = signature.sizes.iter().filter(|(_, size)| *size != UsualSize::Of(0.0));
     listed(&of_size.map(value).collect::<Vec<_>>())
+}
+
+/// The paragraphs of an equation, broken as the book breaks lines.
+fn equation(effect: &dyn Effect) -> String {
+    let lines: Vec<&str> = effect.equation().lines().map(str::trim).collect();
+    let paragraphs = lines.split(|line| line.is_empty()).filter(|lines| !lines.is_empty());
+    paragraphs.map(|lines| paragraph(&lines.join(" "))).collect::<Vec<_>>().join("\n\n")
 }
 
 fn parameters(effect: &dyn Effect) -> String {

@@ -7,7 +7,6 @@
 
 mod blocks;
 mod effect_page;
-mod equation;
 mod figures;
 #[path = "../../benches/support/measured.rs"]
 mod measured;

@@ -73,6 +73,24 @@ fn everything_that_matters_is_on_the_screen() {
 }
 
 #[test]
+fn a_tall_screen_has_an_artificial_horizon_the_path_and_the_share_of_the_limit() {
+    let mut model = model();
+    for step in 0..60 {
+        let north_m = 0.1 * f64::from(step);
+        let position_m = [north_m, 0.5 * north_m, 1.5];
+        // nose up: a positive pitch is nose down
+        model.moves(Some(Attitude { roll_deg: 20.0, pitch_deg: -10.0, position_m, ..Attitude::default() }));
+    }
+    let screen = drawn(&model, 100, 40);
+    for wanted in ["Horizon", "▒", "Path, north up", "●", "0.49 of 1.0 m ████░░░░"] {
+        assert!(screen.contains(wanted), "no `{wanted}` in\n{screen}");
+    }
+    // a small screen keeps what matters more
+    let small = drawn(&model, 80, 24);
+    assert!(!small.contains("Horizon") && small.contains("h hold"), "{small}");
+}
+
+#[test]
 fn a_word_that_is_being_typed_replaces_the_help() {
     let mut model = model();
     model.typed = Some("ki".into());
@@ -95,8 +113,11 @@ fn memory_is_bounded() {
     for step in 0..100_000_u32 {
         model.event(Level::Ok, "again");
         model.track(f64::from(step));
+        let position_m = [f64::from(step), 0.0, 1.0];
+        model.moves(Some(Attitude { position_m, ..Attitude::default() }));
     }
     assert!(model.events.len() <= 200);
     assert_eq!(model.event_count, 100_000);
+    assert!(model.path_m.len() <= 600);
     assert_eq!(model.tracking.history_m.values().len(), mavid::fly::view::HISTORY);
 }

@@ -181,6 +181,37 @@ fn gazebo_and_mujoco_are_well_formed_and_hold_the_values() {
 }
 
 #[test]
+fn a_weak_rotor_is_weak_in_gazebo_and_mujoco_and_left_out_elsewhere() {
+    let vehicle = vehicle();
+    let effects = [effect("weak_rotor", &[2.0, 0.9])];
+    let coefficient = vehicle.propulsion.thrust_coefficient.unwrap();
+    let sdf = export(&vehicle, &effects, Format::Sdf).unwrap();
+    let constants: Vec<f64> = sdf
+        .text
+        .split("<motorConstant>")
+        .skip(1)
+        .map(|rest| rest.split('<').next().unwrap().parse::<f64>().unwrap() / coefficient)
+        .collect();
+    let mjcf = export(&vehicle, &effects, Format::Mjcf).unwrap();
+    let gears: Vec<f64> = mjcf
+        .text
+        .split("gear=\"0 0 ")
+        .skip(1)
+        .map(|rest| rest.split(' ').next().unwrap().parse().unwrap())
+        .collect();
+    for factors in [constants, gears] {
+        assert_eq!(factors.len(), 4);
+        for (factor, wanted) in factors.iter().zip([1.0, 1.0, 0.9, 1.0]) {
+            assert!((factor - wanted).abs() < 1e-9, "{factors:?}");
+        }
+    }
+    for format in [Format::Px4Sih, Format::ArdupilotSitl, Format::Rotorpy] {
+        let left_out = export(&vehicle, &effects, format).unwrap().left_out;
+        assert!(left_out.iter().any(|note| note.starts_with("weak_rotor")), "{format:?}: {left_out:?}");
+    }
+}
+
+#[test]
 fn rotorpy_gets_back_what_it_is_made_of() {
     let mut vehicle = vehicle();
     vehicle.propulsion.time_constant_down_s = None;

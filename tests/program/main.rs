@@ -2,11 +2,15 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test ends where it fails")]
 
+#[path = "../support/python.rs"]
+mod python;
 #[path = "../support/require.rs"]
 mod require;
 
 mod command_line;
 mod documents;
 mod examples;
+mod knowledge;
 mod licences;
+mod python_module;
 mod requirements;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use indicatif::ProgressBar;
 use mavid::text;
 
+use super::color::Tone;
 use super::lines::Lines;
 use super::teller::Teller;
 use crate::commands::CommandError;
@@ -19,16 +20,17 @@ pub struct StandardError {
     /// of a verb that talks to vehicles
     teller: Option<Arc<Teller>>,
     is_quiet: bool,
+    has_colors: bool,
 }
 
 impl StandardError {
     /// Of a verb that talks to vehicles, or of another; a quiet one shows errors and nothing else.
-    pub(super) fn new(is_live: bool, is_quiet: bool) -> Result<Self, CommandError> {
+    pub(super) fn new(is_live: bool, is_quiet: bool, has_colors: bool) -> Result<Self, CommandError> {
         let lines = Arc::new(Lines::default());
         let teller = is_live.then(|| Teller::start(lines.clone()).map(Arc::new)).transpose();
         let teller =
             teller.map_err(|error| CommandError::Failure(format!("cannot start a thread: {error}")))?;
-        Ok(Self { lines, teller, is_quiet })
+        Ok(Self { lines, teller, is_quiet, has_colors })
     }
 
     /// It shows errors and nothing else.
@@ -47,8 +49,9 @@ impl StandardError {
     }
 
     /// A message, written when this returns.
-    pub(super) fn message(&self, text: &str) {
-        self.lines.write(&text::clean(text));
+    pub(super) fn message(&self, text: &str, tone: Tone) {
+        let tone = if self.has_colors { tone } else { Tone::Plain };
+        self.lines.write_in(tone, &text::clean(text));
     }
 
     /// A log line. A verb that talks to vehicles does not wait for it.

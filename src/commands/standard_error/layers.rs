@@ -3,6 +3,7 @@
 use std::fmt;
 use std::io;
 
+use clap::ColorChoice;
 use mavid::fly::event_layer;
 use tracing::field::{Field, Visit};
 use tracing::{Event, Metadata, Subscriber};
@@ -12,6 +13,7 @@ use tracing_subscriber::fmt::format::FmtSpan;
 use tracing_subscriber::layer::{Context, Layer, SubscriberExt};
 use tracing_subscriber::registry::{LookupSpan, Registry};
 
+use super::color::{Tone, settle};
 use super::filter::filter;
 use super::handle::StandardError;
 use super::target::MESSAGE;
@@ -20,8 +22,12 @@ use crate::commands::CommandError;
 
 /// Installs the subscriber of the program. A verb that is live talks to vehicles. Where `RUST_LOG` is wrong, what is
 /// installed shows the error.
-pub fn install(verbosity: &Verbosity, is_live: bool) -> Result<StandardError, CommandError> {
-    let stderr = StandardError::new(is_live, verbosity.quiet)?;
+pub fn install(
+    verbosity: &Verbosity,
+    color: ColorChoice,
+    is_live: bool,
+) -> Result<StandardError, CommandError> {
+    let stderr = StandardError::new(is_live, verbosity.quiet, settle(color))?;
     let filter = filter(verbosity, std::env::var_os("RUST_LOG").as_deref());
     let (log, wrong) = match filter {
         Ok(filter) => (Some(log_lines(stderr.clone()).with_filter(filter)), None),
@@ -62,8 +68,12 @@ impl<S: Subscriber> Layer<S> for Messages {
     fn on_event(&self, event: &Event<'_>, _: Context<'_, S>) {
         let mut text = Text(String::new());
         event.record(&mut text);
-        let prefix = if *event.metadata().level() == tracing::Level::WARN { "warning: " } else { "" };
-        self.0.message(&format!("{prefix}{}", text.0));
+        let (prefix, tone) = match *event.metadata().level() {
+            tracing::Level::ERROR => ("", Tone::Error),
+            tracing::Level::WARN => ("warning: ", Tone::Warning),
+            _ => ("", Tone::Plain),
+        };
+        self.0.message(&format!("{prefix}{}", text.0), tone);
     }
 }
 

@@ -8,6 +8,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use indicatif::{MultiProgress, ProgressBar};
 use mavid::text;
 
+use super::color::Tone;
+
 /// Where lines for people go: standard error, or a file while the terminal shows a picture.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
@@ -18,10 +20,15 @@ pub(super) struct Lines {
 impl Lines {
     /// A line, which is clean already. Where standard error is closed there is nobody to tell.
     pub(super) fn write(&self, line: &str) {
+        self.write_in(Tone::Plain, line);
+    }
+
+    /// The same in a tone, but in a file.
+    pub(super) fn write_in(&self, tone: Tone, line: &str) {
         match self.away().as_mut() {
             Some(away) => away.write(line),
             None => self.bars.suspend(|| {
-                let _ = writeln!(io::stderr().lock(), "{line}");
+                let _ = writeln!(io::stderr().lock(), "{}", tone.colored(line));
             }),
         }
     }

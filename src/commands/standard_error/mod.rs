@@ -4,6 +4,7 @@
 //! are all other events that `-v` or `RUST_LOG` selects. Verbs that talk to vehicles give log lines to a thread, so that a
 //! flight never waits for standard error.
 
+mod color;
 mod filter;
 mod handle;
 mod layers;

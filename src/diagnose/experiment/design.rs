@@ -14,7 +14,7 @@ use crate::signals::Signals;
 use crate::vehicle::{Limits, Vehicle};
 
 /// Designs the next flight for an explanation of `flights`. `vehicle` gives the limits. If it states none, those of the
-/// previous flights are kept.
+/// previous flights are kept. `step` is called after each of at most [`NextSettings::work`] steps, from several threads.
 ///
 /// # Errors
 /// [`NextError`] where there is nothing to distinguish, or no room to do it in.
@@ -23,6 +23,7 @@ pub fn design(
     flights: &[Signals],
     vehicle: &Vehicle,
     settings: &NextSettings,
+    step: &(dyn Fn() + Sync),
 ) -> Result<NextFlight, NextError> {
     let _stage = tracing::info_span!("design", flights = flights.len()).entered();
     let traces = traces(flights, vehicle, settings)?;
@@ -51,8 +52,8 @@ pub fn design(
         });
     }
     let foresight = Foresight::new(explanation, &traces, &questions, settings);
-    let (trajectory, distances) =
-        search::best(&foresight, &limits, vehicle, settings).ok_or(NextError::NoRoom(questions[0].named))?;
+    let (trajectory, distances) = search::best(&foresight, &limits, vehicle, (settings, step))
+        .ok_or(NextError::NoRoom(questions[0].named))?;
     let mut pairs: Vec<Pair> = questions
         .iter()
         .zip(distances)

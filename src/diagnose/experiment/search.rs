@@ -33,12 +33,12 @@ pub(super) fn best(
     foresight: &Foresight,
     limits: &Limits,
     vehicle: &Vehicle,
-    settings: &NextSettings,
+    (settings, step): (&NextSettings, &(dyn Fn() + Sync)),
 ) -> Option<(FourierTrajectory, Vec<f64>)> {
     let room = Room::new(foresight, limits, vehicle, settings);
     (0..settings.starts)
         .into_par_iter()
-        .filter_map(|start| climb(foresight, &room, settings, start))
+        .filter_map(|start| climb(foresight, &room, (settings, step), start))
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(trajectory, _, distances)| (trajectory, distances))
 }
@@ -144,7 +144,7 @@ impl Room {
 fn climb(
     foresight: &Foresight,
     room: &Room,
-    settings: &NextSettings,
+    (settings, step): (&NextSettings, &(dyn Fn() + Sync)),
     start: u64,
 ) -> Option<(FourierTrajectory, f64, Vec<f64>)> {
     let seed = settings.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(start);
@@ -173,6 +173,7 @@ fn climb(
             }
             _ => size = (size * SHRINK).max(0.05),
         }
+        step();
     }
     Some(best)
 }

@@ -34,3 +34,11 @@ impl Default for NextSettings {
         }
     }
 }
+
+impl NextSettings {
+    /// Steps of a search.
+    #[must_use]
+    pub fn work(&self) -> u64 {
+        self.starts * u64::from(self.moves)
+    }
+}

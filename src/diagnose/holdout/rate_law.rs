@@ -205,6 +205,10 @@ impl Effect for EmpiricalRates {
         "A share of the torques acts, and the rates decay: no mechanism, but what predicts the vehicle under its controller."
     }
 
+    fn equation(&self) -> &'static str {
+        "`tau = s tau_rotors - d w + o` on each axis"
+    }
+
     fn parameters(&self) -> &'static [Parameter] {
         PARAMETERS
     }

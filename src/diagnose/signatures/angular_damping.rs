@@ -3,6 +3,7 @@
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Form, Naming, OfTheVehicle, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::axes;
 use crate::physics::effects::AngularDamping;
@@ -19,6 +20,11 @@ pub static SIGNATURE: Signature = Signature {
         ..Role::NONE
     },
     picture: Picture::of(&[3, 4, 5], Over::Rate),
+    sizes: &[
+        ("bx", UsualSize::PerInertia(0.8)),
+        ("by", UsualSize::PerInertia(0.8)),
+        ("bz", UsualSize::PerInertia(0.8)),
+    ],
     ..Signature::of(
         &AngularDamping,
         &[0, 1, 2],

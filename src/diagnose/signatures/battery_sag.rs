@@ -3,6 +3,7 @@
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, Form, Joint, Role, Signature, Whence};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words;
 use crate::physics::effects::BatterySag;
@@ -24,6 +25,7 @@ pub static SIGNATURE: Signature = Signature {
         ..Joint::PLAIN
     },
     picture: Picture::of(&[2], Over::Voltage),
+    sizes: &[("exponent", UsualSize::Of(1.5)), ("full_voltage", UsualSize::Of(16.8))],
     ..Signature::of(
         &BatterySag,
         &[0, 1],

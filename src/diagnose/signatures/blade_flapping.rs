@@ -3,6 +3,7 @@
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{EffectTerm, Naming, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::BladeFlapping;
 
@@ -20,6 +21,7 @@ pub static SIGNATURE: Signature = Signature {
     naming: Naming { is_ordinary, ..Naming::PLAIN },
     role: Role { of_air: true, ..Role::NONE },
     picture: Picture::of(&[3, 4], Over::AirspeedAcross),
+    sizes: &[("k", UsualSize::PerInertia(0.5))],
     ..Signature::of(
         &BladeFlapping,
         &[0],

@@ -6,6 +6,7 @@ use crate::diagnose::signature::{
     EffectTerm, GridScale, Growth, Joint, Naming, Refinement, Signature, Whence,
 };
 use crate::diagnose::trace::Trace;
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::Words;
 use crate::physics::Airframe;
 use crate::physics::effects::CeilingEffect;
@@ -59,6 +60,7 @@ pub static SIGNATURE: Signature = Signature {
         ..Joint::PLAIN
     },
     picture: Picture::of(&[2], Over::Altitude),
+    sizes: &[("a1", UsualSize::Of(3.5)), ("a2", UsualSize::Of(0.03)), ("height", UsualSize::Of(2.35))],
     ..Signature::of(&CeilingEffect, &[0], Words::of("ceiling effect"))
 };
 

@@ -3,6 +3,7 @@
 use crate::diagnose::named::Named;
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::signature::{Naming, OfTheVehicle, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ComOffset;
 use crate::text::{significant, with_error};
@@ -24,6 +25,7 @@ pub static SIGNATURE: Signature = Signature {
         ..Role::NONE
     },
     picture: Picture::of(&[3, 4], Over::Thrust),
+    sizes: &[("x", UsualSize::Of(0.005)), ("y", UsualSize::Of(-0.004)), ("z", UsualSize::Of(0.0))],
     ..Signature::of(
         &ComOffset,
         &[0, 1, 2],

@@ -5,6 +5,7 @@ use crate::diagnose::channels::Nuisance;
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, Refinement, Role, Signature, Whence};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::FrameMisalignment;
 
@@ -50,6 +51,7 @@ pub static SIGNATURE: Signature = Signature {
         ..Joint::PLAIN
     },
     picture: Picture::of(&[0, 1, 2], Over::Thrust),
+    sizes: &[("x", UsualSize::Of(0.035)), ("y", UsualSize::Of(-0.026)), ("z", UsualSize::Of(0.0))],
     ..Signature::of(
         &FrameMisalignment,
         &[0, 1, 2],

@@ -4,6 +4,7 @@ use crate::diagnose::named::Named;
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{EffectTerm, Joint, Naming, Refinement, Signature, Whence, first_finer};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words;
 use crate::physics::effects::GroundEffect;
@@ -67,6 +68,7 @@ pub static SIGNATURE: Signature = Signature {
         ..Joint::PLAIN
     },
     picture: Picture::of(&[2], Over::Altitude),
+    sizes: &[("rho", UsualSize::Of(4.0)), ("ca", UsualSize::Of(0.0)), ("cb", UsualSize::Of(1.0))],
     ..Signature::of(
         &GroundEffect,
         &[RHO, CA],

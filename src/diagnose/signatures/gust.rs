@@ -1,6 +1,7 @@
 //! Signature: gusts. They are found in the residual, not by a column.
 
 use crate::diagnose::signature::{Joint, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::Gust;
 
@@ -13,6 +14,11 @@ pub static SIGNATURE: Signature = Signature {
         ),
         ..Joint::PLAIN
     },
+    sizes: &[
+        ("sigma", UsualSize::Of(0.4)),
+        ("correlation_time", UsualSize::Of(1.0)),
+        ("seed", UsualSize::Of(7.0)),
+    ],
     ..Signature::of(
         &Gust,
         &[0, 1],

@@ -3,6 +3,7 @@
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::ImuMisalignment;
 
@@ -17,6 +18,7 @@ pub static SIGNATURE: Signature = Signature {
     naming: Naming { ordinary: Some(ORDINARY_RAD), ..Naming::PLAIN },
     role: Role { turns_inertial_unit: true, ..Role::NONE },
     picture: Picture::of(&[0, 1, 2], Over::Thrust),
+    sizes: &[("x", UsualSize::Of(0.035)), ("y", UsualSize::Of(-0.026)), ("z", UsualSize::Of(0.03))],
     ..Signature::of(
         &ImuMisalignment,
         &[0, 1, 2],

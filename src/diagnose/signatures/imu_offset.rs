@@ -4,6 +4,7 @@ use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Signature};
 use crate::diagnose::trace::Trace;
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Size, Words};
 use crate::physics::effects::ImuOffset;
 
@@ -22,6 +23,7 @@ pub static SIGNATURE: Signature = Signature {
     },
     naming: Naming { ordinary: Some(ORDINARY_M), ..Naming::PLAIN },
     picture: Picture::of(&[0, 1], Over::YawRate),
+    sizes: &[("x", UsualSize::Of(0.05)), ("y", UsualSize::Of(-0.03)), ("z", UsualSize::Of(0.04))],
     ..Signature::of(
         &ImuOffset,
         &[0, 1, 2],

@@ -3,6 +3,7 @@
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Joint, Naming, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::{Inflow, LinearDrag};
 
@@ -37,6 +38,7 @@ pub static SIGNATURE: Signature = Signature {
         ..Joint::PLAIN
     },
     picture: Picture::of(&[2], Over::AirspeedUp),
+    sizes: &[("kz", UsualSize::PerMass(0.4))],
     ..Signature::of(
         &Inflow,
         &[0],

@@ -4,6 +4,7 @@ use crate::diagnose::named::Named;
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Joint, Naming, OfTheVehicle, Role, Signature, Whence};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::axes;
 use crate::physics::effects::LinearDrag;
@@ -59,6 +60,7 @@ pub static SIGNATURE: Signature = Signature {
         ..Joint::PLAIN
     },
     picture: Picture::of(&[0, 1, 2], Over::Airspeed),
+    sizes: &[("dx", UsualSize::PerMass(0.3)), ("dy", UsualSize::PerMass(0.3)), ("dz", UsualSize::Of(0.0))],
     ..Signature::of(
         &LinearDrag,
         &[0, 1, 2],

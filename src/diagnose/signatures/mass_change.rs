@@ -3,6 +3,7 @@
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, Form, GridScale, Joint, Naming, Refinement, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words;
 use crate::physics::effects::MassChange;
@@ -30,6 +31,7 @@ pub static SIGNATURE: Signature = Signature {
     role: Role { moment: Some(0), by_motion: false, ..Role::NONE },
     joint: Joint { forms: Some(|recorded, _| terms(recorded)), ..Joint::PLAIN },
     picture: Picture::of(&[2], Over::Time),
+    sizes: &[("time", UsualSize::Of(26.0)), ("delta", UsualSize::PerMass(-0.08))],
     ..Signature::of(
         &MassChange,
         &[1],

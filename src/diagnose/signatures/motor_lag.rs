@@ -2,6 +2,7 @@
 
 use crate::diagnose::named::Named;
 use crate::diagnose::signature::{LatencyKind, Refinement, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words;
 use crate::physics::effects::MotorLag;
@@ -10,6 +11,7 @@ use crate::physics::effects::MotorLag;
 pub static SIGNATURE: Signature = Signature {
     refinement: Refinement { freed: |_| Vec::new(), ..Refinement::NONE },
     role: Role { latency: Some(LatencyKind::Lag), ..Role::NONE },
+    sizes: &[("time_constant", UsualSize::Of(0.04))],
     ..Signature::of(
         &MotorLag,
         &[0],

@@ -3,6 +3,7 @@
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Joint, Naming, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::axes;
 use crate::physics::effects::QuadraticDrag;
@@ -35,6 +36,11 @@ pub static SIGNATURE: Signature = Signature {
         ..Joint::PLAIN
     },
     picture: Picture::of(&[0, 1, 2], Over::Airspeed),
+    sizes: &[
+        ("cx", UsualSize::PerMass(0.12)),
+        ("cy", UsualSize::PerMass(0.12)),
+        ("cz", UsualSize::PerMass(0.12)),
+    ],
     ..Signature::of(
         &QuadraticDrag,
         &[0, 1, 2],

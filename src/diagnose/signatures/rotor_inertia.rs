@@ -3,6 +3,7 @@
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, OfTheVehicle, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::RotorInertia;
 
@@ -14,6 +15,7 @@ pub static SIGNATURE: Signature = Signature {
     naming: Naming { ubiquitous: true, ..Naming::PLAIN },
     role: Role { spin_up: Some(0), of_the_vehicle: Some(OfTheVehicle::of(&[0])), ..Role::NONE },
     picture: Picture::of(&[5], Over::Time),
+    sizes: &[("jr", UsualSize::PerInertia(0.0015))],
     ..Signature::of(
         &RotorInertia,
         &[0],

@@ -6,6 +6,7 @@ use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{
     EffectTerm, GridScale, Joint, Naming, Refinement, Role, Signature, first_finer,
 };
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::SlungLoad;
 
@@ -56,6 +57,11 @@ pub static SIGNATURE: Signature = Signature {
         ..Joint::PLAIN
     },
     picture: Picture::of(&[0, 1], Over::Time),
+    sizes: &[
+        ("mass", UsualSize::PerMass(0.08)),
+        ("length", UsualSize::Of(0.8)),
+        ("damping", UsualSize::Of(0.3)),
+    ],
     ..Signature::of(
         &SlungLoad,
         &[0],

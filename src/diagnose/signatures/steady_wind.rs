@@ -4,6 +4,7 @@ use crate::diagnose::named::{Named, NamedParameter};
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Carried, Joint, Naming, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::{from_deg, norm, point_of};
 use crate::physics::effects::SteadyWind;
@@ -30,6 +31,7 @@ pub static SIGNATURE: Signature = Signature {
         ..Joint::PLAIN
     },
     picture: Picture::of(&[0, 1], Over::Heading),
+    sizes: &[("north", UsualSize::Of(2.5)), ("west", UsualSize::Of(1.5)), ("up", UsualSize::Of(0.0))],
     ..Signature::of(
         &SteadyWind,
         &[0, 1, 2],

@@ -3,6 +3,7 @@
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::{Need, Recorded};
 use crate::diagnose::signature::{EffectTerm, Joint, Naming, Signature, Whence};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::Tether;
 
@@ -34,6 +35,11 @@ pub static SIGNATURE: Signature = Signature {
         ..Joint::PLAIN
     },
     picture: Picture::of(&[2], Over::Altitude),
+    sizes: &[
+        ("line_mass", UsualSize::PerMass(0.03)),
+        ("stiffness", UsualSize::Of(0.0)),
+        ("length", UsualSize::Of(500.0)),
+    ],
     ..Signature::of(
         &Tether,
         &[0, 1],

@@ -2,6 +2,7 @@
 
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::signature::{Joint, Naming, OfTheVehicle, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ThrustCurve;
 
@@ -25,6 +26,7 @@ pub static SIGNATURE: Signature = Signature {
         ..Joint::PLAIN
     },
     picture: Picture::of(&[2], Over::Thrust),
+    sizes: &[("curvature", UsualSize::Of(0.15))],
     ..Signature::of(
         &ThrustCurve,
         &[0],

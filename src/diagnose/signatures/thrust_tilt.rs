@@ -3,6 +3,7 @@
 use crate::diagnose::channels::Nuisance;
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::signature::{Form, Naming, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ThrustTilt;
 
@@ -16,6 +17,7 @@ pub static SIGNATURE: Signature = Signature {
     naming: Naming { ordinary: Some(ORDINARY_RAD), ..Naming::PLAIN },
     role: Role { stands_for: |_, nuisance| matches!(nuisance, Nuisance::Tilt(_)), ..Role::NONE },
     picture: Picture::of(&[0, 1], Over::Thrust),
+    sizes: &[("x", UsualSize::Of(0.025)), ("y", UsualSize::Of(-0.02))],
     ..Signature::of(
         &ThrustTilt,
         &[0, 1],

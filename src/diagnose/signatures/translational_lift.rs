@@ -3,6 +3,7 @@
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Naming, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::TranslationalLift;
 
@@ -14,6 +15,7 @@ pub static SIGNATURE: Signature = Signature {
     // 1/m: forces scale with the mass
     naming: Naming { usual: |_, vehicle| Some(0.12 * vehicle.body.mass_kg), ..Naming::PLAIN },
     picture: Picture::of(&[2], Over::Speed),
+    sizes: &[("kh", UsualSize::PerMass(0.12))],
     ..Signature::of(
         &TranslationalLift,
         &[0],

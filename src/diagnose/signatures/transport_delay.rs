@@ -1,12 +1,14 @@
 //! Signature: a delay of the commands. It is found with the latency, not by a column.
 
 use crate::diagnose::signature::{LatencyKind, Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::TransportDelay;
 
 /// Commands that act later than they were sent.
 pub static SIGNATURE: Signature = Signature {
     role: Role { latency: Some(LatencyKind::Delay), ..Role::NONE },
+    sizes: &[("delay", UsualSize::Of(0.03))],
     ..Signature::of(
         &TransportDelay,
         &[0],

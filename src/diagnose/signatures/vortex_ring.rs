@@ -3,6 +3,7 @@
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Role, Signature};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::VortexRing;
 
@@ -12,6 +13,7 @@ pub static SIGNATURE: Signature = Signature {
     forms: |_| vec![SIGNATURE.form(&[0.0], &[0])],
     role: Role { of_air: true, ..Role::NONE },
     picture: Picture::of(&[2], Over::AirspeedUp),
+    sizes: &[("loss", UsualSize::Of(2.0))],
     ..Signature::of(
         &VortexRing,
         &[0],

@@ -4,6 +4,7 @@ use crate::diagnose::named::Named;
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Recorded;
 use crate::diagnose::signature::{EffectTerm, Form, Joint, Naming, OfTheVehicle, Role, Signature, Whence};
+use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words;
 use crate::physics::effects::WeakRotor;
@@ -49,6 +50,7 @@ pub static SIGNATURE: Signature = Signature {
         ..Joint::PLAIN
     },
     picture: Picture::of(&[3, 4], Over::OneRotor),
+    sizes: &[("rotor", UsualSize::Of(1.0)), ("factor", UsualSize::Of(0.92))],
     ..Signature::of(
         &WeakRotor,
         &[FACTOR],

@@ -291,10 +291,10 @@ impl Drive {
         model.awaits_word = status.awaits_word;
         model.progress_s = status.progress_s;
         let motion = status.position_m.zip(status.velocity_m_s);
-        model.attitude = status.euler_rad.zip(motion).map(|(euler_rad, (position_m, velocity_m_s))| {
+        model.moves(status.euler_rad.zip(motion).map(|(euler_rad, (position_m, velocity_m_s))| {
             let [roll_deg, pitch_deg, yaw_deg] = euler_rad.map(deg_from_rad);
             Attitude { roll_deg, pitch_deg, yaw_deg, position_m, velocity_m_s }
-        });
+        }));
         model.battery = Battery {
             percent: status.battery_percent.map(f64::from),
             voltage_v: status.battery_v,

@@ -2,6 +2,7 @@
 //!
 //! [`ViewModel`] is filled by whoever runs the flight; [`render`] draws it and decides nothing.
 
+mod instruments;
 mod keys;
 mod model;
 mod plain;
@@ -9,6 +10,7 @@ mod render;
 mod screen;
 mod spark;
 
+pub use instruments::{bar, horizon, path_map};
 pub use keys::{KILL_WORD, KeyCommand, Keys};
 pub use model::{
     Attitude, Battery, EventLine, HISTORY, LinkView, ParameterRow, Phase, Trace, Tracking, ViewModel,

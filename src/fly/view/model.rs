@@ -9,6 +9,10 @@ use std::sync::Arc;
 
 /// Values that a trace keeps; older ones are forgotten.
 pub const HISTORY: usize = 120;
+/// Places of the path that are kept; older ones are forgotten.
+const PATH: usize = 600;
+/// Between two places of the path, m.
+const PATH_STEP_M: f64 = 0.05;
 /// Events kept.
 const EVENTS: usize = 200;
 
@@ -148,6 +152,8 @@ pub struct ViewModel {
     pub tracking: Tracking,
     /// attitude and motion
     pub attitude: Option<Attitude>,
+    /// north and west of where it was lately, m
+    pub path_m: VecDeque<[f64; 2]>,
     /// parameters, in the order of files
     pub parameters: Vec<ParameterRow>,
     /// s of flight that they rest on
@@ -168,6 +174,20 @@ impl ViewModel {
         }
         self.events.push_back(EventLine { time_s: self.elapsed_s, level, text: text.into() });
         self.event_count += 1;
+    }
+
+    /// Takes attitude and motion of this moment.
+    pub fn moves(&mut self, attitude: Option<Attitude>) {
+        self.attitude = attitude;
+        let Some([north_m, west_m, _]) = attitude.map(|attitude| attitude.position_m) else { return };
+        let is_near = |[n, w]: &[f64; 2]| (north_m - n).hypot(west_m - w) < PATH_STEP_M;
+        if self.path_m.back().is_some_and(is_near) {
+            return;
+        }
+        if self.path_m.len() == PATH {
+            self.path_m.pop_front();
+        }
+        self.path_m.push_back([north_m, west_m]);
     }
 
     /// Takes the tracking error (m) of this moment.

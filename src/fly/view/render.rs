@@ -1,5 +1,6 @@
 //! Draws the model.
 
+use super::instruments::{bar, horizon, path_map};
 use super::keys::{ARM_WORD, KILL_WORD};
 use super::model::{ParameterRow, Phase, ViewModel};
 use super::plain::with_error;
@@ -20,16 +21,26 @@ const LOST_S: f64 = 2.0;
 const NAME_COLUMNS: usize = 6;
 const VALUE_COLUMNS: usize = 32;
 
+/// Rows beside the parameters' and the instruments': head, gauges, motion, frames, events and foot.
+const OTHER_ROWS: u16 = 16;
+/// Rows of the instruments: a smaller terminal is without them.
+const INSTRUMENT_ROWS: u16 = 7;
+/// Columns of the bar of the tracking error.
+const BAR_COLUMNS: usize = 8;
+
 /// Draws the whole view.
 pub fn render(frame: &mut Frame<'_>, model: &ViewModel) {
     if let (true, Some(page)) = (model.awaits_word, &model.page) {
         return before_flight(frame, model, page);
     }
     let rows = u16::try_from(model.parameters.len()).unwrap_or(u16::MAX).max(1);
-    let [head, gauges, motion, parameters, events, foot] = Layout::vertical([
+    let spare = frame.area().height.saturating_sub(rows.saturating_add(OTHER_ROWS));
+    let drawn = if spare < INSTRUMENT_ROWS { 0 } else { spare.min(2 * INSTRUMENT_ROWS) };
+    let [head, gauges, motion, instruments, parameters, events, foot] = Layout::vertical([
         Constraint::Length(1),
         Constraint::Length(3),
         Constraint::Length(4),
+        Constraint::Length(drawn),
         Constraint::Length(rows.saturating_add(2)),
         Constraint::Min(3),
         Constraint::Length(1),
@@ -38,6 +49,9 @@ pub fn render(frame: &mut Frame<'_>, model: &ViewModel) {
     frame.render_widget(Paragraph::new(header(model)), head);
     gauge_row(frame, model, gauges);
     boxed(frame, "Motion (north, west, up)", motion_lines(model), motion);
+    if drawn > 0 {
+        instrument_row(frame, model, instruments);
+    }
     let title = format!("Parameters from {:.0} s of flight", model.parameters_used_s);
     boxed(frame, &title, parameter_lines(model, parameters.width), parameters);
     event_list(frame, model, events);
@@ -102,6 +116,23 @@ fn gauge_row(frame: &mut Frame<'_>, model: &ViewModel, area: Rect) {
     boxed(frame, "Tracking error", vec![tracking_line(model, tracking.width)], tracking);
 }
 
+/// Artificial horizon, and the path from above.
+fn instrument_row(frame: &mut Frame<'_>, model: &ViewModel, area: Rect) {
+    let [left, right] = Layout::horizontal([Constraint::Fill(2), Constraint::Fill(3)]).areas(area);
+    let inner =
+        |area: Rect| (usize::from(area.width.saturating_sub(2)), usize::from(area.height.saturating_sub(2)));
+    let lines = |lines: Vec<String>| lines.into_iter().map(Line::raw).collect::<Vec<_>>();
+    let level = match &model.attitude {
+        // body forward, left, up: a positive pitch is nose down
+        Some(attitude) => horizon(inner(left), attitude.roll_deg, -attitude.pitch_deg),
+        None => Vec::new(),
+    };
+    boxed(frame, "Horizon", lines(level), left);
+    let path: Vec<[f64; 2]> = model.path_m.iter().copied().collect();
+    let (map, width_m) = path_map(inner(right), &path);
+    boxed(frame, &format!("Path, north up, {width_m:.1} m wide"), lines(map), right);
+}
+
 fn link_line(model: &ViewModel) -> Line<'_> {
     let link = &model.link;
     let Some(age_s) = link.age_s else { return Line::styled("nothing heard", Color::Red) };
@@ -134,8 +165,11 @@ fn tracking_line(model: &ViewModel, columns: u16) -> Line<'_> {
         Some(limit_m) if error_m >= 0.5 * limit_m => Color::Yellow,
         _ => Color::Green,
     };
-    let room = usize::from(columns).saturating_sub(text.len() + 2);
-    Line::from(vec![Span::styled(text, color), Span::raw(spark(tracking.history_m.values(), room))])
+    let share = tracking.limit_m.filter(|limit_m| *limit_m > 0.0).map(|limit_m| error_m / limit_m);
+    let bar = share.map_or_else(String::new, |share| bar(share, BAR_COLUMNS) + " ");
+    let room = usize::from(columns).saturating_sub(text.len() + bar.chars().count() + 2);
+    let spark = spark(tracking.history_m.values(), room);
+    Line::from(vec![Span::styled(text, color), Span::styled(bar, color), Span::raw(spark)])
 }
 
 fn motion_lines(model: &ViewModel) -> Vec<Line<'_>> {

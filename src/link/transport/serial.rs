@@ -35,7 +35,8 @@ impl std::fmt::Debug for Serial {
 impl Serial {
     pub fn open(path: &Path, baud: u32, flow_control: bool) -> io::Result<Self> {
         let mut serial = Self { path: path.into(), baud, flow_control, first: None };
-        serial.first = Some(serial.port_once_let_go()?);
+        let port = serial.port_once_let_go();
+        serial.first = Some(port.map_err(|error| io::Error::new(error.kind(), with_ports(&error, path)))?);
         Ok(serial)
     }
 
@@ -80,6 +81,27 @@ impl Serial {
     }
 }
 
+/// Ports that an error names at most.
+const NAMED: usize = 8;
+
+/// Why a port was not opened, with the ports that there are.
+fn with_ports(error: &io::Error, path: &Path) -> String {
+    let ports = serialport::available_ports().unwrap_or_default();
+    let mut names: Vec<String> = ports.into_iter().map(|port| text::clean(&port.port_name)).collect();
+    // radios and flight controllers are on USB
+    names.sort_by_key(|name| (!name.contains("USB") && !name.contains("ACM"), name.clone()));
+    let there = match names.len() {
+        0 => "this computer has no serial ports".to_owned(),
+        count if count > NAMED => {
+            format!("serial ports here: {}, and {} more", names[..NAMED].join(", "), count - NAMED)
+        }
+        _ => format!("serial ports here: {}", names.join(", ")),
+    };
+    let may_not = error.kind() == io::ErrorKind::PermissionDenied && path.exists();
+    let group = if may_not { "; may this user open it (on Debian: group dialout)?" } else { "" };
+    format!("{error}{group}; {there}")
+}
+
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
     use super::*;
@@ -98,6 +120,7 @@ mod tests {
         });
         assert!(Serial::open(&path, 57_600, false).is_ok());
         ends.join().unwrap();
-        assert!(Serial::open(&folder.join("none"), 57_600, false).is_err());
+        let error = Serial::open(&folder.join("none"), 57_600, false).unwrap_err().to_string();
+        assert!(error.contains("serial ports"), "{error}");
     }
 }

@@ -2,7 +2,8 @@
 
 use std::io::BufReader;
 
-use super::reader::{no_text, read_table, without_mark};
+use super::reader::read_table;
+use super::table::{no_text, without_mark};
 use crate::log::error::LogError;
 use crate::log::format::{Certainty, Format, Sink};
 use crate::log::input::Input;

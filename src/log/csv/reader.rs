@@ -1,24 +1,20 @@
 //! Reads a table row by row and gives out what each holds.
 
-use std::collections::BTreeSet;
-use std::io::{BufRead, Cursor, Read};
+use std::io::BufRead;
 
-use ::csv::{ByteRecord, ReaderBuilder};
+use ::csv::ByteRecord;
 
-use super::bounded::{BUFFER, Bounded, ROW_BYTES_MAX};
+use super::bounded::ROW_BYTES_MAX;
 use super::outlet::Outlet;
 use super::rows::{Clock, cells_si, number};
+use super::table::{Table, open};
 use super::{CsvError, CsvMapping, CsvQuantity, CsvReport, convert};
 use crate::log::format::{Place, Sink};
 use crate::log::loss::RowRejection;
 use crate::recording::StreamKey;
-use crate::text;
 
 /// The source named in the keys of streams that came from a table.
 const SOURCE: &str = "CSV";
-
-/// Columns of a table.
-const COLUMNS_MAX: usize = 4096;
 
 /// Reads a table with a header row and gives each sample to `sink` as it comes (SI, body FLU, world NWU); memory does not
 /// grow with the table. `origin` is named in errors.
@@ -26,67 +22,26 @@ const COLUMNS_MAX: usize = 4096;
 /// # Errors
 /// [`CsvError`] where the table cannot be read, lacks a column that is not optional, or has no usable row.
 pub fn read_table(
-    mut reader: impl BufRead,
+    reader: impl BufRead,
     origin: &str,
     mapping: &CsvMapping,
     sink: &mut Sink<'_>,
 ) -> Result<CsvReport, CsvError> {
-    let table_error = |source: ::csv::Error| CsvError::Table { origin: origin.to_owned(), source };
-    let mut head = Vec::new();
-    let mut limited = reader.by_ref().take(ROW_BYTES_MAX as u64);
-    limited.read_until(b'\n', &mut head).map_err(|source| table_error(source.into()))?;
-    if head.len() == ROW_BYTES_MAX && !head.ends_with(b"\n") {
-        return Err(CsvError::LongHeader { origin: origin.to_owned(), max: ROW_BYTES_MAX });
-    }
-    head.drain(..head.len() - without_mark(&head).len());
-    if let Some(what) = no_text(&head) {
-        return Err(CsvError::NoText { origin: origin.to_owned(), what });
-    }
-    let delimiter = mapping.delimiter.unwrap_or_else(|| guess_delimiter(&head));
-    let mut table = ReaderBuilder::new()
-        .delimiter(delimiter)
-        .flexible(true)
-        .buffer_capacity(BUFFER)
-        .from_reader(Bounded::new(Cursor::new(head).chain(reader)));
-    let long = |table: &::csv::Reader<Bounded<_>>| table.get_ref().is_exceeded();
-    let header = match table.byte_headers().cloned() {
-        Ok(header) => header,
-        Err(_) if long(&table) => {
-            return Err(CsvError::LongHeader { origin: origin.to_owned(), max: ROW_BYTES_MAX });
-        }
-        Err(source) => return Err(table_error(source)),
-    };
-    let mut reading = Reading::new(&header, origin, mapping, Outlet::new(sink))?;
+    let Table { mut rows, names, .. } = open(reader, origin, mapping.delimiter)?;
+    let mut reading = Reading::new(names, origin, mapping, Outlet::new(sink))?;
     let mut record = ByteRecord::new();
     loop {
-        table.get_mut().next_row();
-        let line = table.position().line();
-        match table.read_byte_record(&mut record) {
+        rows.get_mut().next_row();
+        let line = rows.position().line();
+        match rows.read_byte_record(&mut record) {
             Ok(true) => reading.row(&record),
             Ok(false) => return reading.finish(),
-            Err(_) if long(&table) => {
+            Err(_) if rows.get_ref().is_exceeded() => {
                 reading.cut(line);
                 return reading.finish();
             }
-            Err(source) => return Err(table_error(source)),
+            Err(source) => return Err(CsvError::Table { origin: origin.to_owned(), source }),
         }
-    }
-}
-
-/// Without the mark that some programs put before text in UTF-8.
-pub(super) fn without_mark(head: &[u8]) -> &[u8] {
-    head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head)
-}
-
-/// What the first line is if it is no header at all.
-pub(super) fn no_text(head: &[u8]) -> Option<&'static str> {
-    let is_binary = |byte: &u8| byte.is_ascii_control() && !byte.is_ascii_whitespace();
-    if head.is_empty() {
-        Some("an empty file")
-    } else if head.iter().any(is_binary) {
-        Some("binary data")
-    } else {
-        head.trim_ascii().is_empty().then_some("an empty line")
     }
 }
 
@@ -94,18 +49,6 @@ pub(super) fn no_text(head: &[u8]) -> Option<&'static str> {
 fn is_whole(cell: &[u8]) -> bool {
     let digits = cell.trim_ascii().strip_prefix(b"-").unwrap_or(cell.trim_ascii());
     digits.iter().all(u8::is_ascii_digit)
-}
-
-/// Comma, semicolon or tab, whichever the header has most of; comma where it has none.
-fn guess_delimiter(head: &[u8]) -> u8 {
-    let count = |delimiter: u8| head.iter().filter(|byte| **byte == delimiter).count();
-    let mut best = b',';
-    for delimiter in [b';', b'\t'] {
-        if count(delimiter) > count(best) {
-            best = delimiter;
-        }
-    }
-    best
 }
 
 /// A quantity that the file has.
@@ -134,23 +77,11 @@ struct Reading<'a, 'b> {
 
 impl<'a, 'b> Reading<'a, 'b> {
     fn new(
-        header: &ByteRecord,
+        present: Vec<String>,
         origin: &'a str,
         mapping: &'a CsvMapping,
         outlet: Outlet<'a, 'b>,
     ) -> Result<Self, CsvError> {
-        if header.len() > COLUMNS_MAX {
-            let (origin, came) = (origin.to_owned(), header.len());
-            return Err(CsvError::ManyColumns { origin, max: COLUMNS_MAX, came });
-        }
-        let present: Vec<String> =
-            header.iter().map(|name| text::clean(&String::from_utf8_lossy(name.trim_ascii()))).collect();
-        let mut seen = BTreeSet::new();
-        for column in present.iter().filter(|column| !column.is_empty()) {
-            if !seen.insert(column) {
-                return Err(CsvError::RepeatedColumn { origin: origin.to_owned(), column: column.clone() });
-            }
-        }
         let mut missing = Vec::new();
         let time_index = index_of(&present, &mapping.time.column);
         if time_index.is_none() {

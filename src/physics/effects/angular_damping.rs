@@ -1,10 +1,13 @@
 //! Rotation is damped in proportion to the body rates.
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `tau = -diag(bx, by, bz) w`. The inflow at each rotor changes as its hub rises and sinks.
-#[derive(Debug, Clone, Copy)]
-pub struct AngularDamping;
+documented! {
+    /// `tau = -diag(bx, by, bz) w`. The inflow at each rotor changes as its hub rises and sinks.
+    #[derive(Debug, Clone, Copy)]
+    pub struct AngularDamping;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "bx", unit: "N m/(rad/s)", bounds: Bounds::of(0.0, 1.0).by_mass().by_arm(2) },
@@ -19,6 +22,10 @@ impl Effect for AngularDamping {
 
     fn sentence(&self) -> &'static str {
         "The rotation is damped: a torque against the body rates, in proportion to them."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -1,12 +1,15 @@
 //! Thrust falls with the battery's voltage.
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `T_i = T (V / V_full)^exponent`. The reaction torque changes by the same factor, because the rotors turn slower by
-/// its square root. Nothing changes where the voltage is unknown or the rotor speeds are measured. The exponent is 2
-/// if the speed is proportional to the voltage, and 0 if the ESC controls the speed.
-#[derive(Debug, Clone, Copy)]
-pub struct BatterySag;
+documented! {
+    /// `T_i = T (V / V_full)^exponent`. The reaction torque changes by the same factor, because the rotors turn slower by
+    /// its square root. Nothing changes where the voltage is unknown or the rotor speeds are measured. The exponent is 2
+    /// if the speed is proportional to the voltage, and 0 if the ESC controls the speed.
+    #[derive(Debug, Clone, Copy)]
+    pub struct BatterySag;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "exponent", unit: "-", bounds: Bounds::of(0.0, 4.0) },
@@ -25,6 +28,10 @@ impl Effect for BatterySag {
 
     fn sentence(&self) -> &'static str {
         "Thrust falls with the battery: the same command gives less as its voltage drops."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -2,15 +2,18 @@
 
 use nalgebra::{Vector2, Vector3};
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `M_i = (k / N) n_i e_z x (v_air + w x r_i)` at each hub, where `k` is the coefficient of the whole vehicle at
-/// hover. Drag that acts at a height h above the centre of mass has the same form with `k = -h d`, so `k` may have
-/// either sign.
-///
-/// Mahony, Kumar and Corke 2012; the form is RotorPy's `k_flap`.
-#[derive(Debug, Clone, Copy)]
-pub struct BladeFlapping;
+documented! {
+    /// `M_i = (k / N) n_i e_z x (v_air + w x r_i)` at each hub, where `k` is the coefficient of the whole vehicle at
+    /// hover. Drag that acts at a height h above the centre of mass has the same form with `k = -h d`, so `k` may have
+    /// either sign.
+    ///
+    /// Mahony, Kumar and Corke 2012; the form is RotorPy's `k_flap`.
+    #[derive(Debug, Clone, Copy)]
+    pub struct BladeFlapping;
+}
 
 const PARAMETERS: &[Parameter] =
     &[Parameter { name: "k", unit: "N m/(m/s)", bounds: Bounds::of(-0.2, 0.2).by_mass().by_arm(1) }];
@@ -33,6 +36,10 @@ impl Effect for BladeFlapping {
 
     fn sentence(&self) -> &'static str {
         "The blades flap: a torque about the horizontal axes in proportion to the airspeed."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

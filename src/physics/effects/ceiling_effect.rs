@@ -2,14 +2,17 @@
 
 use nalgebra::Vector3;
 
+use crate::physics::equation::documented;
 use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// The thrust of a rotor is multiplied by `1 / (1 - (1/a1) (R / (z + a2))^2)`, where z is its distance below a
-/// ceiling at `height` over the ground.
-///
-/// Sanchez-Cuevas et al. 2017.
-#[derive(Debug, Clone, Copy)]
-pub struct CeilingEffect;
+documented! {
+    /// The thrust of a rotor is multiplied by `1 / (1 - (1/a1) (R / (z + a2))^2)`, where z is its distance below a
+    /// ceiling at `height` over the ground.
+    ///
+    /// Sanchez-Cuevas et al. 2017.
+    #[derive(Debug, Clone, Copy)]
+    pub struct CeilingEffect;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "a1", unit: "-", bounds: Bounds::of(2.0, 50.0) },
@@ -44,6 +47,10 @@ impl Effect for CeilingEffect {
 
     fn sentence(&self) -> &'static str {
         "A ceiling is near: the rotors give more thrust the closer they are to it."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -2,13 +2,16 @@
 
 use nalgebra::Vector3;
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// Every force at a hub acts about the true centre of mass c: `tau = sum (r_i - c) x F_i`, which for thrust alone is
-/// `-c x T e_z = (-c_y T, c_x T, 0)`. The state is that of the true centre of mass, so nothing else changes. The z
-/// component acts only through forces across the thrust axis.
-#[derive(Debug, Clone, Copy)]
-pub struct ComOffset;
+documented! {
+    /// Every force at a hub acts about the true centre of mass c: `tau = sum (r_i - c) x F_i`, which for thrust alone is
+    /// `-c x T e_z = (-c_y T, c_x T, 0)`. The state is that of the true centre of mass, so nothing else changes. The z
+    /// component acts only through forces across the thrust axis.
+    #[derive(Debug, Clone, Copy)]
+    pub struct ComOffset;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "x", unit: "m", bounds: Bounds::of(-0.1, 0.1).by_arm(1) },
@@ -23,6 +26,10 @@ impl Effect for ComOffset {
 
     fn sentence(&self) -> &'static str {
         "The centre of mass is off: thrust turns the vehicle about it."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -2,14 +2,17 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Effect, Hook, Measurement, Parameter, State};
 
-/// The axes of the reference are turned against those of the world by the rotation vector `(x, y, z)`:
-/// `p_world = R_e p` and `q_world = q_e q`. Position, velocity and attitude are given in its axes. The inertial unit
-/// is not affected. In the finer form, only the share `with_attitude` of the rotation vector turns the attitude. The
-/// share is zero for a vehicle that estimates its attitude alone and takes only its position from outside.
-#[derive(Debug, Clone, Copy)]
-pub struct FrameMisalignment;
+documented! {
+    /// The axes of the reference are turned against those of the world by the rotation vector `(x, y, z)`:
+    /// `p_world = R_e p` and `q_world = q_e q`. Position, velocity and attitude are given in its axes. The inertial unit
+    /// is not affected. In the finer form, only the share `with_attitude` of the rotation vector turns the attitude. The
+    /// share is zero for a vehicle that estimates its attitude alone and takes only its position from outside.
+    #[derive(Debug, Clone, Copy)]
+    pub struct FrameMisalignment;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "x", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
@@ -26,6 +29,10 @@ impl Effect for FrameMisalignment {
 
     fn sentence(&self) -> &'static str {
         "The position reference is misaligned: its horizontal plane or its north is wrong."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -2,19 +2,22 @@
 
 use nalgebra::Vector3;
 
+use crate::physics::equation::documented;
 use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// The thrust of a rotor at height z over the ground (world z = 0) is multiplied by
-/// `1 / (1 - rho (R / 4z)^2) + Ca exp(-Cb z / R)`. With Ca = 0 this is the form of Cheeseman and Bennett 1955 (rho =
-/// 1 for one rotor, more for several). With rho = 0 it is the exponential form. An estimate holds one of them at
-/// zero. In the finer form, z is the height of the centre of mass plus `levelling` times the height of the hub over
-/// it. With 1, as without the finer form, the lower rotors of a banked vehicle are lifted more, and the vehicle
-/// levels out. With 0 all rotors are lifted equally. Flow between the rotors causes values in between. The reaction
-/// torque is unchanged, because speed and drag of the rotor are.
-///
-/// Sanchez-Cuevas et al. 2017 (10.1155/2017/1823056) measured two to four times the first form.
-#[derive(Debug, Clone, Copy)]
-pub struct GroundEffect;
+documented! {
+    /// The thrust of a rotor at height z over the ground (world z = 0) is multiplied by
+    /// `1 / (1 - rho (R / 4z)^2) + Ca exp(-Cb z / R)`. With Ca = 0 this is the form of Cheeseman and Bennett 1955 (rho =
+    /// 1 for one rotor, more for several). With rho = 0 it is the exponential form. An estimate holds one of them at
+    /// zero. In the finer form, z is the height of the centre of mass plus `levelling` times the height of the hub over
+    /// it. With 1, as without the finer form, the lower rotors of a banked vehicle are lifted more, and the vehicle
+    /// levels out. With 0 all rotors are lifted equally. Flow between the rotors causes values in between. The reaction
+    /// torque is unchanged, because speed and drag of the rotor are.
+    ///
+    /// Sanchez-Cuevas et al. 2017 (10.1155/2017/1823056) measured two to four times the first form.
+    #[derive(Debug, Clone, Copy)]
+    pub struct GroundEffect;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "rho", unit: "-", bounds: Bounds::of(0.0, 8.0) },
@@ -47,6 +50,10 @@ impl Effect for GroundEffect {
 
     fn sentence(&self) -> &'static str {
         "The ground is near: the rotors give more thrust the lower they are."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -2,15 +2,18 @@
 
 use nalgebra::Vector3;
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Effect, Hook, Input, Own, Parameter};
 
-/// The wind along each world axis is a sum of sines with the spectrum of a first-order Gauss-Markov process,
-/// `2 sigma^2 T / (1 + (w T)^2)`, where T is `correlation_time`. It is smooth, and the seed makes it repeatable. A
-/// real gust does not repeat, so an estimate gives `sigma` and `correlation_time` only.
-///
-/// Dryden's longitudinal form, MIL-F-8785C.
-#[derive(Debug, Clone, Copy)]
-pub struct Gust;
+documented! {
+    /// The wind along each world axis is a sum of sines with the spectrum of a first-order Gauss-Markov process,
+    /// `2 sigma^2 T / (1 + (w T)^2)`, where T is `correlation_time`. It is smooth, and the seed makes it repeatable. A
+    /// real gust does not repeat, so an estimate gives `sigma` and `correlation_time` only.
+    ///
+    /// Dryden's longitudinal form, MIL-F-8785C.
+    #[derive(Debug, Clone, Copy)]
+    pub struct Gust;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "sigma", unit: "m/s", bounds: Bounds::of(0.0, 10.0) },
@@ -53,6 +56,10 @@ impl Effect for Gust {
 
     fn sentence(&self) -> &'static str {
         "The wind is gusty: the drag changes irregularly and does not repeat."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

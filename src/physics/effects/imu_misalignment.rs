@@ -2,12 +2,15 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Effect, Hook, Measurement, Parameter, State};
 
-/// Accelerometer and gyroscopes measure body vectors turned by the rotation vector `(x, y, z)`. Position and attitude
-/// are not affected.
-#[derive(Debug, Clone, Copy)]
-pub struct ImuMisalignment;
+documented! {
+    /// Accelerometer and gyroscopes measure body vectors turned by the rotation vector `(x, y, z)`. Position and attitude
+    /// are not affected.
+    #[derive(Debug, Clone, Copy)]
+    pub struct ImuMisalignment;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "x", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
@@ -22,6 +25,10 @@ impl Effect for ImuMisalignment {
 
     fn sentence(&self) -> &'static str {
         "The inertial unit is misaligned: its axes are not those of the body."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

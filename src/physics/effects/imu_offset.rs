@@ -2,11 +2,14 @@
 
 use nalgebra::Vector3;
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Effect, Hook, Measurement, Parameter, State};
 
-/// `a = a_com + w' x r + w x (w x r)` for an accelerometer at `r = (x, y, z)` from the centre of mass.
-#[derive(Debug, Clone, Copy)]
-pub struct ImuOffset;
+documented! {
+    /// `a = a_com + w' x r + w x (w x r)` for an accelerometer at `r = (x, y, z)` from the centre of mass.
+    #[derive(Debug, Clone, Copy)]
+    pub struct ImuOffset;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "x", unit: "m", bounds: Bounds::of(-0.1, 0.1).by_arm(1) },
@@ -21,6 +24,10 @@ impl Effect for ImuOffset {
 
     fn sentence(&self) -> &'static str {
         "The accelerometer is away from the centre of mass: it measures the acceleration of the rotation as well."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -1,15 +1,18 @@
 //! Climbing costs thrust.
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `F_i = -(kz / N) n_i (v_air + w x r_i)_z e_z` at each hub, where `kz` is the coefficient of the whole vehicle at
-/// hover: the airspeed along the axis reduces the angle of attack of the blades. This is the same term as `dz` of
-/// `linear_drag`. A report gives it here. In the finer form the torque is multiplied by `at_hubs`, which is 0 for the
-/// drag of a body at the centre of mass.
-///
-/// Bangura and Mahony 2012; Svacha et al. 2017.
-#[derive(Debug, Clone, Copy)]
-pub struct Inflow;
+documented! {
+    /// `F_i = -(kz / N) n_i (v_air + w x r_i)_z e_z` at each hub, where `kz` is the coefficient of the whole vehicle at
+    /// hover: the airspeed along the axis reduces the angle of attack of the blades. This is the same term as `dz` of
+    /// `linear_drag`. A report gives it here. In the finer form the torque is multiplied by `at_hubs`, which is 0 for the
+    /// drag of a body at the centre of mass.
+    ///
+    /// Bangura and Mahony 2012; Svacha et al. 2017.
+    #[derive(Debug, Clone, Copy)]
+    pub struct Inflow;
+}
 
 const PARAMETERS: &[Parameter] =
     &[Parameter { name: "kz", unit: "N/(m/s)", bounds: Bounds::of(0.0, 5.0).by_mass() }];
@@ -34,6 +37,10 @@ impl Effect for Inflow {
 
     fn sentence(&self) -> &'static str {
         "Climbing costs thrust: it falls with the airspeed along the rotor axis."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -2,16 +2,19 @@
 
 use nalgebra::Vector3;
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `F_i = -(D / N) n_i (v_air + w x r_i)` at each hub `r_i`, where `D = diag(dx, dy, dz)` is the drag of the whole
-/// vehicle at hover and `n_i` is the rotor speed over its hover speed. The torque is `r_i x F_i`. In the finer form
-/// the torque is multiplied by `at_hubs`, which is 0 for a drag at the centre of mass, and `n_i` becomes
-/// `1 + with_speed (n_i - 1)`: the drag of a body does not grow with the rotors' speed.
-///
-/// Martin and Salaun 2010; Faessler et al. 2018 (arXiv 1712.02402).
-#[derive(Debug, Clone, Copy)]
-pub struct LinearDrag;
+documented! {
+    /// `F_i = -(D / N) n_i (v_air + w x r_i)` at each hub `r_i`, where `D = diag(dx, dy, dz)` is the drag of the whole
+    /// vehicle at hover and `n_i` is the rotor speed over its hover speed. The torque is `r_i x F_i`. In the finer form
+    /// the torque is multiplied by `at_hubs`, which is 0 for a drag at the centre of mass, and `n_i` becomes
+    /// `1 + with_speed (n_i - 1)`: the drag of a body does not grow with the rotors' speed.
+    ///
+    /// Martin and Salaun 2010; Faessler et al. 2018 (arXiv 1712.02402).
+    #[derive(Debug, Clone, Copy)]
+    pub struct LinearDrag;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "dx", unit: "N/(m/s)", bounds: Bounds::of(0.0, 5.0).by_mass() },
@@ -41,6 +44,10 @@ impl Effect for LinearDrag {
 
     fn sentence(&self) -> &'static str {
         "The rotors have drag: a force against the airspeed, in proportion to it and to the rotor speed."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

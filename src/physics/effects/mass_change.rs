@@ -1,11 +1,14 @@
 //! The vehicle becomes lighter or heavier in flight.
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// From `time` on, the mass is `m + delta` with the same centre and inertia. The total force `F` then accelerates the
-/// vehicle by `F / (m + delta)`. For a body of mass `m` this is an additional force `-delta / (m + delta) F`.
-#[derive(Debug, Clone, Copy)]
-pub struct MassChange;
+documented! {
+    /// From `time` on, the mass is `m + delta` with the same centre and inertia. The total force `F` then accelerates the
+    /// vehicle by `F / (m + delta)`. For a body of mass `m` this is an additional force `-delta / (m + delta) F`.
+    #[derive(Debug, Clone, Copy)]
+    pub struct MassChange;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "time", unit: "s", bounds: Bounds::of(0.0, 1e5) },
@@ -25,6 +28,10 @@ impl Effect for MassChange {
 
     fn sentence(&self) -> &'static str {
         "The mass changed in flight: from one instant on, the same thrust accelerates it more, or less."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -1,15 +1,18 @@
 //! Rotors take time to reach the commanded speed.
 
+use crate::physics::equation::documented;
 use crate::physics::{
     ActiveEffect, Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, RotorLag, Rotors,
 };
 use crate::vehicle::Propulsion;
 
-/// `Omega' = (Omega_command - Omega) / time_constant`, with one state for each rotor. In the finer form,
-/// `time_constant` is that of a rotor that speeds up, and `time_constant_down` that of a rotor that slows down: the
-/// motor drives the rotor up, and often only the drag of the air slows it down.
-#[derive(Debug, Clone, Copy)]
-pub struct MotorLag;
+documented! {
+    /// `Omega' = (Omega_command - Omega) / time_constant`, with one state for each rotor. In the finer form,
+    /// `time_constant` is that of a rotor that speeds up, and `time_constant_down` that of a rotor that slows down: the
+    /// motor drives the rotor up, and often only the drag of the air slows it down.
+    #[derive(Debug, Clone, Copy)]
+    pub struct MotorLag;
+}
 
 /// Faster than this the rotor follows at once for every rate that a log has.
 const LEAST_TIME_CONSTANT_S: f64 = 1e-4;
@@ -54,6 +57,10 @@ impl Effect for MotorLag {
 
     fn sentence(&self) -> &'static str {
         "The rotors follow their commands late, as a first-order lag."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -2,15 +2,18 @@
 
 use nalgebra::Vector3;
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `F = -|v_air| diag(cx, cy, cz) v_air` at the centre of mass, with `c = rho CdA / 2` of a face. In the finer form,
-/// the share `by_face` of the force depends on the speed along each axis alone, `F_i = -c_i |v_i| v_i`, as for flat
-/// faces.
-///
-/// Hoerner 1965; ArduPilot's ballistic coefficients.
-#[derive(Debug, Clone, Copy)]
-pub struct QuadraticDrag;
+documented! {
+    /// `F = -|v_air| diag(cx, cy, cz) v_air` at the centre of mass, with `c = rho CdA / 2` of a face. In the finer form,
+    /// the share `by_face` of the force depends on the speed along each axis alone, `F_i = -c_i |v_i| v_i`, as for flat
+    /// faces.
+    ///
+    /// Hoerner 1965; ArduPilot's ballistic coefficients.
+    #[derive(Debug, Clone, Copy)]
+    pub struct QuadraticDrag;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "cx", unit: "N/(m/s)^2", bounds: Bounds::of(0.0, 2.0).by_mass() },
@@ -33,6 +36,10 @@ impl Effect for QuadraticDrag {
 
     fn sentence(&self) -> &'static str {
         "The body has drag: a force against the airspeed that grows with its square."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

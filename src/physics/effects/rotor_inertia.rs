@@ -2,14 +2,17 @@
 
 use nalgebra::Vector3;
 
+use crate::physics::equation::documented;
 use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `tau = -(H' + w x H)` with `H = -jr sum s_i Omega_i e_z`: gyroscopic and spin-up torque together. `s_i` is the
-/// sign of the reaction torque of the rotor about +z (a rotor that turns about -z pushes the body about +z).
-///
-/// Bangura and Mahony 2012.
-#[derive(Debug, Clone, Copy)]
-pub struct RotorInertia;
+documented! {
+    /// `tau = -(H' + w x H)` with `H = -jr sum s_i Omega_i e_z`: gyroscopic and spin-up torque together. `s_i` is the
+    /// sign of the reaction torque of the rotor about +z (a rotor that turns about -z pushes the body about +z).
+    ///
+    /// Bangura and Mahony 2012.
+    #[derive(Debug, Clone, Copy)]
+    pub struct RotorInertia;
+}
 
 const PARAMETERS: &[Parameter] =
     &[Parameter { name: "jr", unit: "kg m^2", bounds: Bounds::of(0.0, 0.01).by_mass().by_arm(2) }];
@@ -34,6 +37,10 @@ impl Effect for RotorInertia {
     fn sentence(&self) -> &'static str {
         "The rotors have inertia: a change of their speed yaws the vehicle, and a rotation of the vehicle causes \
          gyroscopic torques."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -2,17 +2,20 @@
 
 use nalgebra::Vector3;
 
+use crate::physics::equation::documented;
 use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// The load is a point mass on a taut massless cord of fixed length from the centre of mass. The states are the unit
-/// vector `q` from vehicle to load and its rate, in world axes. With `F` the total force on the vehicle (world,
-/// without gravity), the cord pulls with `T = M m / (M + m) (L |q'|^2 - q . F / M)` along `q`, and
-/// `L q'' = -(T q / m) - (F + T q) / M`. In the finer form the air damps the swing: `damping q'` is subtracted from
-/// `q''`.
-///
-/// Sreenath, Lee and Kumar 2013, without torque, because the cord is at the centre of mass.
-#[derive(Debug, Clone, Copy)]
-pub struct SlungLoad;
+documented! {
+    /// The load is a point mass on a taut massless cord of fixed length from the centre of mass. The states are the unit
+    /// vector `q` from vehicle to load and its rate, in world axes. With `F` the total force on the vehicle (world,
+    /// without gravity), the cord pulls with `T = M m / (M + m) (L |q'|^2 - q . F / M)` along `q`, and
+    /// `L q'' = -(T q / m) - (F + T q) / M`. In the finer form the air damps the swing: `damping q'` is subtracted from
+    /// `q''`.
+    ///
+    /// Sreenath, Lee and Kumar 2013, without torque, because the cord is at the centre of mass.
+    #[derive(Debug, Clone, Copy)]
+    pub struct SlungLoad;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "mass", unit: "kg", bounds: Bounds::of(0.0, 5.0).by_mass() },
@@ -31,6 +34,10 @@ impl Effect for SlungLoad {
 
     fn sentence(&self) -> &'static str {
         "A load swings below on a cord: it pulls sideways after each stop, at its own frequency."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -2,12 +2,15 @@
 
 use nalgebra::Vector3;
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Effect, Hook, Input, Own, Parameter};
 
-/// The air moves with this constant velocity in world axes. The wind acts through every effect that depends on the
-/// airspeed, and does nothing without one.
-#[derive(Debug, Clone, Copy)]
-pub struct SteadyWind;
+documented! {
+    /// The air moves with this constant velocity in world axes. The wind acts through every effect that depends on the
+    /// airspeed, and does nothing without one.
+    #[derive(Debug, Clone, Copy)]
+    pub struct SteadyWind;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "north", unit: "m/s", bounds: Bounds::of(-20.0, 20.0) },
@@ -22,6 +25,10 @@ impl Effect for SteadyWind {
 
     fn sentence(&self) -> &'static str {
         "A steady wind blows: the drag is that of the airspeed, not of the speed over ground."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

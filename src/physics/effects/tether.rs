@@ -2,15 +2,18 @@
 
 use nalgebra::Vector3;
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// The lifted part of the line weighs `line_mass` per metre of height. Beyond `length` from its anchor at the origin
-/// of the world, the line pulls back like a spring:
-/// `F = -line_mass z (g + carried a_z) e_z - stiffness (|p| - length)+ p / |p|` at the centre of mass. `carried`, in
-/// the finer form, is the share of the line that moves up and down with the vehicle: 1 for a line that hangs free, 0
-/// (the default) for one that is paid out. a_z is the acceleration that the rotors give vehicle and line.
-#[derive(Debug, Clone, Copy)]
-pub struct Tether;
+documented! {
+    /// The lifted part of the line weighs `line_mass` per metre of height. Beyond `length` from its anchor at the origin
+    /// of the world, the line pulls back like a spring:
+    /// `F = -line_mass z (g + carried a_z) e_z - stiffness (|p| - length)+ p / |p|` at the centre of mass. `carried`, in
+    /// the finer form, is the share of the line that moves up and down with the vehicle: 1 for a line that hangs free, 0
+    /// (the default) for one that is paid out. a_z is the acceleration that the rotors give vehicle and line.
+    #[derive(Debug, Clone, Copy)]
+    pub struct Tether;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "line_mass", unit: "kg/m", bounds: Bounds::of(0.0, 0.5).by_mass() },
@@ -56,6 +59,10 @@ impl Effect for Tether {
 
     fn sentence(&self) -> &'static str {
         "A line leads down to the ground: it weighs more the higher the vehicle, and holds it back when taut."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -1,17 +1,20 @@
 //! Thrust does not follow the law that the vehicle file states.
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `T_i = T + 2 T_hover s (s - 1) (c + e (s - 1))` with `s = sqrt(T / T_hover)`, the speed that the thrust law gives
-/// over that of hover, and c the `curvature`. Nothing changes at hover, where the scale is known. The slope there is
-/// `1 + c` times that of the law. The reaction torque changes by the same factor. In the finer form the curve has in
-/// addition a `bow` e.
-///
-/// A thrust with a share f of the square of the command and `1 - f` of the command itself, as PX4's THR_MDL_FAC and
-/// ArduPilot's MOT_THST_EXPO have it, corresponds to `c = (f - 1) / 2` of a law with the square alone (f for commands
-/// relative to hover).
-#[derive(Debug, Clone, Copy)]
-pub struct ThrustCurve;
+documented! {
+    /// `T_i = T + 2 T_hover s (s - 1) (c + e (s - 1))` with `s = sqrt(T / T_hover)`, the speed that the thrust law gives
+    /// over that of hover, and c the `curvature`. Nothing changes at hover, where the scale is known. The slope there is
+    /// `1 + c` times that of the law. The reaction torque changes by the same factor. In the finer form the curve has in
+    /// addition a `bow` e.
+    ///
+    /// A thrust with a share f of the square of the command and `1 - f` of the command itself, as PX4's THR_MDL_FAC and
+    /// ArduPilot's MOT_THST_EXPO have it, corresponds to `c = (f - 1) / 2` of a law with the square alone (f for commands
+    /// relative to hover).
+    #[derive(Debug, Clone, Copy)]
+    pub struct ThrustCurve;
+}
 
 const PARAMETERS: &[Parameter] = &[Parameter { name: "curvature", unit: "-", bounds: Bounds::of(-0.5, 0.5) }];
 const FINER: &[Parameter] = &[Parameter { name: "bow", unit: "-", bounds: Bounds::of(-1.0, 1.0) }];
@@ -31,6 +34,10 @@ impl Effect for ThrustCurve {
 
     fn sentence(&self) -> &'static str {
         "The thrust curve is bent: thrust grows faster or slower with the command than stated."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -2,12 +2,15 @@
 
 use nalgebra::Vector3;
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `F_i = T_i (b_y, -b_x, 0)` at each hub in addition to the thrust: the rotor plane is turned by the small angles
-/// `b_x` = `x` and `b_y` = `y` about the axes of the body.
-#[derive(Debug, Clone, Copy)]
-pub struct ThrustTilt;
+documented! {
+    /// `F_i = T_i (b_y, -b_x, 0)` at each hub in addition to the thrust: the rotor plane is turned by the small angles
+    /// `b_x` = `x` and `b_y` = `y` about the axes of the body.
+    #[derive(Debug, Clone, Copy)]
+    pub struct ThrustTilt;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "x", unit: "rad", bounds: Bounds::of(-0.2, 0.2) },
@@ -30,6 +33,10 @@ impl Effect for ThrustTilt {
 
     fn sentence(&self) -> &'static str {
         "The thrust axis is tilted: the thrust has a sideways component that is fixed in the body."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -1,13 +1,16 @@
 //! Flying sideways gives thrust.
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 
-/// `F_i = (kh / N) ((v_air + w x r_i)_x^2 + (..)_y^2) e_z` at each hub, where `kh` is the coefficient of the whole
-/// vehicle.
-///
-/// Faessler et al. 2018 (arXiv 1712.02402); Svacha et al. 2017.
-#[derive(Debug, Clone, Copy)]
-pub struct TranslationalLift;
+documented! {
+    /// `F_i = (kh / N) ((v_air + w x r_i)_x^2 + (..)_y^2) e_z` at each hub, where `kh` is the coefficient of the whole
+    /// vehicle.
+    ///
+    /// Faessler et al. 2018 (arXiv 1712.02402); Svacha et al. 2017.
+    #[derive(Debug, Clone, Copy)]
+    pub struct TranslationalLift;
+}
 
 const PARAMETERS: &[Parameter] =
     &[Parameter { name: "kh", unit: "N/(m/s)^2", bounds: Bounds::of(0.0, 1.0).by_mass() }];
@@ -29,6 +32,10 @@ impl Effect for TranslationalLift {
 
     fn sentence(&self) -> &'static str {
         "Sideways flight increases the thrust: it grows with the square of the airspeed across the rotor axis."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -1,10 +1,13 @@
 //! Commands take time to arrive.
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Effect, Hook, Parameter};
 
-/// The commands `u(t - delay)` act at time t: an exact shift, no filter.
-#[derive(Debug, Clone, Copy)]
-pub struct TransportDelay;
+documented! {
+    /// The commands `u(t - delay)` act at time t: an exact shift, no filter.
+    #[derive(Debug, Clone, Copy)]
+    pub struct TransportDelay;
+}
 
 const PARAMETERS: &[Parameter] = &[Parameter { name: "delay", unit: "s", bounds: Bounds::of(0.0, 0.3) }];
 
@@ -15,6 +18,10 @@ impl Effect for TransportDelay {
 
     fn sentence(&self) -> &'static str {
         "Commands arrive late, as a pure delay."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -1,18 +1,21 @@
 //! Descending into its own wake a rotor loses thrust.
 
+use crate::physics::equation::documented;
 use crate::physics::{Airframe, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
 use crate::units::AIR_DENSITY_KG_M3;
 
-/// `F_i = -loss T_i e(x) e_z` at each hub, where `x = v_z / v_h` is the climb rate over the induced velocity of
-/// hover, `v_h = sqrt(T_i / (2 rho A))`. `e(x)` is the excess of the induced velocity that Leishman measured over
-/// that of momentum theory, `k(x) / k(0) - (sqrt(x^2/4 + 1) - x/2)`, where it is positive (x above -1.45) and where
-/// the ring has formed: it is zero above x = -0.4 and grows smoothly from there to x = -0.6. Its largest value is
-/// 0.09, at x = -1.1. Lateral airspeed carries the ring away and reduces the effect by `1 / (1 + (v_xy / v_h)^2)`.
-/// The fluctuation of the thrust is not modelled.
-///
-/// Leishman 2006, section 2.13.
-#[derive(Debug, Clone, Copy)]
-pub struct VortexRing;
+documented! {
+    /// `F_i = -loss T_i e(x) e_z` at each hub, where `x = v_z / v_h` is the climb rate over the induced velocity of
+    /// hover, `v_h = sqrt(T_i / (2 rho A))`. `e(x)` is the excess of the induced velocity that Leishman measured over
+    /// that of momentum theory, `k(x) / k(0) - (sqrt(x^2/4 + 1) - x/2)`, where it is positive (x above -1.45) and where
+    /// the ring has formed: it is zero above x = -0.4 and grows smoothly from there to x = -0.6. Its largest value is
+    /// 0.09, at x = -1.1. Lateral airspeed carries the ring away and reduces the effect by `1 / (1 + (v_xy / v_h)^2)`.
+    /// The fluctuation of the thrust is not modelled.
+    ///
+    /// Leishman 2006, section 2.13.
+    #[derive(Debug, Clone, Copy)]
+    pub struct VortexRing;
+}
 
 const PARAMETERS: &[Parameter] = &[Parameter { name: "loss", unit: "-", bounds: Bounds::of(0.0, 5.0) }];
 
@@ -54,6 +57,10 @@ impl Effect for VortexRing {
 
     fn sentence(&self) -> &'static str {
         "The vehicle sinks into its own wake: the rotors lose thrust in a steep descent."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

@@ -1,11 +1,14 @@
 //! One rotor gives less (or more) than the others.
 
+use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, MAX_ROTORS, Own, Parameter, Rotors, Wrench};
 
-/// `T_i = factor T`, and the reaction torque changes by the same factor, for the rotor of this number. Rotors are
-/// counted from 0 in the order of the vehicle file.
-#[derive(Debug, Clone, Copy)]
-pub struct WeakRotor;
+documented! {
+    /// `T_i = factor T`, and the reaction torque changes by the same factor, for the rotor of this number. Rotors are
+    /// counted from 0 in the order of the vehicle file.
+    #[derive(Debug, Clone, Copy)]
+    pub struct WeakRotor;
+}
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "rotor", unit: "-", bounds: Bounds::of(0.0, 7.0) },
@@ -24,6 +27,10 @@ impl Effect for WeakRotor {
 
     fn sentence(&self) -> &'static str {
         "One rotor is weak: its thrust and torque are less than those of the others."
+    }
+
+    fn equation(&self) -> &'static str {
+        Self::EQUATION
     }
 
     fn parameters(&self) -> &'static [Parameter] {

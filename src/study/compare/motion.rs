@@ -2,13 +2,18 @@
 
 use crate::diagnose::{ExplainSettings, Explanation, FlightParameter, by_flight, explain};
 use crate::signals::Signals;
-use crate::study::Track;
+use crate::study::{Progress, Track};
 use crate::vehicle::Vehicle;
 use rayon::prelude::*;
 
 /// Each parameter along all flights, and why a flight is not among them. A flight whose commands come too seldom to compare torques
 /// with the motion shows its balance only.
-pub(super) fn tracks(signals: &[Signals], vehicle: &Vehicle) -> (Vec<Track>, Vec<Option<String>>) {
+pub(super) fn tracks(
+    signals: &[Signals],
+    vehicle: &Vehicle,
+    progress: &dyn Progress,
+) -> (Vec<Track>, Vec<Option<String>>) {
+    progress.steps(signals.len() as u64);
     let settings = ExplainSettings::default();
     let explained: Vec<Result<Explanation, String>> = signals
         .par_iter()
@@ -16,7 +21,9 @@ pub(super) fn tracks(signals: &[Signals], vehicle: &Vehicle) -> (Vec<Track>, Vec
             if !one.quality.torques {
                 return Err("commands or body rates are logged too seldom to compare torques".to_owned());
             }
-            explain(std::slice::from_ref(one), vehicle, &settings).map_err(|error| error.to_string())
+            let explained = explain(std::slice::from_ref(one), vehicle, &settings);
+            progress.step();
+            explained.map_err(|error| error.to_string())
         })
         .collect();
     let places: Vec<usize> = (0..signals.len()).filter(|place| explained[*place].is_ok()).collect();

@@ -67,7 +67,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let (tracks, reasons) = if request.balance_only || request.vehicle.is_none() {
         (Vec::new(), vec![Some("not asked for".to_owned()); flights.signals.len()])
     } else {
-        tracks(&flights.signals, &vehicle)
+        tracks(&flights.signals, &vehicle, progress)
     };
     if draft.is_none() {
         notes.extend(contradictions(&tracks, &vehicle).iter().map(Contradiction::note));

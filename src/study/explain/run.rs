@@ -95,8 +95,10 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     if request.design_next {
         progress.stage(Stage::Designing);
         let inside = Vehicle { limits: next_limits.unwrap_or(vehicle.limits), ..vehicle.clone() };
-        study.next_flight =
-            Some(design(&study.explanation, &flights.signals, &inside, &NextSettings::default()));
+        let settings = NextSettings::default();
+        progress.steps(settings.work());
+        let step = || progress.step();
+        study.next_flight = Some(design(&study.explanation, &flights.signals, &inside, &settings, &step));
     }
     Ok(study)
 }

@@ -31,7 +31,13 @@ pub fn validate(request: &ValidateRequest, progress: &dyn Progress) -> Result<Va
     refuse_twins(logs.iter())?;
     refuse_other_builds(logs.iter().flatten())?;
     progress.stage(Stage::Predicting);
-    let one = |log| ready(log, |of: &Flight| flight(of, &models, request.transient_s));
+    progress.steps(logs.iter().map(Vec::len).sum::<usize>() as u64);
+    let compared = |of: &Flight| {
+        let compared = flight(of, &models, request.transient_s);
+        progress.step();
+        compared
+    };
+    let one = |log| ready(log, compared);
     let done: Vec<_> = logs.into_par_iter().map(one).collect();
     let mut flights = Vec::new();
     for log in done {

@@ -1,0 +1,51 @@
+"""The program, and how it is called."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+from typing import Any, Union
+
+Word = Union[str, int, float, "os.PathLike[str]"]
+
+# done; done with loss (the document says which); done, and something changed
+_DONE = (0, 3, 4)
+
+
+class MavidError(RuntimeError):
+    """The program has no result. `status` is its exit status; the message is what it said."""
+
+    def __init__(self, status: int, message: str) -> None:
+        super().__init__(message)
+        self.status = status
+
+
+def program() -> str:
+    """The path of the program: the variable MAVID, the one of this wheel, or the one on the PATH."""
+    if named := os.environ.get("MAVID"):
+        return named
+    name = "mavid.exe" if sys.platform == "win32" else "mavid"
+    schemes = [sysconfig.get_path("scripts")]
+    if user := sysconfig.get_preferred_scheme("user"):
+        schemes.append(sysconfig.get_path("scripts", scheme=user))
+    for folder in schemes:
+        if folder and (Path(folder) / name).is_file():
+            return str(Path(folder) / name)
+    if found := shutil.which(name):
+        return found
+    raise FileNotFoundError(f"mavid: expected the program in {', '.join(filter(None, schemes))} or on the PATH, found none")
+
+
+def run(*arguments: Word) -> dict[str, Any]:
+    """Runs `mavid ARGUMENTS --json` and gives its document. Raises MavidError where there is none."""
+    words = [program(), *(os.fspath(word) if isinstance(word, os.PathLike) else str(word) for word in arguments)]
+    done = subprocess.run([*words, "--json"], capture_output=True, text=True, check=False)
+    if done.returncode not in _DONE:
+        raise MavidError(done.returncode, done.stderr.strip())
+    document: dict[str, Any] = json.loads(done.stdout)
+    return document
