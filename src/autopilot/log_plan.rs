@@ -1,6 +1,6 @@
 //! What an autopilot will log by its parameters, and what should be changed of them.
 
-use super::logging::{LogNeed, LogSetting, bits};
+use super::logging::{LogNeed, LogSetting, OldLogging, bits};
 use super::stack::Stack;
 
 /// A parameter that has to be another for an identification.
@@ -81,6 +81,10 @@ impl Stack {
     /// the parameters that a log has (`None`: not in it).
     #[must_use]
     pub fn logging_by(&self, value: impl Fn(&str) -> Option<f64>) -> String {
+        let is_old = |old: &OldLogging| value(old.has).is_some() && value(old.lacks).is_none();
+        if let Some(old) = self.log_settings.old.filter(is_old) {
+            return format!("update {}, {}, and {}", old.update_to, old.brings, self.logging);
+        }
         let settings = self.log_settings.settings;
         let Some((first, found)) = settings.first().map(|first| (first, value(first.parameter))) else {
             return self.logging.to_owned();
@@ -196,6 +200,9 @@ mod tests {
         let ardupilot = ARDUPILOT.logging_by(|name| (name == "LOG_BITMASK").then_some(176_126.0));
         assert_eq!(ardupilot, "set LOG_BITMASK = 438271 (adds fast attitude, fast IMU)");
         assert_eq!(ARDUPILOT.logging_by(|_| None), ARDUPILOT.logging);
+        // until Copter 3.3 bit 18 of LOG_BITMASK did not exist, and FRAME did
+        let old = ARDUPILOT.logging_by(|name| ["FRAME", "LOG_BITMASK"].contains(&name).then_some(830.0));
+        assert!(old.starts_with("update ArduPilot to Copter 3.5 or later, whose LOG_BITMASK"), "{old}");
     }
 
     #[test]

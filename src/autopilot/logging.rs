@@ -74,6 +74,19 @@ pub struct LogRate {
     pub without: &'static str,
 }
 
+/// Releases whose parameters of logging mean something else.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OldLogging {
+    /// they have this parameter
+    pub has: &'static str,
+    /// and lack this one
+    pub lacks: &'static str,
+    /// what to update to
+    pub update_to: &'static str,
+    /// what that brings, as the end of a sentence
+    pub brings: &'static str,
+}
+
 /// How an autopilot is told what to log.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Logging {
@@ -81,6 +94,8 @@ pub struct Logging {
     pub settings: &'static [LogSetting],
     /// a parameter that every release has: one that has it and not the first of the settings lacks that
     pub of_all: &'static str,
+    /// releases for which none of this holds
+    pub old: Option<OldLogging>,
     /// what is logged at which rate
     pub rates: &'static [LogRate],
 }
@@ -120,6 +135,7 @@ pub(super) const PX4: Logging = Logging {
         },
     ],
     of_all: "SDLOG_UTC_OFFSET",
+    old: None,
     rates: &[LogRate {
         parameter: "SDLOG_PROFILE",
         bit: 3,
@@ -163,6 +179,13 @@ pub(super) const ARDUPILOT: Logging = Logging {
         },
     ],
     of_all: "LOG_BITMASK",
+    // bits of LOG_BITMASK until Copter 3.1 (ArduCopter/defines.h): 10 is the motors in a message of their own, 18 does not exist
+    old: Some(OldLogging {
+        has: "FRAME",
+        lacks: "LOG_BACKEND_TYPE",
+        update_to: "ArduPilot to Copter 3.5 or later",
+        brings: "whose LOG_BITMASK has bits for the outputs and the fast inertial unit",
+    }),
     rates: &[
         LogRate {
             parameter: "LOG_BITMASK",

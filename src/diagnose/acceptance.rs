@@ -23,6 +23,8 @@ pub(super) fn accepted(
     if at_bound(&fitted, &taken) {
         // what is sharpest by its slope can lie too far off for the effect itself
         taken = best;
+        // three of a long flight at a time take much memory
+        drop(fitted);
         fitted = with_taken(flights, after, &taken)?;
     }
     let is_refused = wanders(flights, &fitted, &taken) || at_bound(&fitted, &taken);

@@ -161,9 +161,9 @@ pub enum Newton {
 pub fn fit(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted, PhysicsError> {
     let mut fitted = evaluate(flights, base.clone())?;
     for _ in 0..PASSES {
-        let moved = step(&mut base, &fitted, newton);
+        let moved = step(&mut base, &fitted.rows, &(fitted.coefficients, fitted.covariance), newton);
         // two of a long flight at a time take much memory
-        drop(fitted);
+        drop((fitted.rows, fitted.weighted));
         fitted = evaluate(flights, base.clone())?;
         if moved < CONVERGED {
             break;
@@ -188,13 +188,21 @@ pub(super) fn linearised(flights: &[Trace], base: Base) -> Result<Fitted, Physic
     Ok(Fitted { base, rows, weighted, coefficients, covariance })
 }
 
+/// Coefficients of the rows' columns, and their covariance.
+pub(super) type Coefficients = (DVector<f64>, DMatrix<f64>);
+
 /// Moves the base by the coefficients; returns the largest move in standard errors.
-pub(super) fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
+pub(super) fn step(
+    base: &mut Base,
+    rows: &Rows,
+    (coefficients, covariance): &Coefficients,
+    newton: Newton,
+) -> f64 {
     let mut most = 0.0_f64;
     let body = &mut base.vehicle.body;
-    for (index, column) in fitted.rows.nuisances.iter().enumerate() {
-        let by = fitted.coefficients[index];
-        let std = fitted.covariance[(index, index)].max(0.0).sqrt();
+    for (index, column) in rows.nuisances.iter().enumerate() {
+        let by = coefficients[index];
+        let std = covariance[(index, index)].max(0.0).sqrt();
         match column.nuisance {
             Nuisance::Mass => {
                 body.mass_kg = (body.mass_kg + by).clamp(0.3 * body.mass_kg, 3.0 * body.mass_kg)
@@ -225,18 +233,18 @@ pub(super) fn step(base: &mut Base, fitted: &Fitted, newton: Newton) -> f64 {
         }
         most = most.max(by.abs() / std.max(f64::MIN_POSITIVE));
     }
-    let mut index = fitted.rows.nuisances.len();
+    let mut index = rows.nuisances.len();
     for present in &mut base.effects {
         for &free in &present.free {
-            let by = fitted.coefficients[index];
-            let std = fitted.covariance[(index, index)].max(0.0).sqrt();
+            let by = coefficients[index];
+            let std = covariance[(index, index)].max(0.0).sqrt();
             let before = present.values[free];
             present.values[free] = present.possible(free, before + by, &base.size);
             most = most.max((present.values[free] - before).abs() / std.max(f64::MIN_POSITIVE));
             index += 1;
         }
     }
-    base.bring_to_scale(fitted.rows.compares_torques);
+    base.bring_to_scale(rows.compares_torques);
     most
 }
 

@@ -101,8 +101,9 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
             ActuationLatency { delay_s: total_s - lag_s, lag_s, uneven }
         };
         let newton = if is_delay(latency, &fitted.base.vehicle) { Newton::Delay } else { Newton::Free };
-        let mut base = fitted.base;
-        base.latency = latency;
+        let base = Base { latency, ..fitted.base.clone() };
+        // several of a long flight at a time take much memory
+        drop(fitted);
         let (mut fitted, found) = with_latency(flights, base, newton)?;
         finding = found;
         if let Some((told, found)) = uneven_lag(flights, &mut fitted, uneven)? {
@@ -117,6 +118,7 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         let lag_s = stated_lag_s(&fitted.base.vehicle).clamp(0.0, total_s.max(0.0));
         latency =
             ActuationLatency { delay_s: total_s - lag_s, lag_s, uneven: stated_uneven(&fitted.base.vehicle) };
+        drop(fitted);
     }
     let held = fit(flights, Base { latency, ..base }, Newton::Held)?;
     Ok((held, finding))
@@ -146,7 +148,9 @@ pub(super) fn with_latency(
         let apart_s = Some((finding.total_s - told.total_s).abs()).filter(|_| told.std_s < UNCONFIRMED_S);
         return Ok((plain, unsure(apart_s)));
     }
-    let base = Base { latency: by.base.latency, ..plain.base };
+    let base = Base { latency: by.base.latency, ..plain.base.clone() };
+    // several of a long flight at a time take much memory
+    drop((plain, by));
     Ok((fit(flights, base, Newton::Held)?, told))
 }
 

@@ -13,11 +13,11 @@ use crate::physics::PhysicsError;
 pub(super) const UNCHANGED_S: f64 = 0.001;
 
 /// Removes effects that later ones have made superfluous, and estimates the latency with the remaining ones. Returns
-/// whether any effect was removed, the change of the latency, s, and what is found of it.
+/// the fit, whether any effect was removed, the change of the latency, s, and what is found of it.
 pub(super) fn prune(
     flights: &[Trace],
-    after: &mut Fitted,
-) -> Result<(bool, f64, LatencyFinding), PhysicsError> {
+    after: Fitted,
+) -> Result<(Fitted, bool, f64, LatencyFinding), PhysicsError> {
     let mut index = after.rows.nuisances.len();
     let mut kept: Vec<EffectTerm> = Vec::new();
     let mut dropped = false;
@@ -44,10 +44,12 @@ pub(super) fn prune(
     dropped |= kept.len() < after.base.effects.len();
     let before_s = after.base.latency.total_s();
     let base = Base { effects: kept, ..after.base.clone() };
+    // several of a long flight at a time take much memory
+    drop(after);
     let newton = if is_delay(base.latency, &base.vehicle) { Newton::Delay } else { Newton::Free };
     let (fitted, finding) = with_latency(flights, base, newton)?;
-    *after = fitted;
-    Ok((dropped, (after.base.latency.total_s() - before_s).abs(), finding))
+    let moved_s = (fitted.base.latency.total_s() - before_s).abs();
+    Ok((fitted, dropped, moved_s, finding))
 }
 
 /// An accepted effect stays in the model if it is this many standard deviations from zero: the z of

@@ -271,7 +271,7 @@ impl Rows {
     /// `K` of the change of force and torque per step of each, relative to the rows' own base where there is no model below.
     fn differences(&self, flights: &[Trace], base: &Model, moved: &[Moved]) -> Vec<Channels> {
         let instants = flights.iter().map(|trace| trace.grid.count).max().unwrap_or_default();
-        let some = (AT_ONCE / instants.max(1)).clamp(4, 32);
+        let some = (AT_ONCE / instants.max(1)).clamp(2, 32);
         let parts: Vec<Vec<Channels>> =
             moved.par_chunks(some).map(|moved| self.differences_of(flights, base, moved)).collect();
         parts.into_iter().flatten().collect()
@@ -280,32 +280,35 @@ impl Rows {
     fn differences_of(&self, flights: &[Trace], base: &Model, moved: &[Moved]) -> Vec<Channels> {
         let mut out = vec![Channels::default(); moved.len()];
         for (trace, along) in flights.iter().zip(&self.flights) {
+            let weak = |(of, (up, down)): (&Moved, Pair), base: &[Vector3<f64>]| {
+                let below = down.as_ref().map_or(base, |down| &down.series);
+                let change = per_step_of(up.series, below, of.step);
+                change.map_or_else(|| nothing(trace), |series| trace.weak_vector(0, &series))
+            };
             let forces = pairs_along(base, moved, (trace, &along.commanded), |wrench| wrench.force_n);
             // what has no torque by the commands has none by the motion
-            let turning = moved
+            let turns: Vec<bool> = forces
                 .iter()
-                .zip(&forces)
-                .filter(|(_, (up, down))| up.turns || down.as_ref().is_some_and(|down| down.turns));
-            let turns: Vec<&Moved> = turning.map(|(moved, _)| moved).collect();
+                .map(|(up, down)| up.turns || down.as_ref().is_some_and(|down| down.turns))
+                .collect();
+            // the series of a long flight take much memory: those of the forces are gone before those of the torques come
+            let forces: Vec<[Vec<f64>; 3]> =
+                moved.iter().zip(forces).map(|pair| weak(pair, &along.force_n)).collect();
+            let turning = moved.iter().zip(&turns).filter(|(_, turns)| **turns).map(|(moved, _)| moved);
             let torques =
-                pairs_along(base, turns.iter().copied(), (trace, &along.motion), |wrench| wrench.torque_nm);
-            let mut torques = turns.iter().zip(torques).peekable();
-            for ((of, force), out) in moved.iter().zip(forces).zip(&mut out) {
-                let torque =
-                    torques.next_if(|(turns, _)| std::ptr::eq(**turns, of)).map(|(_, torque)| torque);
-                let weak = |pair: Option<(PartAlong, Option<PartAlong>)>, base: &[Vector3<f64>]| {
-                    let change = pair.and_then(|(up, down)| {
-                        per_step_of(up.series, down.as_ref().map_or(base, |down| &down.series), of.step)
-                    });
-                    change.map_or_else(|| nothing(trace), |series| trace.weak_vector(0, &series))
-                };
-                let (force, torque) = (weak(Some(force), &along.force_n), weak(torque, &along.torque_nm));
-                append(out, &channels(trace, force, torque));
+                pairs_along(base, turning.clone(), (trace, &along.motion), |wrench| wrench.torque_nm);
+            let mut torques = turning.zip(torques).map(|pair| weak(pair, &along.torque_nm));
+            for ((turns, force), out) in turns.iter().zip(forces).zip(&mut out) {
+                let torque = torques.by_ref().take(usize::from(*turns)).next();
+                append(out, &channels(trace, force, torque.unwrap_or_else(|| nothing(trace))));
             }
         }
         out
     }
 }
+
+/// Force or torque along a flight of a model, and of the one below it.
+type Pair = (PartAlong, Option<PartAlong>);
 
 /// Force or torque along a flight of each model, and of the one below it where it has one.
 fn pairs_along<'a>(
@@ -313,7 +316,7 @@ fn pairs_along<'a>(
     moved: impl IntoIterator<Item = &'a Moved> + Clone,
     along: (&Trace, &RotorMotion),
     part: fn(&Wrench) -> Vector3<f64>,
-) -> Vec<(PartAlong, Option<PartAlong>)> {
+) -> Vec<Pair> {
     let models = moved.clone().into_iter().flat_map(|of| [Some(&of.up), of.down.as_ref()]).flatten();
     let mut each = each_along(base, &models.collect::<Vec<_>>(), along, part).into_iter();
     let pair = |of: &Moved| Some((each.next()?, of.down.as_ref().and_then(|_| each.next())));

@@ -60,8 +60,8 @@ pub fn search(
             _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
                 settled += 1;
-                let (found, is_settled) = pruned(flights, &mut after, price, &mut refused)?;
-                beside = found;
+                let is_settled;
+                (after, beside, is_settled) = pruned(flights, after, price, &mut refused)?;
                 if is_settled {
                     break;
                 }
@@ -129,23 +129,23 @@ fn ranked(
     (passed, all)
 }
 
-/// Removes from the model what it no longer needs and tries other forms of the rest. Returns its latency, and whether
-/// the model stays as it is.
+/// Removes from the model what it no longer needs and tries other forms of the rest. Returns it, its latency, and
+/// whether the model stays as it is.
 fn pruned(
     flights: &[Trace],
-    after: &mut Fitted,
+    after: Fitted,
     price: Price,
     refused: &mut Vec<&'static str>,
-) -> Result<(LatencyFinding, bool), PhysicsError> {
+) -> Result<(Fitted, LatencyFinding, bool), PhysicsError> {
     let before = after.base.effects.clone();
-    let (dropped, moved, found) = prune(flights, after)?;
-    let placed = one_place(flights, after, price)? | other_form(flights, after, price)?;
+    let (mut after, dropped, moved, found) = prune(flights, after)?;
+    let placed = one_place(flights, &mut after, price)? | other_form(flights, &mut after, price)?;
     let gone = before.iter().map(|present| present.id());
     let kept = |id: &&'static str| after.base.effects.iter().any(|p| p.id() == *id);
     refused.extend(gone.filter(|id| !kept(id)).inspect(|effect| {
         tracing::info!(effect, "effect dropped from the model");
     }));
-    Ok((found, !dropped && !placed && moved < UNCHANGED_S))
+    Ok((after, found, !dropped && !placed && moved < UNCHANGED_S))
 }
 
 /// Sorts candidates by the energy that they explain less the price of its columns.

@@ -6,7 +6,7 @@
 use super::channels::{AXES, CHANNELS, Channels, Nuisance};
 use super::columns::Columns;
 use super::evidence::weighted;
-use super::fit::{CONVERGED, Fitted, Newton, PASSES, linearised, step};
+use super::fit::{CONVERGED, Coefficients, Fitted, Newton, PASSES, linearised, step};
 use super::hausman::holds;
 use super::left_over::of_left_over;
 use super::trace::Trace;
@@ -68,15 +68,17 @@ pub(super) fn fit_by_instruments(
     newton: Newton,
 ) -> Result<Option<Fitted>, PhysicsError> {
     let mut base = fitted.base.clone();
-    let Some(mut by) = by_instruments(flights, fitted.clone(), newton) else { return Ok(None) };
+    let Some(told) = by_instruments(flights, fitted, newton) else { return Ok(None) };
+    let mut moved = step(&mut base, &fitted.rows, &told, newton);
     for _ in 0..PASSES {
-        let moved = step(&mut base, &by, newton);
-        let Ok(again) = linearised(flights, base.clone()) else { return Ok(None) };
-        let Some(next) = by_instruments(flights, again, newton) else { return Ok(None) };
-        by = next;
+        // the one before is gone: two of a long flight at a time take much memory
+        let Ok(mut by) = linearised(flights, base.clone()) else { return Ok(None) };
+        let Some(told) = by_instruments(flights, &by, newton) else { return Ok(None) };
         if moved < CONVERGED {
+            (by.coefficients, by.covariance) = told;
             return Ok(Some(by));
         }
+        moved = step(&mut base, &by.rows, &told, newton);
     }
     Ok(None)
 }
@@ -173,27 +175,27 @@ fn brought_by_latency(flights: &[Trace], fitted: &Fitted) -> Option<DVector<f64>
 }
 
 /// Inertia, latency and what damps the rotation by instruments; `None` where they do not tell them apart.
-fn by_instruments(flights: &[Trace], mut fitted: Fitted, newton: Newton) -> Option<Fitted> {
-    let projected = Projected::of(flights, &fitted, newton)?;
+fn by_instruments(flights: &[Trace], fitted: &Fitted, newton: Newton) -> Option<Coefficients> {
+    let projected = Projected::of(flights, fitted, newton)?;
     let Projected { places, given, asked, bread } = &projected;
-    let y = of_torques(&fitted.rows.residual, flights, &fitted);
-    let coefficients = projected.part_in(&y);
-    let left = y - given * &coefficients;
+    let y = of_torques(&fitted.rows.residual, flights, fitted);
+    let told = projected.part_in(&y);
+    let left = y - given * &told;
     let tested = Columns::of(asked, fitted.rows.len());
     let nothing_known = DMatrix::zeros(places.len(), places.len());
-    let covariance = fitted.weighted.sandwich(bread, &tested, &left, &nothing_known);
-    if covariance.diagonal().iter().any(|variance| variance.is_nan() || *variance <= 0.0) {
+    let told_covariance = fitted.weighted.sandwich(bread, &tested, &left, &nothing_known);
+    if told_covariance.diagonal().iter().any(|variance| variance.is_nan() || *variance <= 0.0) {
         return None;
     }
-    fitted.coefficients.fill(0.0);
-    fitted.covariance.fill(0.0);
+    let all = fitted.coefficients.len();
+    let (mut coefficients, mut covariance) = (DVector::zeros(all), DMatrix::zeros(all, all));
     for (i, &place) in places.iter().enumerate() {
-        fitted.coefficients[place] = coefficients[i];
+        coefficients[place] = told[i];
         for (j, &other) in places.iter().enumerate() {
-            fitted.covariance[(place, other)] = covariance[(i, j)];
+            covariance[(place, other)] = told_covariance[(i, j)];
         }
     }
-    Some(fitted)
+    Some((coefficients, covariance))
 }
 
 /// Places among the coefficients and, weighted, the columns of what is estimated. A latency that is held is known: it and a

@@ -174,6 +174,19 @@ pub fn inertia_by_wider_window(flights: &[Signals], vehicle: &Vehicle) -> [f64; 
     narrow.map_or([f64::NAN; 3], |narrow| weak.by_wider_window(&narrow, &nominal.theta, &settings))
 }
 
+/// Notes on flights whose masses or moments of inertia, each by its flight alone, contradict each other: they are not of one
+/// vehicle with one load.
+#[must_use]
+pub fn contradicting_flights(flights: &[Signals], vehicle: &Vehicle) -> Vec<Note> {
+    if flights.len() < 2 {
+        return Vec::new();
+    }
+    let (nominal, settings) = (Nominal::of(vehicle), IdentifySettings::default());
+    let mut weak = WeakFlights::from(flights, vehicle, &settings);
+    weak.compensate(&nominal.theta, vehicle);
+    disagreeing(&weak.rows, &nominal.theta)
+}
+
 /// How far mass and inertia move with one standard error of a guessed thrust curve; `None` where it is no guess, or nothing can
 /// be estimated.
 #[must_use]

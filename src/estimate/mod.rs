@@ -27,7 +27,8 @@ pub use error::EstimateError;
 pub use expected::NoiseTerm;
 pub use guessed_curve::{GuessedCurve, MovedByCurve, rests_on_guessed_curve};
 pub use identify::{
-    Identification, IdentifySettings, identify, inertia_by_wider_window, moved_by_guessed_curve,
+    Identification, IdentifySettings, contradicting_flights, identify, inertia_by_wider_window,
+    moved_by_guessed_curve,
 };
 pub use information::WeakInformation;
 pub use live::RecursiveEstimator;

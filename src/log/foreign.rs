@@ -72,6 +72,15 @@ const KNOWN: &[Foreign] = &[
     begins(b"\xfe\xff", "text in UTF-16", "save it as UTF-8"),
 ];
 
+/// Fewer bytes of a file than tell ArduPilot's log from PX4's of before ULog.
+const BEGUN: Foreign = begins(
+    b"\xa3\x95",
+    "the first bytes of an ArduPilot log (.bin), or of a PX4 log of the format before ULog",
+    "give the whole log",
+);
+/// Marker, number, number and length of what is defined, and its name but for a letter.
+const BEGUN_BYTES: usize = 8;
+
 /// Bytes that are told of what nobody knows.
 const TOLD_BYTES: usize = 8;
 
@@ -123,6 +132,9 @@ fn is_vehicle_file(head: &[u8]) -> bool {
 
 /// The kind of file that begins with these bytes, if its signature is known.
 pub(super) fn foreign(head: &[u8]) -> Option<&'static Foreign> {
+    if head.len() < BEGUN_BYTES && head.starts_with(BEGUN.signature) {
+        return Some(&BEGUN);
+    }
     let plain = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
     let is = |kind: &&Foreign| {
         let bytes = if kind.signature.is_ascii() && kind.at == 0 { plain } else { head };

@@ -22,11 +22,13 @@ use super::both_logs::each_flight_once;
 use super::flight::{Flight, LoggedBy};
 use super::{InputFile, StudyError};
 
-/// What is identified and validated from of one log: it takes about 50 bytes a number.
-pub(super) const IDENTIFIED: Hold = Hold { seconds: 1800.0, numbers: 3_000_000 };
-/// What is explained of one log. Memory and time grow with the numbers: a log of an on-board profile holds more of them a second
-/// than telemetry.
-pub(super) const EXPLAINED: Hold = Hold { seconds: 480.0, numbers: 1_500_000 };
+/// Stamps and values of one log that are searched for effects. Memory and time grow with them: a log of an on-board profile holds
+/// more of them a second than telemetry.
+const SEARCHED: usize = 1_500_000;
+/// What is identified and validated from of one log.
+pub(super) const IDENTIFIED: Hold = Hold { seconds: 1800.0, numbers: SEARCHED };
+/// What is explained of one log.
+pub(super) const EXPLAINED: Hold = Hold { seconds: 480.0, numbers: SEARCHED };
 /// Share of a hold-out's samples that may be in an explained flight: none are, but for chance. A hold-out that shares
 /// more would be predicted from itself.
 const MOST_SHARED: f64 = 0.02;

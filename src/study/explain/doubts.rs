@@ -28,7 +28,9 @@ impl ExplainStudy {
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
         let mut doubts = doubts(&self.given.vehicle, &self.given.quality, &self.contradictions());
-        doubts.extend(self.differing.as_ref().map(|_| TWO_VEHICLES.to_owned()));
+        if self.differing.is_some() || !self.given.contradicting.is_empty() {
+            doubts.push(TWO_VEHICLES.to_owned());
+        }
         doubts
     }
 }

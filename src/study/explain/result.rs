@@ -38,6 +38,8 @@ pub struct Given {
     pub inertia_by_wider_window: [f64; 3],
     /// how far mass and inertia move with one standard error of a guessed thrust curve
     pub by_guessed_curve: Option<MovedByCurve>,
+    /// flights whose masses or moments of inertia contradict each other
+    pub contradicting: Vec<Note>,
     /// settings of the method
     pub settings: ExplainSettings,
     /// s left out at the beginning of each flight

@@ -9,7 +9,9 @@ use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{ExplainSettings, Explanation, Trace, Verdict};
-use crate::estimate::{Contradiction, inertia_by_wider_window, moved_by_guessed_curve};
+use crate::estimate::{
+    Contradiction, contradicting_flights, inertia_by_wider_window, moved_by_guessed_curve,
+};
 use crate::note::{About, Note, said_once};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference, other_settings};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, names, prepare, refuse_off_mixer, refuse_twins};
@@ -129,6 +131,7 @@ impl Task<'_> {
             quality: flights.signals.iter().map(|signals| signals.quality.clone()).collect(),
             inertia_by_wider_window: inertia_by_wider_window(&flights.signals, self.vehicle),
             by_guessed_curve: moved_by_guessed_curve(&flights.signals, self.vehicle),
+            contradicting: contradicting_flights(&flights.signals, self.vehicle),
             settings,
             transient_s: self.request.transient_s,
         };
@@ -153,6 +156,7 @@ impl Task<'_> {
         study.notes.extend_from_slice(self.notes);
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
+        study.notes.extend(study.given.contradicting.clone());
         study.evaluate_explained(flights);
         if flights.signals.len() > 1 {
             study.tell_along(&flights.signals, self.winds_m_s.to_vec());
