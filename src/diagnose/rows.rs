@@ -278,33 +278,42 @@ impl Rows {
     }
 
     fn differences_of(&self, flights: &[Trace], base: &Model, moved: &[Moved]) -> Vec<Channels> {
+        let each: Vec<Vec<Channels>> = flights
+            .par_iter()
+            .zip(&self.flights)
+            .map(|(trace, along)| differences_along((trace, along), base, moved))
+            .collect();
         let mut out = vec![Channels::default(); moved.len()];
-        for (trace, along) in flights.iter().zip(&self.flights) {
-            let forces = pairs_along(base, moved, (trace, &along.commanded), |wrench| wrench.force_n);
-            // what has no torque by the commands has none by the motion
-            let turning = moved
-                .iter()
-                .zip(&forces)
-                .filter(|(_, (up, down))| up.turns || down.as_ref().is_some_and(|down| down.turns));
-            let turns: Vec<&Moved> = turning.map(|(moved, _)| moved).collect();
-            let torques =
-                pairs_along(base, turns.iter().copied(), (trace, &along.motion), |wrench| wrench.torque_nm);
-            let mut torques = turns.iter().zip(torques).peekable();
-            for ((of, force), out) in moved.iter().zip(forces).zip(&mut out) {
-                let torque =
-                    torques.next_if(|(turns, _)| std::ptr::eq(**turns, of)).map(|(_, torque)| torque);
-                let weak = |pair: Option<(PartAlong, Option<PartAlong>)>, base: &[Vector3<f64>]| {
-                    let change = pair.and_then(|(up, down)| {
-                        per_step_of(up.series, down.as_ref().map_or(base, |down| &down.series), of.step)
-                    });
-                    change.map_or_else(|| nothing(trace), |series| trace.weak_vector(0, &series))
-                };
-                let (force, torque) = (weak(Some(force), &along.force_n), weak(torque, &along.torque_nm));
-                append(out, &channels(trace, force, torque));
-            }
+        for of_flight in each {
+            out.iter_mut().zip(&of_flight).for_each(|(out, part)| append(out, part));
         }
         out
     }
+}
+
+/// The same along one flight.
+fn differences_along((trace, along): (&Trace, &Along), base: &Model, moved: &[Moved]) -> Vec<Channels> {
+    let forces = pairs_along(base, moved, (trace, &along.commanded), |wrench| wrench.force_n);
+    // what has no torque by the commands has none by the motion
+    let turning = moved
+        .iter()
+        .zip(&forces)
+        .filter(|(_, (up, down))| up.turns || down.as_ref().is_some_and(|down| down.turns));
+    let turns: Vec<&Moved> = turning.map(|(moved, _)| moved).collect();
+    let torques = pairs_along(base, turns.iter().copied(), (trace, &along.motion), |wrench| wrench.torque_nm);
+    let mut torques = turns.iter().zip(torques).peekable();
+    let one = |(of, force): (&Moved, (PartAlong, Option<PartAlong>))| {
+        let torque = torques.next_if(|(turns, _)| std::ptr::eq(**turns, of)).map(|(_, torque)| torque);
+        let weak = |pair: Option<(PartAlong, Option<PartAlong>)>, base: &[Vector3<f64>]| {
+            let change = pair.and_then(|(up, down)| {
+                per_step_of(up.series, down.as_ref().map_or(base, |down| &down.series), of.step)
+            });
+            change.map_or_else(|| nothing(trace), |series| trace.weak_vector(0, &series))
+        };
+        let (force, torque) = (weak(Some(force), &along.force_n), weak(torque, &along.torque_nm));
+        channels(trace, force, torque)
+    };
+    moved.iter().zip(forces).map(one).collect()
 }
 
 /// Force or torque along a flight of each model, and of the one below it where it has one.
