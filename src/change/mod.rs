@@ -13,4 +13,4 @@ pub use explanation::What;
 pub use groups::{Groups, Moved, interval_95};
 pub use history::{Step, find_returns, steps};
 pub use parameter::{ParameterChange, Spread, judge_parameter};
-pub use pooled::pooled_mean;
+pub use pooled::{pooled_mean, with_scatter};

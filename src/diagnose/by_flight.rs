@@ -10,8 +10,10 @@ use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
 use super::floors::add_floors;
 use super::latency::LatencyFinding;
+use super::latency_name::{FlightLatency, flight_latency};
 use super::left_over::add_left_over;
-use super::reconstructed::reconstruct;
+use super::other_law::{of_other_laws, tested_laws};
+use super::reconstructed::{self, Forms, reconstruct};
 use super::recorded::Recorded;
 use super::signature::EffectTerm;
 use super::signatures::ALL;
@@ -22,6 +24,7 @@ use crate::estimate::{NAMES, UNITS};
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Whose a parameter is.
@@ -33,10 +36,13 @@ pub enum Owner {
     Flight,
 }
 
+/// Name of the latency between command and rotor, delay and lag together.
+const LATENCY: &str = "latency";
+
 /// A parameter as one flight shows it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlightParameter {
-    /// `mass`, `ixx` ... or `effect.parameter`
+    /// `mass`, `ixx` ..., `latency`, or `effect.parameter`
     pub name: String,
     /// SI
     pub unit: &'static str,
@@ -67,8 +73,8 @@ pub fn by_flight(
     let one = |(signals, explanation): (&Signals, &&Explanation)| {
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let base = with_terms(explanation, &terms, (vehicle, &trace));
-        let (fitted, by_instruments) = flight_fit(signals, trace, base, explanation.search.latency).ok()?;
-        Some(parameters((&fitted, &by_instruments), explanation.turned_by_control, &terms))
+        let fit = flight_fit((signals, &[trace]), base, (explanation.search.latency, Forms::Chosen)).ok()?;
+        Some(parameters(&fit, explanation.turned_by_control, &terms, None))
     };
     let each: Vec<_> = flights.par_iter().zip(explanations).map(one).collect();
     each.into_iter().map(Option::unwrap_or_default).collect()
@@ -84,16 +90,61 @@ pub fn each_with_model_of_all(
     (vehicle, settings): (&Vehicle, &ExplainSettings),
 ) -> Vec<Vec<FlightParameter>> {
     let terms = of_the_vehicle(&[explanation]);
-    let one = |(signals, drifts): (&Signals, &bool)| {
-        let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
-        let mut base = with_terms(explanation, &terms, (vehicle, &trace));
+    let trace = |signals| Trace::new(signals, vehicle, settings.half_width_s);
+    let Ok(traces) = flights.iter().map(trace).collect::<Result<Vec<Trace>, _>>() else {
+        return vec![Vec::new(); flights.len()];
+    };
+    let together = of_other_laws(&traces, &explanation.search.last, &explanation.search.after);
+    let one = |((signals, trace), drifts): ((&Signals, &Trace), &bool)| {
+        let own = std::slice::from_ref(trace);
+        let mut base = with_terms(explanation, &terms, (vehicle, trace));
         if *drifts {
             base.effects.extend(wind_beside(&base));
         }
-        let (fitted, by_instruments) = flight_fit(signals, trace, base, explanation.search.latency).ok()?;
-        Some(parameters((&fitted, &by_instruments), explanation.turned_by_control, &terms))
+        let latency = explanation.search.latency;
+        let of_latency = flight_latency((own, &base), &explanation.named, vehicle).ok().flatten();
+        let fit = flight_fit((signals, own), base, (latency, Forms::Known)).ok()?;
+        let alone = of_other_laws(own, &tested_laws(own, &fit.0), &fit.0);
+        let laws = OtherLaws { alone: &alone, together: &together, of_all: &explanation.search.after };
+        let mut out = parameters(&fit, explanation.turned_by_control, &terms, Some(&laws));
+        out.extend(of_latency.map(FlightParameter::from));
+        Some(out)
     };
-    flights.par_iter().zip(drifts).map(one).map(Option::unwrap_or_default).collect()
+    let each = flights.par_iter().zip(&traces).zip(drifts);
+    each.map(one).map(Option::unwrap_or_default).collect()
+}
+
+/// What drags of other laws may bring into the coefficients: of one flight, and of all of them together.
+struct OtherLaws<'a> {
+    alone: &'a DMatrix<f64>,
+    together: &'a DMatrix<f64>,
+    /// fit of which the latter is
+    of_all: &'a Fitted,
+}
+
+impl OtherLaws<'_> {
+    /// Variance of a flight's coefficient in the place of `column`, and the part of it that all flights together do not lower.
+    fn variances(&self, term: &EffectTerm, slot: usize, column: usize) -> (f64, f64) {
+        let place = self.of_all.base.effects.iter().position(|present| is_same(present, term));
+        let of_all = place.and_then(|place| reconstructed::column(self.of_all, place, slot));
+        let together = of_all.map_or(0.0, |column| self.together[(column, column)]);
+        (self.alone[(column, column)].max(together), together)
+    }
+}
+
+impl From<FlightLatency> for FlightParameter {
+    fn from(of: FlightLatency) -> Self {
+        Self {
+            name: LATENCY.to_owned(),
+            unit: "s",
+            owner: Owner::Vehicle,
+            effect: Some(of.id),
+            wind_axis: None,
+            nothing: of.ordinary_s,
+            estimate: of.estimate,
+            common_std: of.common_std,
+        }
+    }
 }
 
 /// The parameters of one flight, fitted alone to its own explanation with a drag beside it, whether it was named or not: the flights of
@@ -116,10 +167,8 @@ pub fn of_one_flight(
         terms.extend(forms.into_iter().map(|form| form.term).find(drags));
     }
     let base = with_terms(explanation, &terms, (vehicle, &trace));
-    let fitted = flight_fit(signals, trace, base, explanation.search.latency).ok();
-    fitted.map_or_else(Vec::new, |(fitted, by_instruments)| {
-        parameters((&fitted, &by_instruments), explanation.turned_by_control, &terms)
-    })
+    let fit = flight_fit((signals, &[trace]), base, (explanation.search.latency, Forms::Chosen)).ok();
+    fit.map_or_else(Vec::new, |fit| parameters(&fit, explanation.turned_by_control, &terms, None))
 }
 
 /// A wind along the ground, about none, where a force of the air is there through which it acts.
@@ -141,8 +190,8 @@ pub fn rigid_by_flight(
     let one = |signals: &Signals| {
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let base = explanation.search.before.base.clone();
-        let (fitted, by_instruments) = flight_fit(signals, trace, base, explanation.search.latency).ok()?;
-        Some(parameters((&fitted, &by_instruments), explanation.turned_by_control, &[]))
+        let fit = flight_fit((signals, &[trace]), base, (explanation.search.latency, Forms::Known)).ok()?;
+        Some(parameters(&fit, explanation.turned_by_control, &[], None))
     };
     flights.par_iter().map(one).map(Option::unwrap_or_default).collect()
 }
@@ -229,27 +278,27 @@ fn with_terms(explanation: &Explanation, terms: &[EffectTerm], (vehicle, trace):
 /// One flight fitted to a model, its sizes and errors as an explanation has them, but for what all flights have in common; and which
 /// coefficients the instruments have told.
 fn flight_fit(
-    signals: &Signals,
-    trace: Trace,
+    (signals, traces): (&Signals, &[Trace]),
     base: Base,
-    latency: LatencyFinding,
+    (latency, forms): (LatencyFinding, Forms),
 ) -> Result<(Fitted, Vec<usize>), PhysicsError> {
-    let traces = [trace];
-    let after = fit(&traces, base, Newton::Held)?;
+    let after = fit(traces, base, Newton::Held)?;
     let mut found = Search { before: after.clone(), after, latency, steps: Vec::new(), last: Vec::new() };
-    reconstruct(std::slice::from_ref(signals), &traces, &mut found)?;
-    let by_instruments = if is_fed_back(&traces) {
-        torques_by_instruments(&traces, latency.std_s, &mut found.after)?
+    reconstruct(std::slice::from_ref(signals), traces, (forms, &mut found))?;
+    let by_instruments = if is_fed_back(traces) {
+        torques_by_instruments(traces, latency.std_s, &mut found.after)?
     } else {
         Vec::new()
     };
     Ok((found.after, by_instruments))
 }
 
+/// What a fit says. Flights that are compared have a spread for other laws of drag; where they are put together, `laws` are in the errors.
 fn parameters(
-    (fitted, by_instruments): (&Fitted, &[usize]),
+    (fitted, by_instruments): &(Fitted, Vec<usize>),
     turned_by_control: bool,
     terms: &[EffectTerm],
+    laws: Option<&OtherLaws<'_>>,
 ) -> Vec<FlightParameter> {
     let mut whole = fitted.clone();
     add_left_over(&mut whole, by_instruments);
@@ -282,6 +331,8 @@ fn parameters(
                 let value = present.values[slot];
                 let std = fitted.std_of(column, (value, parameter.unit));
                 let of_whole = whole.std_of(column, (value, parameter.unit));
+                let none = (0.0, 0.0);
+                let (alone, together) = laws.map_or(none, |laws| laws.variances(present, slot, column));
                 out.extend((std > 0.0).then(|| FlightParameter {
                     name: named(present, parameter.name),
                     unit: parameter.unit,
@@ -289,8 +340,8 @@ fn parameters(
                     effect: Some(present.id()),
                     wind_axis: present.signature.role.wind.map(|_| slot),
                     nothing: present.signature.nothing,
-                    estimate: (value, of_whole),
-                    common_std: common(std * std, of_whole * of_whole),
+                    estimate: (value, of_whole.hypot(alone.sqrt())),
+                    common_std: common(std * std, of_whole * of_whole).hypot(together.sqrt()),
                 }));
             }
             column += 1;

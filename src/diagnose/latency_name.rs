@@ -1,13 +1,15 @@
 //! The name of a lag or delay that is larger than on every vehicle.
 
+use super::base::Base;
 use super::confusable::APART;
-use super::latency::{FAST_MOTOR_S, LatencyFinding, REFUSED, held_s, is_delay, stated_lag_s};
+use super::fit::Newton;
+use super::latency::{FAST_MOTOR_S, LatencyFinding, REFUSED, held_s, is_delay, stated_lag_s, with_latency};
 use super::named::{Confusable, Named, NamedParameter, Strength};
 use super::signature::LatencyKind;
-use super::signatures::latency_signature;
+use super::signatures::{latency_signature, signature_of};
 use super::tested::Search;
 use super::trace::Trace;
-use crate::physics::{ActuationLatency, RotorLag};
+use crate::physics::{ActuationLatency, PhysicsError, RotorLag};
 use crate::vehicle::Vehicle;
 
 /// A lag or delay beyond that of sampling and a fast motor; `None` too where torques are not compared, because the commands
@@ -17,11 +19,7 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
         return None;
     }
     let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std } = found.latency;
-    let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
-    let motor_s = stated_lag_s(vehicle);
-    let of_sensors_s = |trace: &Trace| trace.inertial_late_s + trace.inertial_unsure_s;
-    let late_s = traces.iter().map(of_sensors_s).fold(0.0, f64::max);
-    let ordinary_s = motor_s + FAST_MOTOR_S + 0.5 * period_s + late_s;
+    let ordinary_s = ordinary_s(traces, vehicle);
     if total_s - ordinary_s < 4.0 * std_s.hypot(ORDINARY_STD_S) {
         return None;
     }
@@ -62,6 +60,49 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
             }]
         },
     })
+}
+
+/// Latency of sampling, sensors and a fast motor, or of the one that is stated, s: no name says so much.
+fn ordinary_s(traces: &[Trace], vehicle: &Vehicle) -> f64 {
+    let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
+    let of_sensors_s = |trace: &Trace| trace.inertial_late_s + trace.inertial_unsure_s;
+    let late_s = traces.iter().map(of_sensors_s).fold(0.0, f64::max);
+    stated_lag_s(vehicle) + FAST_MOTOR_S + 0.5 * period_s + late_s
+}
+
+/// The latency of one flight where all of them gave it a name: delay and lag together, whatever the kind.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FlightLatency {
+    /// the name
+    pub(super) id: &'static str,
+    /// s, value and standard error
+    pub(super) estimate: (f64, f64),
+    /// s, part of that error which goes the same way in every flight
+    pub(super) common_std: f64,
+    /// s, up to which it is ordinary
+    pub(super) ordinary_s: f64,
+}
+
+/// The latency of one flight, fitted alone to the model `base`. `None` where the flights' latency has no name, and where the flight does
+/// not determine it.
+///
+/// # Errors
+/// [`PhysicsError`] where the base is not physical.
+pub(super) fn flight_latency(
+    (traces, base): (&[Trace], &Base),
+    named: &[Named],
+    vehicle: &Vehicle,
+) -> Result<Option<FlightLatency>, PhysicsError> {
+    let is_latency = |id| signature_of(id).is_some_and(|signature| signature.role.latency.is_some());
+    let Some(id) = named.iter().map(|named| named.id).find(|id| is_latency(id)) else { return Ok(None) };
+    let newton = if is_delay(base.latency, vehicle) { Newton::Delay } else { Newton::Free };
+    let (_, own) = with_latency(traces, base.clone(), newton)?;
+    Ok(own.is_determined().then(|| FlightLatency {
+        id,
+        estimate: (own.total_s, own.std_s.hypot(ORDINARY_STD_S)),
+        common_std: ORDINARY_STD_S,
+        ordinary_s: ordinary_s(traces, vehicle),
+    }))
 }
 
 /// Lag of motors of which nothing is stated, s, and its standard error: 12 to 50 ms in simulators' vehicles and on

@@ -4,31 +4,56 @@
 //! model has one of them, the other may be there as well, at the size that ordinary vehicles have, as far as the flight does not
 //! exclude it. What it brings into the other sizes belongs to their standard errors (consider covariance).
 
+use super::candidates::{Candidate, candidates};
 use super::evidence::weighted;
 use super::fit::Fitted;
+use super::score::columns_of;
 use super::signature::EffectTerm;
+use super::signatures::ALL;
 use super::tested::Tested;
 use super::trace::Trace;
 use nalgebra::{DMatrix, DVector};
 
 /// Adds to the covariance of a fit's effects what the drag laws among the candidates that were not taken may bring into them.
 pub(super) fn add_other_laws(flights: &[Trace], last: &[Tested], fitted: &mut Fitted) {
-    let drags = |term: &EffectTerm| term.signature.role.lateral_slope.is_some();
+    fitted.covariance += of_other_laws(flights, last, fitted);
+}
+
+/// The drag laws that a fit does not have, tested on its flights.
+pub(super) fn tested_laws(flights: &[Trace], fitted: &Fitted) -> Vec<Tested> {
+    let all = candidates(&fitted.base.vehicle, flights, ALL).into_iter();
+    let others = all.filter(|candidate| is_other_law(candidate, fitted));
+    let tested = others.filter_map(|candidate| {
+        let evidence = fitted.weighted.test(&columns_of(flights, fitted, &candidate)?)?;
+        Some(Tested { candidate, evidence })
+    });
+    tested.collect()
+}
+
+fn drags(term: &EffectTerm) -> bool {
+    term.signature.role.lateral_slope.is_some()
+}
+
+/// A drag alone, of a law that the fit does not have.
+fn is_other_law(candidate: &Candidate, fitted: &Fitted) -> bool {
+    let [part] = candidate.parts.as_slice() else { return false };
+    let is_new = || fitted.base.effects.iter().all(|present| !present.is(part.signature));
+    candidate.through.is_none() && drags(part) && is_new()
+}
+
+/// Covariance that the drag laws among the candidates that were not taken may bring into a fit's coefficients.
+pub(super) fn of_other_laws(flights: &[Trace], last: &[Tested], fitted: &Fitted) -> DMatrix<f64> {
+    let count = fitted.covariance.nrows();
+    let mut most: DMatrix<f64> = DMatrix::zeros(count, count);
     if !fitted.base.effects.iter().any(drags) {
-        return;
+        return most;
     }
     // a drag along z is told from an inflow by the search
     let with_air = |term: &EffectTerm| drags(term) || term.signature.role.wind.is_some();
     let present = &fitted.base.effects;
     let go_along: Vec<bool> = present.iter().flat_map(|term| vec![with_air(term); term.free.len()]).collect();
-    let count = fitted.covariance.nrows();
-    let mut most: DMatrix<f64> = DMatrix::zeros(count, count);
-    for tested in last {
+    for tested in last.iter().filter(|tested| is_other_law(&tested.candidate, fitted)) {
         let [part] = tested.candidate.parts.as_slice() else { continue };
-        let is_other = drags(part) && fitted.base.effects.iter().all(|present| !present.is(part.signature));
-        if tested.candidate.through.is_some() || !is_other {
-            continue;
-        }
         let Ok(columns) = fitted.rows.columns_of(flights, &fitted.base, part) else { continue };
         let mut added = DMatrix::zeros(count, count);
         for (index, (column, &slot)) in columns.iter().zip(&part.free).enumerate() {
@@ -48,7 +73,7 @@ pub(super) fn add_other_laws(flights: &[Trace], last: &[Tested], fitted: &mut Fi
             most = added;
         }
     }
-    fitted.covariance += most;
+    most
 }
 
 /// Mean square of a size that is from none to `usual` on ordinary vehicles, where a flight tells `told` with an error `std`.

@@ -32,6 +32,15 @@ const MOST_SCALE: f64 = 1.5;
 /// A share that grows with the rotors' speed is told apart beyond this many standard errors.
 const TOLD_APART: f64 = 2.0;
 
+/// Whether the forms of effects are open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Forms {
+    /// the forces tell of the body or of the rotors
+    Chosen,
+    /// they are known from other flights
+    Known,
+}
+
 /// Replaces sizes of forces, and the mass, by those of the reconstruction where all flights allow one.
 ///
 /// # Errors
@@ -39,9 +48,9 @@ const TOLD_APART: f64 = 2.0;
 pub(super) fn reconstruct(
     signals: &[Signals],
     traces: &[Trace],
-    found: &mut Search,
+    (forms, found): (Forms, &mut Search),
 ) -> Result<(), PhysicsError> {
-    let flights = Flights { signals, latency_std_s: found.latency.std_s };
+    let flights = Flights { signals, latency_std_s: found.latency.std_s, forms };
     match flights.sizes(traces, &found.after)? {
         Ok(after) => found.after = after,
         Err(why) => tracing::debug!(%why, "sizes of forces left as they were"),
@@ -70,6 +79,7 @@ enum Kept {
 struct Flights<'a> {
     signals: &'a [Signals],
     latency_std_s: f64,
+    forms: Forms,
 }
 
 impl Flights<'_> {
@@ -91,7 +101,8 @@ impl Flights<'_> {
         if terms.iter().all(|term| term.free.is_empty()) {
             return Err(Kept::NoForce);
         }
-        if open.effects.iter().any(|present| present.signature.role.with_speed.is_some()) {
+        let has_forms = open.effects.iter().any(|present| present.signature.role.with_speed.is_some());
+        if has_forms && self.forms == Forms::Chosen {
             let pooled = self.pooled_over_flights(fitted, &open, &terms, fit_mode)?;
             choose_forms(&mut base, &terms, &pooled);
         }
@@ -261,7 +272,7 @@ struct Size {
 }
 
 /// Index of an effect's free value among the coefficients of a fit.
-fn column(fitted: &Fitted, place: usize, slot: usize) -> Option<usize> {
+pub(super) fn column(fitted: &Fitted, place: usize, slot: usize) -> Option<usize> {
     let present = &fitted.base.effects;
     let before: usize = present[..place].iter().map(|term| term.free.len()).sum();
     let own = present[place].free.iter().position(|free| *free == slot)?;

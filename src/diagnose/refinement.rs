@@ -11,7 +11,7 @@ use super::measured_force::{Felt, shows_in_forces};
 use super::named::Strength;
 use super::other_law::add_other_laws;
 use super::physical::make_physical;
-use super::reconstructed::reconstruct;
+use super::reconstructed::{Forms, reconstruct};
 use super::signature::EffectTerm;
 use super::tested::Search;
 use super::thrust_slope::may_be_noise;
@@ -43,7 +43,8 @@ pub(super) fn refine(
     leave_out_unnamed(traces, &trim, found)?;
     let mut by_instruments = Vec::new();
     for left in (0..ROUNDS).rev() {
-        tracing::info_span!("reconstruct").in_scope(|| reconstruct(flights, traces, found))?;
+        tracing::info_span!("reconstruct")
+            .in_scope(|| reconstruct(flights, traces, (Forms::Chosen, found)))?;
         if is_fed_back(traces) {
             by_instruments = tracing::info_span!("instruments")
                 .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;

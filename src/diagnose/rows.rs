@@ -278,30 +278,14 @@ impl Rows {
     }
 
     fn differences_of(&self, flights: &[Trace], base: &Model, moved: &[Moved]) -> Vec<Channels> {
+        let each: Vec<Vec<Channels>> = flights
+            .par_iter()
+            .zip(&self.flights)
+            .map(|(trace, along)| differences_along((trace, along), base, moved))
+            .collect();
         let mut out = vec![Channels::default(); moved.len()];
-        for (trace, along) in flights.iter().zip(&self.flights) {
-            let weak = |(of, (up, down)): (&Moved, Pair), base: &[Vector3<f64>]| {
-                let below = down.as_ref().map_or(base, |down| &down.series);
-                let change = per_step_of(up.series, below, of.step);
-                change.map_or_else(|| nothing(trace), |series| trace.weak_vector(0, &series))
-            };
-            let forces = pairs_along(base, moved, (trace, &along.commanded), |wrench| wrench.force_n);
-            // what has no torque by the commands has none by the motion
-            let turns: Vec<bool> = forces
-                .iter()
-                .map(|(up, down)| up.turns || down.as_ref().is_some_and(|down| down.turns))
-                .collect();
-            // the series of a long flight take much memory: those of the forces are gone before those of the torques come
-            let forces: Vec<[Vec<f64>; 3]> =
-                moved.iter().zip(forces).map(|pair| weak(pair, &along.force_n)).collect();
-            let turning = moved.iter().zip(&turns).filter(|(_, turns)| **turns).map(|(moved, _)| moved);
-            let torques =
-                pairs_along(base, turning.clone(), (trace, &along.motion), |wrench| wrench.torque_nm);
-            let mut torques = turning.zip(torques).map(|pair| weak(pair, &along.torque_nm));
-            for ((turns, force), out) in turns.iter().zip(forces).zip(&mut out) {
-                let torque = torques.by_ref().take(usize::from(*turns)).next();
-                append(out, &channels(trace, force, torque.unwrap_or_else(|| nothing(trace))));
-            }
+        for of_flight in each {
+            out.iter_mut().zip(&of_flight).for_each(|(out, part)| append(out, part));
         }
         out
     }
@@ -309,6 +293,29 @@ impl Rows {
 
 /// Force or torque along a flight of a model, and of the one below it.
 type Pair = (PartAlong, Option<PartAlong>);
+
+/// The same along one flight.
+fn differences_along((trace, along): (&Trace, &Along), base: &Model, moved: &[Moved]) -> Vec<Channels> {
+    let weak = |(of, (up, down)): (&Moved, Pair), base: &[Vector3<f64>]| {
+        let below = down.as_ref().map_or(base, |down| &down.series);
+        let change = per_step_of(up.series, below, of.step);
+        change.map_or_else(|| nothing(trace), |series| trace.weak_vector(0, &series))
+    };
+    let forces = pairs_along(base, moved, (trace, &along.commanded), |wrench| wrench.force_n);
+    // what has no torque by the commands has none by the motion
+    let turns: Vec<bool> =
+        forces.iter().map(|(up, down)| up.turns || down.as_ref().is_some_and(|down| down.turns)).collect();
+    // the series of a long flight take much memory: those of the forces are gone before those of the torques come
+    let forces: Vec<[Vec<f64>; 3]> = moved.iter().zip(forces).map(|pair| weak(pair, &along.force_n)).collect();
+    let turning = moved.iter().zip(&turns).filter(|(_, turns)| **turns).map(|(moved, _)| moved);
+    let torques = pairs_along(base, turning.clone(), (trace, &along.motion), |wrench| wrench.torque_nm);
+    let mut torques = turning.zip(torques).map(|pair| weak(pair, &along.torque_nm));
+    let one = |(turns, force): (&bool, [Vec<f64>; 3])| {
+        let torque = torques.by_ref().take(usize::from(*turns)).next();
+        channels(trace, force, torque.unwrap_or_else(|| nothing(trace)))
+    };
+    turns.iter().zip(forces).map(one).collect()
+}
 
 /// Force or torque along a flight of each model, and of the one below it where it has one.
 fn pairs_along<'a>(

@@ -1,6 +1,6 @@
 //! A parameter along the flights of a vehicle.
 
-use crate::change::{Spread, pooled_mean};
+use crate::change::{Spread, pooled_mean, with_scatter};
 use crate::diagnose::{FlightParameter, Owner};
 use crate::estimate::UNITS;
 use crate::physics::effects::ALL;
@@ -108,10 +108,10 @@ impl Track {
         pooled_mean(&self.values, &self.common_std)
     }
 
-    /// The value of one flight alone, with its standard error.
+    /// The value of one flight alone, with its standard error as the scatter of all flights leaves it.
     #[must_use]
     pub fn alone(&self, flight: usize) -> Option<(f64, f64)> {
-        self.values.get(flight).copied().flatten()
+        with_scatter(&self.values, &self.common_std).get(flight).copied().flatten()
     }
 
     /// Whether a flight alone shows that the effect is there.

@@ -5,7 +5,9 @@ use mavid::diagnose::holdout::{
     Explained, HeldOut, HoldoutError, HoldoutFit, HoldoutSettings, differing, on_holdout, on_identification,
     split_last_periods,
 };
-use mavid::diagnose::{Along, Empirical, ExplainSettings, Explanation, Verdict, explain};
+use mavid::diagnose::{
+    Along, Empirical, ExplainSettings, Explanation, Verdict, each_with_model_of_all, explain,
+};
 use mavid::physics::effects::by_id;
 use mavid::physics::{ActiveEffect, Wrench};
 use mavid::recording::{Quantity, Recording};
@@ -305,8 +307,18 @@ fn flights_with_and_without_measured_rotor_speeds_are_explained_together() {
         let found = explain(flights, &vehicles.nominal, &ExplainSettings::default()).unwrap();
         found.named.iter().map(|named| named.id).collect::<Vec<_>>()
     };
-    assert_eq!(named(&[by_commands.clone(), by_speeds.clone()]), ["linear_drag"]);
-    assert_eq!(named(&[by_speeds, by_commands]), ["linear_drag"]);
+    assert_eq!(named(&[by_speeds.clone(), by_commands.clone()]), ["linear_drag"]);
+    let (flights, settings) = ([by_commands, by_speeds], ExplainSettings::default());
+    let found = explain(&flights, &vehicles.nominal, &settings).unwrap();
+    let [drag] = found.named.as_slice() else { panic!("{:?}", found.named) };
+    assert_eq!((drag.id, drag.parameters[0].name), ("linear_drag", "dx"));
+    // each flight tells it too, less certainly than both of them
+    for alone in each_with_model_of_all(&flights, &[false; 2], &found, (&vehicles.nominal, &settings)) {
+        let dx = alone.iter().find(|of| of.name == "linear_drag.dx").unwrap();
+        let (value, std) = dx.estimate;
+        assert!((value - 0.25).abs() < 3.0 * std && std < 0.1, "{dx:?}");
+        assert!(dx.common_std < std && drag.parameters[0].std < std, "{dx:?}, {drag:?}");
+    }
 }
 
 /// The distance that the next flight was said to bring is the one that it brings.

@@ -211,6 +211,28 @@ fn why_a_vehicle_will_not_arm_says_that_it_is_not_armed() {
 }
 
 #[test]
+fn a_vehicle_that_took_off_was_armed_where_the_arming_is_lost_in_a_gap() {
+    // airborne, and a throttle that was raised
+    for event in [28.0, 15.0] {
+        let mut log = begun();
+        let outputs = |log: &mut DataflashLog, us: f64| {
+            log.add("RCOU", &[us, 1500.0, 1500.0, 1500.0, 1500.0, 0.0, 0.0].map(Value::from));
+        };
+        outputs(&mut log, 41e6);
+        log.add("MSG", &[41.5e6.into(), "PreArm: Compass not healthy".into()]);
+        outputs(&mut log, 42e6);
+        outputs(&mut log, 52e6);
+        log.add("EV", &[53e6.into(), event.into()]);
+        outputs(&mut log, 60e6);
+        log.add("EV", &[61e6.into(), 11.0.into()]);
+        let Opened { recording, .. } = open(&log.binary).unwrap();
+        let armed = stream(&recording, Quantity::Armed, "EV", 0);
+        let said = |time_s: f64| armed.values[armed.time_s.partition_point(|at| *at <= time_s) - 1];
+        assert_eq!([12.5, 13.5, 20.0, 22.0].map(said), [0.0, 1.0, 1.0, 0.0], "event {event}: {armed:?}");
+    }
+}
+
+#[test]
 fn what_is_lost_is_counted_to_the_byte() {
     let mut log = begun();
     let first = log.binary.len();

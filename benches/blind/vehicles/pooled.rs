@@ -14,15 +14,19 @@ struct Estimate {
     name: String,
     value: f64,
     std: f64,
-    /// of the flight that tells it best
+    /// error of the flight that tells it best, by that flight
     single: f64,
+    /// the same with what the scatter of all flights adds to it
+    with_scatter: f64,
+    /// that flight's value
+    best: f64,
     truth: Option<f64>,
 }
 
 /// Explains `flights` flights of each of `count` vehicles together, one vehicle after the other: the time is told.
 pub fn run(seed: u64, count: u64, flights: u64) -> Pooled {
     let mut all: Vec<Estimate> = Vec::new();
-    let (mut seconds, mut vehicles) = (Vec::new(), 0);
+    let (mut seconds, mut processor, mut vehicles) = (Vec::new(), Vec::new(), 0);
     for seed in seed..seed + count {
         let folder = std::env::temp_dir().join(format!("mavid_together_{}_{seed}", std::process::id()));
         let made = several(&folder, seed, flights, None);
@@ -33,9 +37,10 @@ pub fn run(seed: u64, count: u64, flights: u64) -> Pooled {
                 transient_s: ExplainRequest::TRANSIENT_S,
                 ..ExplainRequest::default()
             };
-            let began = Instant::now();
+            let (began, used_s) = (Instant::now(), processor_s());
             let study = explain(&request, &Silent).map_err(|error| error.to_string())?;
             seconds.push(began.elapsed().as_secs_f64());
+            processor.extend(used_s.zip(processor_s()).map(|(before, after)| after - before));
             Ok(estimates_of(seed, &made.vehicle.case, &study))
         });
         let _ = std::fs::remove_dir_all(&folder);
@@ -59,9 +64,25 @@ pub fn run(seed: u64, count: u64, flights: u64) -> Pooled {
         let PooledParameter { name, vehicles, smaller, known, covered, error_ratio } = of;
         println!("  {name:<18} {vehicles:>3} {smaller:>3} {known:>3} {covered:>3}  {error_ratio:.2}");
     }
-    let (middle, most) = (quantile(&mut seconds, 0.5), seconds.last());
-    println!("time for each vehicle's flights: median {middle:.1?} s, most {most:.1?} s");
+    spread("time for each vehicle's flights", &mut seconds);
+    spread("processor time for each vehicle's flights, all cores", &mut processor);
     Pooled { command: String::new(), vehicles, flights, parameters, all: whole }
+}
+
+/// Processor time of this process, s; `None` where the system does not tell it so.
+fn processor_s() -> Option<f64> {
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let fields: Vec<&str> = stat.rsplit(')').next()?.split_whitespace().collect();
+    let ticks = |at: usize| fields.get(at)?.parse::<f64>().ok();
+    // hundredths of a second: those of the program and those of the kernel for it
+    Some((ticks(11)? + ticks(12)?) / 100.0)
+}
+
+fn spread(what: &str, seconds: &mut [f64]) {
+    seconds.sort_by(f64::total_cmp);
+    if let (Some(middle), Some(most)) = (seconds.get(seconds.len() / 2), seconds.last()) {
+        println!("{what}: median {middle:.1} s, most {most:.1} s");
+    }
 }
 
 fn estimates_of(seed: u64, case: &RealCase, study: &ExplainStudy) -> Vec<Estimate> {
@@ -70,16 +91,22 @@ fn estimates_of(seed: u64, case: &RealCase, study: &ExplainStudy) -> Vec<Estimat
         .common()
         .filter_map(|track| {
             let (value, std) = track.pooled()?;
-            let single = track.values.iter().flatten().map(|(_, std)| *std).fold(f64::INFINITY, f64::min);
+            let place = (0..track.values.len()).filter(|&flight| track.values[flight].is_some()).min_by(
+                |&one, &other| {
+                    let std = |flight: usize| track.values[flight].map(|(_, std)| std);
+                    std(one).partial_cmp(&std(other)).unwrap()
+                },
+            )?;
+            let ((best, single), (_, with_scatter)) = track.values[place].zip(track.alone(place))?;
             let several = track.values.iter().flatten().count() > 1;
             let truth = truth(case, &track.name);
-            several.then_some(Estimate { name: track.name.clone(), value, std, single, truth })
+            several.then_some(Estimate { name: track.name.clone(), value, std, single, with_scatter, best, truth })
         })
         .collect();
     for one in estimates.iter().filter(|one| one.std >= one.single || one.is_off()) {
         println!(
-            "  seed {seed}: {} {:.5e} +- {:.1e}, best single {:.1e}, truth {:?}",
-            one.name, one.value, one.std, one.single, one.truth
+            "  seed {seed}: {} {:.5e} +- {:.1e}, best single {:.1e}, with the scatter of all {:.1e}, truth {:?}",
+            one.name, one.value, one.std, one.single, one.with_scatter, one.truth
         );
     }
     estimates
@@ -88,6 +115,11 @@ fn estimates_of(seed: u64, case: &RealCase, study: &ExplainStudy) -> Vec<Estimat
 impl Estimate {
     fn is_off(&self) -> bool {
         self.truth.is_some_and(|truth| (self.value - truth).abs() > 1.96 * self.std)
+    }
+
+    /// Whether the best single flight's value is off by its own error.
+    fn is_single_off(&self) -> bool {
+        self.truth.is_some_and(|truth| (self.best - truth).abs() > 1.96 * self.single)
     }
 }
 

@@ -10,7 +10,7 @@ const AGAIN_S: f64 = 1.0;
 const EVENTS: &[(f64, Meaning)] = &[
     (10.0, Meaning::State(Quantity::Armed, 1.0)),
     (11.0, Meaning::State(Quantity::Armed, 0.0)),
-    // auto armed: armed, and the throttle is raised. Logs can lack the event of arming
+    // auto armed: the throttle was raised, which only an armed vehicle follows. Logs can lack the event of arming
     (15.0, Meaning::State(Quantity::Armed, 1.0)),
     // landing complete, and airborne
     (18.0, Meaning::State(Quantity::LandedState, ON_GROUND)),
@@ -58,6 +58,11 @@ impl States {
             }
         }
         false
+    }
+
+    /// Whether this is the last word of it.
+    pub(super) fn is(&self, quantity: Quantity, value: f64) -> bool {
+        self.known.contains(&(quantity, value))
     }
 
     /// What is to be given again at this time, s.

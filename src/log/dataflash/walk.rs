@@ -310,6 +310,13 @@ impl Walk<'_, '_> {
     /// Before the first `change` to a state the contrary held: what is disarmed was armed, and what took off stood on the
     /// ground from its arming on.
     fn state(&mut self, quantity: Quantity, value: f64, time_s: f64, change: bool) {
+        // a vehicle that took off was armed, also where a log with a gap says last that it was not
+        if change
+            && (quantity, value) == (Quantity::LandedState, IN_AIR)
+            && self.states.is(Quantity::Armed, 0.0)
+        {
+            self.state(Quantity::Armed, 1.0, time_s, false);
+        }
         let is_first = self.states.set(quantity, value);
         let before = match (quantity, value) {
             (Quantity::Armed, 0.0) if change => Some((1.0, self.began_s)),

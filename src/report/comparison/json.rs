@@ -191,7 +191,7 @@ fn track(of: &Track) -> TrackEntry {
         name: of.name.clone(),
         unit: of.unit,
         owner: if of.owner == Owner::Flight { "flight" } else { "vehicle" },
-        values: (0..of.values.len()).map(|flight| of.alone(flight).map(estimate)).collect(),
+        values: of.values.iter().map(|value| value.map(estimate)).collect(),
         together: of.pooled().map(estimate),
     }
 }

@@ -14,7 +14,7 @@ use std::fmt::Write;
 pub(super) struct AlongValue {
     parameters: Vec<TrackValue>,
     /// places of the flights that each show a named effect alone
-    carried_by: BTreeMap<&'static str, Vec<usize>>,
+    carried_by: BTreeMap<&'static str, Option<Vec<usize>>>,
     /// north and west, m/s
     winds_m_s: Vec<Option<[f64; 2]>>,
 }
@@ -41,7 +41,7 @@ impl AlongValue {
             name: track.name.clone(),
             unit: track.unit,
             owner: whose(track),
-            together: track.pooled().map(estimate),
+            together: track.pooled().filter(|_| track.owner == Owner::Vehicle).map(estimate),
             values: (0..track.values.len()).map(|flight| track.alone(flight).map(estimate)).collect(),
         };
         Self {
@@ -83,11 +83,20 @@ pub(super) fn along_lines(page: &mut String, study: &ExplainStudy) {
             writeln!(page, "    wind to north, west (m/s), each flight's own: {}", winds(along).join("; "));
     }
     for (id, flights) in &along.carried_by {
-        let names: Vec<&str> =
-            flights.iter().map(|&flight| study.given.inputs[flight].path.as_str()).collect();
-        let names =
-            if names.is_empty() { "none: only all of them together".to_owned() } else { names.join(", ") };
-        let _ = writeln!(page, "    {id} is shown alone by {names}");
+        let path = |flight: &usize| study.given.inputs[*flight].path.clone();
+        let _ = writeln!(page, "    {}", carried(id, flights.as_deref(), "", path));
+    }
+}
+
+/// Which flights show a name alone.
+fn carried(id: &str, flights: Option<&[usize]>, of: &str, name: impl Fn(&usize) -> String) -> String {
+    match flights {
+        None => format!("{id} is fitted to all flights together only"),
+        Some([]) => format!("{id} is shown by no flight alone: only by all of them together"),
+        Some(flights) => {
+            let names: Vec<String> = flights.iter().map(name).collect();
+            format!("{id} is shown alone by {of}{}", names.join(", "))
+        }
     }
 }
 
@@ -103,12 +112,11 @@ pub(super) fn along_section(study: &ExplainStudy) -> Markup {
         wind.extend(winds(along).into_iter().map(number));
         rows.push(wind);
     }
-    let carried = along.carried_by.iter().map(|(id, flights)| {
-        let places: Vec<String> = flights.iter().map(|flight| (flight + 1).to_string()).collect();
-        let places = if places.is_empty() { "none alone".to_owned() } else { places.join(", ") };
-        format!("{id}: shown alone by flight {places}.")
-    });
-    let carried: Vec<String> = carried.collect();
+    let number = |flight: &usize| (flight + 1).to_string();
+    let line = |(id, flights): &(&str, Option<Vec<usize>>)| {
+        format!("{}.", carried(id, flights.as_deref(), "flight ", number))
+    };
+    let carried: Vec<String> = along.carried_by.iter().map(line).collect();
     section(
         "The flights together",
         &html! {

@@ -12,6 +12,7 @@ use crate::estimate::{Contradiction, NAMES, stated};
 use crate::note::{About, Note, said_once};
 use crate::recording::{Quantity, Recording};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference, best, other_settings};
+use crate::study::flight::Flight;
 use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins};
 use crate::study::one_vehicle::refuse_others;
 use crate::study::unflown::unflown_first;
@@ -48,6 +49,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     refuse_twins(before.iter().chain(&after))?;
     refuse_others(before.iter().chain(&after).flatten())?;
     refuse_same_flight(&before, &after)?;
+    refuse_single(before.iter().chain(&after))?;
     progress.stage(Stage::Conditioning);
     let settings = ConditionSettings {
         transient_s: Some(request.transient_s),
@@ -124,10 +126,25 @@ fn each_compared(flights: &Prepared, reasons: Vec<Option<String>>) -> Vec<Compar
     .collect()
 }
 
+/// Two logs of one flight are one flight.
+fn refuse_single<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) -> Result<(), StudyError> {
+    let flights: Vec<&Flight> = logs.flatten().collect();
+    let [flight] = flights.as_slice() else { return Ok(()) };
+    let files: Vec<&str> = flight.input.files().map(|(path, _)| path).collect();
+    let why =
+        format!("expected at least two flights, but {} are logs of the same flight", files.join(" and "));
+    Err(StudyError::Setting { name: "with", why })
+}
+
+/// A flight that ended early because an output left the mixer is told so.
 fn legs_of(flights: &Prepared, vehicle: &Vehicle) -> Result<Vec<Vec<Leg>>, StudyError> {
     let one = |(input, signals): (&InputFile, &Signals)| {
-        legs(signals, vehicle)
-            .map_err(|why| StudyError::File { file: input.path.clone(), why: why.to_string() })
+        legs(signals, vehicle).map_err(|why| {
+            let warnings = input.notes.iter().filter(|note| note.is_warning());
+            let all: Vec<String> =
+                std::iter::once(why.to_string()).chain(warnings.map(|note| note.text.clone())).collect();
+            StudyError::File { file: input.path.clone(), why: all.join("; ") }
+        })
     };
     flights.each().map(one).collect()
 }

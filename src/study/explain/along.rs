@@ -45,10 +45,9 @@ impl ExplainStudy {
             tracks.retain(|track| track.wind_axis.is_none());
         }
         let of = |id: &'static str| {
-            let shows = |flight: &usize| {
-                tracks.iter().any(|track| track.effect == Some(id) && track.is_shown_by(*flight))
-            };
-            (id, (0..flights.len()).filter(shows).collect())
+            let own: Vec<&Track> = tracks.iter().filter(|track| track.effect == Some(id)).collect();
+            let shows = |flight: &usize| own.iter().any(|track| track.is_shown_by(*flight));
+            (id, (!own.is_empty()).then(|| (0..flights.len()).filter(shows).collect()))
         };
         let carried_by = self.explanation.named.iter().map(|named| of(named.id)).collect();
         self.along = Some(AlongFlights { tracks, winds_m_s, carried_by });

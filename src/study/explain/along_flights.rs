@@ -10,8 +10,8 @@ pub struct AlongFlights {
     pub tracks: Vec<Track>,
     /// steady wind of each flight, north and west, m/s, taken out before the flights were explained together; `None` where it shows none
     pub winds_m_s: Vec<Option<[f64; 2]>>,
-    /// flights that each show a named effect alone, by its identifier
-    pub carried_by: Vec<(&'static str, Vec<usize>)>,
+    /// flights that each show a named effect alone, by its identifier; `None` where it is fitted to all flights together only
+    pub carried_by: Vec<(&'static str, Option<Vec<usize>>)>,
 }
 
 impl AlongFlights {
