@@ -27,7 +27,7 @@ pub struct Coverage {
 /// One method of estimation.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct MethodCoverage {
-    /// `weak`, `ls`, `fmls`, or `best`: the one that `identify` recommends
+    /// `WEAK`, `LS`, `FMLS`, or `best`: the one that `identify` recommends
     pub method: String,
     pub flights: usize,
     pub parameters: Vec<ParameterCoverage>,

@@ -54,14 +54,14 @@ impl Stack {
             if setting.off.holds(found) {
                 off.push(format!("{} = {found}", setting.parameter));
             }
-            let wanted = match setting.need {
+            let needed = match setting.need {
                 LogNeed::Bits(mask) => f64::from(bits(found) | mask),
                 LogNeed::OneOf(values) if values.contains(&found) => found,
                 LogNeed::OneOf(values) => values.first().copied().unwrap_or(found),
             };
-            if wanted != found {
+            if needed != found {
                 let LogSetting { parameter, restarts, .. } = *setting;
-                plan.changes.push(LogChange { parameter, found, wanted, restarts });
+                plan.changes.push(LogChange { parameter, found, needed, restarts });
             }
         }
         if !off.is_empty() {
@@ -164,7 +164,7 @@ mod tests {
             "SDLOG_MODE" => Some(0.0),
             _ => None,
         });
-        let change = LogChange { parameter: "SDLOG_PROFILE", found: 1.0, wanted: 9.0, restarts: true };
+        let change = LogChange { parameter: "SDLOG_PROFILE", found: 1.0, needed: 9.0, restarts: true };
         assert_eq!((plan.changes, plan.unknown), (vec![change], vec![]), "1.16 has no SDLOG_BACKEND");
         assert!(plan.logs[0].contains("10 Hz"));
         // further bits stay

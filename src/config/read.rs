@@ -51,7 +51,7 @@ pub(super) fn parse_toml_on<T: serde::de::DeserializeOwned>(
     origin: &str,
     kind: Kind,
 ) -> Result<(T, Faults), ConfigError> {
-    let told = |faults: &[Fault]| -> Vec<ConfigError> {
+    let errors = |faults: &[Fault]| -> Vec<ConfigError> {
         let one = |fault: &Fault| ConfigError::Parse {
             origin: origin.to_owned(),
             expected: kind.expected(),
@@ -68,11 +68,11 @@ pub(super) fn parse_toml_on<T: serde::de::DeserializeOwned>(
     match read_form(text) {
         Ok(Read { form, faults, stands_in }) => {
             other(&faults)?;
-            Ok((form, Faults::new(described(&faults), stands_in)))
+            Ok((form, Faults::new(errors(&faults), stands_in)))
         }
         Err(faults) => {
             other(&faults)?;
-            Err(ConfigError::combined(origin, described(&faults)))
+            Err(ConfigError::combined(origin, errors(&faults)))
         }
     }
 }

@@ -27,7 +27,7 @@ pub use rows::{
     WarningRow,
 };
 pub use schema::{Schema, TableSchema};
-pub use sources::{LOG_ENDINGS, Shard, Source, SourceError, sources, unread_name};
+pub use sources::{Shard, Source, SourceError, sources, unread_name};
 pub use task::{LogSettings, LogTask, hexadecimal, program};
 pub use transfer::{rows_of_text, rows_text};
 pub use vehicles::{FleetVehicle, OfLog, Vehicles, VehiclesError};

@@ -4,11 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::task::hexadecimal;
+use crate::log::{FORMATS, is_named_like_a_log};
 use crate::text;
 use sha2::{Digest, Sha256};
-
-/// Endings of files that are taken from a folder or a pattern, whatever their case. A file that is named itself is always taken.
-pub const LOG_ENDINGS: [&str; 5] = ["tlog", "ulg", "bin", "log", "csv"];
 
 /// One log.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,7 +26,8 @@ pub struct SourceError {
     came: String,
 }
 
-/// The logs of all that was given, each once, in the order of their names.
+/// The logs of all that was given, each once, in the order of their names. Of folders and patterns, files are taken that are named like
+/// logs. A file that is named itself is always taken.
 ///
 /// # Errors
 /// [`SourceError`] of the first that is not there or holds no log.
@@ -38,8 +37,9 @@ pub fn sources(given: &[String]) -> Result<Vec<Source>, SourceError> {
         let before = all.len();
         take(one, &mut all)?;
         if all.len() == before {
-            let endings = LOG_ENDINGS.join(", .");
-            return Err(refused(one, "logs", format!("no file that ends in .{endings}")));
+            let endings: Vec<&str> = FORMATS.iter().map(|format| format.ending).collect();
+            let came = format!("no file that ends in .{}", endings.join(", ."));
+            return Err(refused(one, "logs", came));
         }
     }
     all.sort();
@@ -99,17 +99,12 @@ fn walk(folder: &Path, all: &mut Vec<Source>) -> std::io::Result<()> {
             let path = entry.path();
             match entry.file_type() {
                 Ok(kind) if kind.is_dir() => open.push(path),
-                Ok(_) if is_log(&path) && path.is_file() => all.push(source(&path)),
+                Ok(_) if is_named_like_a_log(&path) && path.is_file() => all.push(source(&path)),
                 _ => (),
             }
         }
     }
     Ok(())
-}
-
-fn is_log(path: &Path) -> bool {
-    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
-    ending.is_some_and(|ending| LOG_ENDINGS.contains(&ending.as_str()))
 }
 
 /// Which part of the logs one of several runs takes.

@@ -2,10 +2,7 @@
 
 use crate::recording::landed::ON_GROUND;
 use crate::wire::heartbeat::{ARMED, BASE_MODE_AT};
-use crate::wire::message_id::{
-    BATTERY_STATUS, CURRENT_MODE, EKF_STATUS_REPORT, ESTIMATOR_STATUS, HEARTBEAT, ODOMETRY,
-    POSITION_TARGET_LOCAL_NED, SYS_STATUS,
-};
+use crate::wire::message_id as id;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -142,7 +139,7 @@ impl Telemetry {
     /// mode.
     fn status(&mut self, now: Duration, id: u32, payload: Payload<'_>, place: i64, news: &mut Vec<Novelty>) {
         match id {
-            HEARTBEAT => {
+            id::HEARTBEAT => {
                 self.heartbeat = now;
                 let (custom_mode, armed) = (payload.u32(0), payload.u8(BASE_MODE_AT) & ARMED != 0);
                 let state = FlightState { custom_mode, armed, system_status: payload.u8(7) };
@@ -151,13 +148,13 @@ impl Telemetry {
                     self.arming.report(now, armed, on_ground);
                 }
             }
-            CURRENT_MODE => {
+            id::CURRENT_MODE => {
                 if let Some(Timestamped { value, at }) = self.state {
                     let state = FlightState { custom_mode: payload.u32(0), ..value };
                     self.note_state(at, state, place, news);
                 }
             }
-            SYS_STATUS => {
+            id::SYS_STATUS => {
                 let report = SystemReport::from_sys_status(payload);
                 if self.battery.is_none_or(|battery| now.saturating_sub(battery.at) > STATUS_VALID)
                     && let Some(percent) = report.battery_percent
@@ -167,11 +164,13 @@ impl Telemetry {
                 }
                 self.system = Some(Timestamped { at: now, value: report });
             }
-            BATTERY_STATUS if payload.u8(32) == 0 => {
+            id::BATTERY_STATUS if payload.u8(32) == 0 => {
                 self.battery = Some(Timestamped { at: now, value: battery_status(payload) });
             }
-            EKF_STATUS_REPORT => self.note_estimator(now, EstimatorReport::from_ekf_status_report(payload)),
-            ESTIMATOR_STATUS => self.note_estimator(now, EstimatorReport::from_estimator_status(payload)),
+            id::EKF_STATUS_REPORT => {
+                self.note_estimator(now, EstimatorReport::from_ekf_status_report(payload))
+            }
+            id::ESTIMATOR_STATUS => self.note_estimator(now, EstimatorReport::from_estimator_status(payload)),
             _ => {}
         }
     }
@@ -248,7 +247,7 @@ impl Telemetry {
             | recording::Event::Parameter { .. }
             | recording::Event::ParameterDefault { .. } => {}
         });
-        if frame.header().message_id == POSITION_TARGET_LOCAL_NED {
+        if frame.header().message_id == id::POSITION_TARGET_LOCAL_NED {
             news.push(Novelty::Target(target_m));
         }
         let oriented = self.attitude.filter(|seen| seen.at == now).map(|seen| seen.value);
@@ -260,7 +259,7 @@ impl Telemetry {
             attitude,
             rates_rad_s,
         });
-        if frame.header().message_id == ODOMETRY {
+        if frame.header().message_id == id::ODOMETRY {
             self.note_pose(pose, reset, news);
         }
         self.texts.extend(news.iter().filter_map(|novelty| match novelty {

@@ -11,6 +11,8 @@ use crate::recording::{Event, RecordingBuilder};
 pub struct Format {
     /// as messages call it, with the usual ending of its files' names: `telemetry log (.tlog)`
     pub name: &'static str,
+    /// usual ending of its files' names, without the dot: by it logs are found in a folder. What a file is, its content tells
+    pub ending: &'static str,
     /// uses [`OpenOptions::system`]: a log may hold several vehicles
     pub takes_system: bool,
     /// uses [`OpenOptions::columns`]: a table, whose rows may come in any order

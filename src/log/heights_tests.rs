@@ -18,6 +18,7 @@ const RECORD_BYTES: u64 = 16;
 /// Heights.
 pub(super) const FORMAT: Format = Format {
     name: "list of heights (.heights)",
+    ending: "heights",
     takes_system: false,
     takes_columns: false,
     sniff,

@@ -1,5 +1,7 @@
 //! The one door: a file of any known format becomes a recording. What it is, its content tells, never its name.
 
+use std::path::Path;
+
 use super::error::LogError;
 use super::flights::{Cells, Flights, Hold, Plan, is_state};
 use super::foreign::{archive, foreign};
@@ -14,6 +16,13 @@ use crate::recording::{Event, Recording, RecordingBuilder};
 /// All formats that are read. Their order means nothing.
 pub const FORMATS: &[&Format] =
     &[&tlog::FORMAT, &ulog::FORMAT, &dataflash::BINARY, &dataflash::TEXT, &csv::FORMAT];
+
+/// Whether a file is named like a log of one of the formats, whatever the case: so logs are found in a folder.
+#[must_use]
+pub fn is_named_like_a_log(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    FORMATS.iter().any(|format| format.ending.eq_ignore_ascii_case(ending))
+}
 
 /// A log in memory.
 #[derive(Debug, Clone, PartialEq)]

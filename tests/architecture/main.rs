@@ -156,6 +156,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "table",
             "note",
             "autopilot",
+            "log",
             "inspect",
             "vehicle",
             "draft",

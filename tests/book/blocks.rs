@@ -42,6 +42,11 @@ pub fn table(head: &[&str], rows: &[Vec<String>]) -> String {
     [line(&head), rule].into_iter().chain(rows).collect::<Vec<_>>().join("\n")
 }
 
+/// A command line as a block of code.
+pub fn command(line: &str) -> String {
+    format!("```sh\n{line}\n```")
+}
+
 /// `a, b and c`.
 pub fn listed(words: &[String]) -> String {
     match words {

@@ -1,6 +1,6 @@
 //! The blocks of measured figures.
 
-use super::blocks::{listed, paragraph, table};
+use super::blocks::{command, listed, paragraph, table};
 use super::effect_page::usual;
 use super::measured::Measured;
 use mavid::physics::effects::by_id;
@@ -10,7 +10,7 @@ use statrs::distribution::{Beta, ContinuousCDF};
 /// Name and text of each block in `figures-diagnosis.md`.
 pub fn blocks(measured: &Measured) -> Vec<(&'static str, String)> {
     vec![
-        ("command", format!("```sh\n{}\n```", measured.command)),
+        ("command", command(&measured.command)),
         ("false names", clean(measured)),
         ("right names", right_names(measured)),
         ("pairs", pairs(measured)),

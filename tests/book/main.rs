@@ -1,13 +1,21 @@
-//! The parts of the book that are made from the code and from outputs of benchmarks, `docs/measured.json`
-//! and `docs/measured-realistic.json`.
+//! The parts of the book that are made from the code and from outputs of benchmarks, `docs/measured*.json`.
 //!
 //! `MAVID_WRITE_BOOK=1 cargo test --release --test book` writes them; without the variable the test compares.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
 mod blocks;
+mod comparison;
+#[path = "../../benches/support/comparison.rs"]
+mod comparison_figures;
 mod effect_page;
 mod figures;
+mod fleet;
+#[path = "../../benches/support/fleet.rs"]
+mod fleet_figures;
+mod identification;
+#[path = "../../benches/support/identification.rs"]
+mod identification_figures;
 #[path = "../../benches/support/measured.rs"]
 mod measured;
 #[path = "../support/ordinary.rs"]
@@ -16,13 +24,14 @@ mod overview;
 mod picture;
 mod realistic;
 #[path = "../../benches/support/realistic.rs"]
-mod stored;
+mod realistic_figures;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use mavid::physics::effects::ALL;
 use measured::Measured;
+use serde::de::DeserializeOwned;
 
 /// What makes the generated parts anew.
 const WRITE: &str = "MAVID_WRITE_BOOK=1 cargo test --release --test book";
@@ -30,6 +39,10 @@ const WRITE: &str = "MAVID_WRITE_BOOK=1 cargo test --release --test book";
 const MEASURED: &str = "docs/measured.json";
 /// Those of flights with an estimator in the loop.
 const REALISTIC: &str = "docs/measured-realistic.json";
+/// Those of the other pages; a benchmark writes a section.
+const IDENTIFICATION: &str = "docs/measured-identification.json";
+const COMPARISON: &str = "docs/measured-comparison.json";
+const FLEET: &str = "docs/measured-fleet.json";
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -39,14 +52,13 @@ fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-fn measured() -> Measured {
-    serde_json::from_str(&read(&root().join(MEASURED))).unwrap_or_else(|error| panic!("{MEASURED}: {error}"))
+/// The figures of a file.
+fn stored<T: DeserializeOwned>(file: &str) -> T {
+    serde_json::from_str(&read(&root().join(file))).unwrap_or_else(|error| panic!("{file}: {error}"))
 }
 
-fn realistic_blocks() -> Vec<(&'static str, String)> {
-    let text = read(&root().join(REALISTIC));
-    let measured = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{REALISTIC}: {error}"));
-    realistic::blocks(&measured)
+fn measured() -> Measured {
+    stored(MEASURED)
 }
 
 /// Every generated file with its text.
@@ -61,7 +73,10 @@ fn generated(measured: &Measured) -> BTreeMap<PathBuf, String> {
     for (name, blocks) in [
         ("effects.md", vec![("effects", overview::table_of_effects())]),
         ("SUMMARY.md", vec![("effects", overview::contents())]),
-        ("figures-diagnosis.md", [figures::blocks(measured), realistic_blocks()].concat()),
+        ("figures-diagnosis.md", [figures::blocks(measured), realistic::blocks(&stored(REALISTIC))].concat()),
+        ("figures-identification.md", identification::blocks(&stored(IDENTIFICATION))),
+        ("figures-comparison.md", comparison::blocks(&stored(COMPARISON))),
+        ("figures-fleet.md", fleet::blocks(&stored(FLEET))),
     ] {
         let path = source.join(name);
         let text = blocks::replaced(&read(&path), &blocks).unwrap_or_else(|error| panic!("{name}: {error}"));

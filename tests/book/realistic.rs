@@ -1,13 +1,13 @@
 //! The blocks of figures of flights with an estimator in the loop.
 
-use super::blocks::{listed, paragraph, table};
-use super::stored::{Bias, EffectFlights, Intervals, Realistic};
+use super::blocks::{command, listed, paragraph, table};
+use super::realistic_figures::{Bias, EffectFlights, Intervals, Realistic};
 use mavid::text::significant;
 
 /// Name and text of each block in `figures-diagnosis.md`.
 pub fn blocks(measured: &Realistic) -> Vec<(&'static str, String)> {
     vec![
-        ("realistic command", format!("```sh\n{}\n```", measured.command)),
+        ("realistic command", command(&measured.command)),
         ("realistic false names", clean(measured)),
         ("realistic right names", right_names(measured)),
         ("realistic intervals", intervals(measured)),

@@ -90,7 +90,7 @@ async fn ends_after_checks(ride: Ride) -> Outcome {
             }
         }
     });
-    let flight = fly::run(ride, Console { show, keys });
+    let flight = fly::run(ride, Console { view: show, keys });
     tokio::time::timeout(Duration::from_secs(60), flight).await.unwrap().unwrap().outcome
 }
 

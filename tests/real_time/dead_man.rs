@@ -111,7 +111,7 @@ async fn climbing(name: &str) -> Climbing {
             }
         }
     });
-    let flight = tokio::spawn(fly::run(ride, Console { show, keys }));
+    let flight = tokio::spawn(fly::run(ride, Console { view: show, keys }));
     tokio::time::timeout(Duration::from_secs(60), climbing).await.unwrap().unwrap();
     tokio::time::sleep(Duration::from_secs(2)).await;
     Climbing { parking, flight, vehicle, recorder, log, _press: press }

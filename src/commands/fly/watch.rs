@@ -56,7 +56,7 @@ pub fn fly_it(
     });
     viewer.map_err(|error| failed(&error))?;
     work.flies();
-    let record = runtime.block_on(fly::run(ride, Console { show, keys }));
+    let record = runtime.block_on(fly::run(ride, Console { view: show, keys }));
     work.ends_itself();
     // its pictures have ended with the flight
     let view = match ended.recv_timeout(PATIENCE) {

@@ -165,7 +165,7 @@ fn says(session: &Session, prepared: &LoggingState) -> String {
             session.stack.log_settings.settings.iter().find(|setting| setting.parameter == *parameter);
         let words = setting.map_or("", |setting| setting.words);
         lines.push(format!(
-            "for an identification: {parameter} = {wanted} instead of {found}{restart} ({words})"
+            "for an identification: {parameter} = {needed} instead of {found}{restart} ({words})"
         ));
     }
     lines.join("\n")

@@ -40,7 +40,7 @@ pub enum JointError {
     #[error(
         "{id} shows only through forces of the air; expected it together with {}, by name or in the vehicle file, got none \
          of them",
-        wanted::names_of_air()
+        requested::names_of_air()
     )]
     WindAlone {
         /// the wind

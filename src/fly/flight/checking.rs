@@ -19,7 +19,7 @@ const STREAMS: [(MessageId, u16); 7] = [
     (MessageId::of::<dialect::CURRENT_MODE_DATA>(), 10),
     (MessageId::of::<dialect::POSITION_TARGET_LOCAL_NED_DATA>(), 27),
 ];
-/// Beside these of PX4: its estimator's report.
+/// And of PX4: its estimator's report, and its pose with the counter of resets.
 const PX4_STREAMS: [(MessageId, u16); 2] =
     [(MessageId::of::<dialect::ESTIMATOR_STATUS_DATA>(), 2), (MessageId::of::<dialect::ODOMETRY_DATA>(), 30)];
 /// ArduPilot has no CURRENT_MODE: its HEARTBEAT tells of a pilot who takes over.

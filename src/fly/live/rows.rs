@@ -69,7 +69,7 @@ impl Causal {
             wrench[2], wrench[3],
         ];
         for (value, memory) in smooth.iter_mut().zip(&mut memory.low_passed) {
-            *value = low_pass.next(memory, *value);
+            *value = low_pass.step(memory, *value);
         }
         let [p, q, r, u, v, w, up_z, fz, tx, ty, tz] = smooth;
         let mut momentum = [w, p, q, r];

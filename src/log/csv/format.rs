@@ -13,6 +13,7 @@ use crate::log::report::{Details, ReadReport};
 /// Tables.
 pub(in crate::log) const FORMAT: Format = Format {
     name: "table of comma-separated values (.csv)",
+    ending: "csv",
     takes_system: false,
     takes_columns: true,
     sniff,

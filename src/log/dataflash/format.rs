@@ -22,6 +22,7 @@ use crate::log::report::{Details, ReadReport};
 /// Binary logs.
 pub(in crate::log) const BINARY: Format = Format {
     name: "ArduPilot log (.bin)",
+    ending: "bin",
     takes_system: false,
     takes_columns: false,
     sniff: sniff_binary,
@@ -32,6 +33,7 @@ pub(in crate::log) const BINARY: Format = Format {
 /// Text logs.
 pub(in crate::log) const TEXT: Format = Format {
     name: "ArduPilot text log (.log)",
+    ending: "log",
     takes_system: false,
     takes_columns: false,
     sniff: sniff_text,

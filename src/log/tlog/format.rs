@@ -12,6 +12,7 @@ use crate::log::report::{Details, ReadReport};
 /// Telemetry logs.
 pub(in crate::log) const FORMAT: Format = Format {
     name: "telemetry log (.tlog)",
+    ending: "tlog",
     takes_system: true,
     takes_columns: false,
     sniff,

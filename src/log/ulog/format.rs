@@ -20,6 +20,7 @@ use crate::units::seconds_from_us;
 /// PX4's own logs.
 pub(in crate::log) const FORMAT: Format = Format {
     name: "PX4 log (.ulg)",
+    ending: "ulg",
     takes_system: false,
     takes_columns: false,
     sniff,

@@ -1,7 +1,7 @@
 //! `report.html` of a fleet: each section is one function, and one call in [`fleet_html`].
 
 use super::plots::plots;
-use super::words::{alarms, answer, differs, logs, told};
+use super::words::{alarms, answer, change_sentence, differs, logs};
 use crate::diagnose::Owner;
 use crate::fleet::{FleetReport, ReportedVehicle};
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};

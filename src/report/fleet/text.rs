@@ -1,6 +1,6 @@
 //! The page of a fleet for the terminal.
 
-use super::words::{alarms, answer, differs, logs, told};
+use super::words::{alarms, answer, change_sentence, differs, logs};
 use crate::fleet::FleetReport;
 use std::fmt::Write;
 

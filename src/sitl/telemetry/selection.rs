@@ -14,9 +14,9 @@ impl Telemetry {
         at: &Snapshot,
         autopilot: &Autopilot,
     ) -> Option<Message> {
-        let mut seen = self.noise.measure(&mut self.rng, &at.shown.state);
-        seen.position_m += autopilot.estimator.shift_m();
-        let scene = Scene { at, autopilot, seen };
+        let mut measured = self.noise.measure(&mut self.rng, &at.shown.state);
+        measured.position_m += autopilot.estimator.shift_m();
+        let scene = Scene { at, autopilot, measured };
         let has_origin = autopilot.estimator.is_warm(at.now);
         Some(match id {
             ids::HEARTBEAT => self.heartbeat(&scene),

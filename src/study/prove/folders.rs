@@ -2,13 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::log::is_named_like_a_log;
 use crate::study::StudyError;
 use crate::text;
 
 /// The vehicle file of a case.
 pub(super) const VEHICLE: &str = "vehicle.toml";
-/// Endings of logs.
-const LOGS: [&str; 4] = ["tlog", "csv", "ulg", "bin"];
 
 fn refused(folder: &Path, why: &dyn std::fmt::Display) -> StudyError {
     StudyError::File { file: text::path(&folder), why: why.to_string() }
@@ -45,10 +44,7 @@ pub fn case_folders(cases: &Path) -> Result<Vec<PathBuf>, StudyError> {
 /// Those to explain from, and those named `holdout...`.
 pub(super) fn logs(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), StudyError> {
     let mut all = entries(folder)?;
-    all.retain(|path| {
-        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-        LOGS.iter().any(|known| extension.eq_ignore_ascii_case(known))
-    });
+    all.retain(|path| is_named_like_a_log(path));
     all.sort();
     let (held, mut used): (Vec<PathBuf>, Vec<PathBuf>) =
         all.into_iter().partition(|path| starts(path, "holdout"));

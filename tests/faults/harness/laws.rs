@@ -86,8 +86,8 @@ pub fn check(trace: &Trace, given: &Given) -> Vec<Broken> {
 fn taken(trace: &Trace, given: &Given) -> Option<(Duration, u32)> {
     let mut ours = Ours::new(given);
     let mut armed = false;
-    for Entry { at, seen } in &trace.entries {
-        match seen {
+    for Entry { at, observation } in &trace.entries {
+        match observation {
             Observation::Left(left) => ours.left(left),
             Observation::Vehicle(state) => {
                 // one that has landed chooses what it rests in
@@ -109,7 +109,7 @@ fn taken(trace: &Trace, given: &Given) -> Option<(Duration, u32)> {
 fn told(trace: &Trace, given: &Given) -> Option<(Duration, Duration, u32)> {
     let (taken, mode) = taken(trace, given)?;
     let mut latest = Duration::ZERO;
-    trace.entries.iter().find_map(|Entry { at, seen }| match seen {
+    trace.entries.iter().find_map(|Entry { at, observation }| match observation {
         Observation::Reached(Report { mode: reported, said: Some(said), .. }) => {
             // one that a later one has overtaken says nothing: that one tells whether it is still so
             let news = *said >= latest;
@@ -122,8 +122,8 @@ fn told(trace: &Trace, given: &Given) -> Option<(Duration, Duration, u32)> {
 
 fn takeover(trace: &Trace, given: &Given) -> Option<Broken> {
     let (told, taken, mode) = told(trace, given)?;
-    trace.entries.iter().find_map(|Entry { at, seen }| {
-        let Observation::Left(left) = seen else { return None };
+    trace.entries.iter().find_map(|Entry { at, observation }| {
+        let Observation::Left(left) = observation else { return None };
         let late = if left.commands() { TOLD } else { SETPOINT_TOLD };
         let steers = left.commands() || matches!(left, Left::Setpoint(_));
         if !steers || *at <= told + late || by_the_operator(trace, *at) {
@@ -151,8 +151,8 @@ fn stale(trace: &Trace, given: &Given) -> Option<Broken> {
     let (mut reason, mut last, mut report) = (None::<Duration>, None::<Left>, None::<Duration>);
     // when a report of another mode was heard, with the report of ours before it; the latest that the vehicle itself said
     let (mut lost, mut said) = (None::<(Duration, Option<Duration>)>, Duration::ZERO);
-    for Entry { at, seen } in &trace.entries {
-        match seen {
+    for Entry { at, observation } in &trace.entries {
+        match observation {
             Observation::Note(note) if note.kind == "abort" || note.kind == "phase" => {
                 let calls =
                     note.kind == "abort" || ["hold", "land", "return", "arm"].contains(&note.text.as_str());
@@ -261,7 +261,7 @@ fn room(trace: &Trace, given: &Given) -> Option<Broken> {
 
 fn silence(trace: &Trace) -> Option<Broken> {
     let mut heard = Duration::ZERO;
-    trace.entries.iter().find_map(|Entry { at, seen }| match seen {
+    trace.entries.iter().find_map(|Entry { at, observation }| match observation {
         Observation::Came => {
             heard = *at;
             None
@@ -278,7 +278,7 @@ fn silence(trace: &Trace) -> Option<Broken> {
 fn standstill(trace: &Trace) -> Option<Broken> {
     // which part, since when, until when, and whether that can be told
     let mut stands: Vec<(Part, Duration, Duration, bool)> = Vec::new();
-    trace.entries.iter().find_map(|Entry { at, seen }| match seen {
+    trace.entries.iter().find_map(|Entry { at, observation }| match observation {
         Observation::Parked(part, until) => {
             // one that stands already goes on standing
             let before = stands.iter().filter(|(other, _, to, _)| other == part && to >= at);

@@ -79,7 +79,7 @@ pub enum Observation {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
     pub at: Duration,
-    pub seen: Observation,
+    pub observation: Observation,
 }
 
 /// All of a flight, in order.
@@ -89,16 +89,16 @@ pub struct Trace {
 }
 
 impl Trace {
-    pub fn add(&mut self, at: Duration, seen: Observation) {
-        self.entries.push(Entry { at, seen });
+    pub fn add(&mut self, at: Duration, observation: Observation) {
+        self.entries.push(Entry { at, observation });
     }
 
     /// What a person wants to see around an instant: no setpoints in a row, no frames without news.
     pub fn excerpt(&self, from: Duration, to: Duration) -> String {
         let mut lines: Vec<String> = Vec::new();
         let mut last: Option<Observation> = None;
-        for Entry { at, seen } in &self.entries {
-            let news = match (seen, &last) {
+        for Entry { at, observation } in &self.entries {
+            let news = match (observation, &last) {
                 (Observation::Came | Observation::Reached(_), _) | (Observation::Left(Left::Other(_)), _) => {
                     continue;
                 }
@@ -107,9 +107,9 @@ impl Trace {
                 _ => true,
             };
             if news && (from..=to).contains(at) {
-                lines.push(format!("  {:8.3} {seen}", at.as_secs_f64()));
+                lines.push(format!("  {:8.3} {observation}", at.as_secs_f64()));
             }
-            last = Some(seen.clone());
+            last = Some(observation.clone());
         }
         lines.join("\n")
     }

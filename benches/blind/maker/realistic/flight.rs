@@ -16,7 +16,7 @@ use super::drawn_three;
 use super::estimator::Estimator;
 use super::inertial::{Inertial, Sample, Unit};
 use super::position::{Fix, Positions, Source, Trust};
-use super::seen::{Visibility, Watch};
+use super::visibility::{Visibility, Watch};
 
 /// What the vehicle measures and believes with.
 #[derive(Debug, Clone)]
