@@ -306,7 +306,8 @@ fn differences_along((trace, along): (&Trace, &Along), base: &Model, moved: &[Mo
     let turns: Vec<bool> =
         forces.iter().map(|(up, down)| up.turns || down.as_ref().is_some_and(|down| down.turns)).collect();
     // the series of a long flight take much memory: those of the forces are gone before those of the torques come
-    let forces: Vec<[Vec<f64>; 3]> = moved.iter().zip(forces).map(|pair| weak(pair, &along.force_n)).collect();
+    let forces: Vec<[Vec<f64>; 3]> =
+        moved.iter().zip(forces).map(|pair| weak(pair, &along.force_n)).collect();
     let turning = moved.iter().zip(&turns).filter(|(_, turns)| **turns).map(|(moved, _)| moved);
     let torques = pairs_along(base, turning.clone(), (trace, &along.motion), |wrench| wrench.torque_nm);
     let mut torques = turning.zip(torques).map(|pair| weak(pair, &along.torque_nm));

@@ -58,11 +58,15 @@ pub fn run(seed: u64, count: u64, flights: u64) -> Pooled {
         by_name.iter().map(|(name, of)| figures(name, of)).filter(|of| of.known > 0).collect();
     let whole = figures("all", &all.iter().collect::<Vec<_>>());
     println!(
-        "parameter, vehicles, smaller than the best single flight's, with a truth, covered, median error over best single"
+        "parameter, vehicles, smaller than the best single flight's, than that with the scatter of all, with a truth, covered, \
+         covered by the best single flight, median error over best single"
     );
     for of in parameters.iter().chain([&whole]) {
-        let PooledParameter { name, vehicles, smaller, known, covered, error_ratio } = of;
-        println!("  {name:<18} {vehicles:>3} {smaller:>3} {known:>3} {covered:>3}  {error_ratio:.2}");
+        let PooledParameter { name, vehicles, smaller, known, covered, error_ratio, .. } = of;
+        let (scattered, single) = (of.smaller_than_scattered, of.covered_by_single);
+        println!(
+            "  {name:<18} {vehicles:>3} {smaller:>3} {scattered:>3} {known:>3} {covered:>3} {single:>3}  {error_ratio:.2}"
+        );
     }
     spread("time for each vehicle's flights", &mut seconds);
     spread("processor time for each vehicle's flights, all cores", &mut processor);
@@ -100,7 +104,15 @@ fn estimates_of(seed: u64, case: &RealCase, study: &ExplainStudy) -> Vec<Estimat
             let ((best, single), (_, with_scatter)) = track.values[place].zip(track.alone(place))?;
             let several = track.values.iter().flatten().count() > 1;
             let truth = truth(case, &track.name);
-            several.then_some(Estimate { name: track.name.clone(), value, std, single, with_scatter, best, truth })
+            several.then_some(Estimate {
+                name: track.name.clone(),
+                value,
+                std,
+                single,
+                with_scatter,
+                best,
+                truth,
+            })
         })
         .collect();
     for one in estimates.iter().filter(|one| one.std >= one.single || one.is_off()) {
@@ -151,8 +163,13 @@ fn figures(name: &str, estimates: &[&Estimate]) -> PooledParameter {
         name: name.to_owned(),
         vehicles: estimates.len(),
         smaller: estimates.iter().filter(|estimate| estimate.std < estimate.single).count(),
+        smaller_than_scattered: estimates
+            .iter()
+            .filter(|estimate| estimate.std < estimate.with_scatter)
+            .count(),
         known: known.len(),
         covered: known.iter().filter(|estimate| !estimate.is_off()).count(),
+        covered_by_single: known.iter().filter(|estimate| !estimate.is_single_off()).count(),
         error_ratio: quantile(&mut ratios, 0.5).map_or(f64::NAN, short),
     }
 }
