@@ -29,8 +29,6 @@ pub enum Over {
     Speed,
     /// thrust of all rotors
     Thrust,
-    /// its change
-    ThrustRate,
     /// thrust of the rotor that the effect is about
     OneRotor,
     /// voltage
@@ -66,7 +64,6 @@ impl Over {
             Self::AirspeedUp => Followed::Airspeed(2),
             Self::Speed => Followed::Speed,
             Self::Thrust => Followed::Thrust,
-            Self::ThrustRate => Followed::ThrustRate,
             Self::OneRotor => rotor.map_or(Followed::Time, Followed::Rotor),
             Self::Voltage => Followed::Voltage,
             Self::Rate => Followed::Rate(axis),

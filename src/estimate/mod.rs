@@ -38,7 +38,7 @@ pub use physical::{is_physical, nearest_physical, second_moments};
 pub use plausible::{Contradiction, contradictions, contradicts_file, flights_apart, stated};
 pub use problem::{Channel, Problem, SCORE_LAGS, Solution};
 pub use recommend::Recommendation;
-pub use recursive::{GradientStep, History, PAPER_SIGMA, PaperEstimate, gradient_descent, least_squares};
+pub use recursive::{History, PAPER_SIGMA, PaperEstimate, gradient_descent, least_squares};
 pub use result::{Estimated, Finding, MethodResult, POOR, Parameter, RIGID_BODY_ALONE, finding, size_of};
 pub use theta::{
     INERTIA_ENTRIES, MOMENTS, NAMES, THETA, Theta, ThetaCovariance, UNITS, inertia_of, scale_of, theta_of,

@@ -2,7 +2,7 @@
 
 use super::method::Method;
 use super::nominal::Nominal;
-use super::recursive::{GradientStep, History, PaperEstimate, gradient_descent, least_squares};
+use super::recursive::{History, PaperEstimate, gradient_descent, least_squares};
 use super::result::{Estimated, MethodResult};
 use super::theta::ThetaCovariance;
 use crate::regression::{Phi, SampledModel, ZeroPhase, paper_models};
@@ -39,7 +39,7 @@ impl PaperRuns {
                 continue;
             }
             runs.extend(least_squares(model).map(|estimate| (by_ls, estimate)));
-            runs.push((by_gd, gradient_descent(model, &nominal.theta, sigma, GradientStep::Implicit)));
+            runs.push((by_gd, gradient_descent(model, &nominal.theta, sigma)));
         }
         runs.sort_by_key(|(method, _)| *method);
         Self { gram, runs, nominal }

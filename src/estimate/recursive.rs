@@ -135,33 +135,21 @@ fn sandwich(model: &SampledModel, theta: &Theta, inverse: &SMatrix<f64, THETA, T
     inverse * meat * inverse.transpose()
 }
 
-/// Steps of gradient descent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum GradientStep {
-    /// `(I + sigma T Gamma^T Gamma) theta_h = theta_(h-1) + sigma T Gamma^T Upsilon`: stable for every sigma
-    Implicit,
-    /// `theta_h = theta_(h-1) - sigma T Gamma^T e_(h-1)`: diverges once `sigma T |Gamma|^2 > 2`
-    Explicit,
-}
-
-/// Gradient descent (41), (42) from `start` (the nominal parameters).
+/// Gradient descent (41), (42) from `start` (the nominal parameters), with the implicit step
+/// `(I + sigma T Gamma^T Gamma) theta_h = theta_(h-1) + sigma T Gamma^T Upsilon`: it is stable for every sigma, and the
+/// explicit one diverges once `sigma T |Gamma|^2 > 2`.
 ///
 /// The covariance follows the same linear recursion, from a start that is uncertain by its own size,
 /// driven by the residual with its long-run variance.
 #[must_use]
-pub fn gradient_descent(
-    model: &SampledModel,
-    start: &Theta,
-    sigma: f64,
-    step: GradientStep,
-) -> PaperEstimate {
+pub fn gradient_descent(model: &SampledModel, start: &Theta, sigma: f64) -> PaperEstimate {
     let gain = sigma * model.step_s;
     let mut theta = *start;
     let mut history = History { time_s: Vec::new(), theta: Vec::new() };
     let mut next_s = f64::NEG_INFINITY;
     for ((gamma, upsilon), &time_s) in model.gamma.iter().zip(&model.upsilon).zip(&model.time_s) {
         let gamma = &gamma.matrix();
-        theta += gain_matrix(gamma, gain, step) * (upsilon - gamma * theta);
+        theta += gain_matrix(gamma, gain) * (upsilon - gamma * theta);
         if time_s >= next_s {
             next_s = time_s + HISTORY_STEP_S;
             history.time_s.push(time_s);
@@ -174,24 +162,19 @@ pub fn gradient_descent(
     let mut covariance = ThetaCovariance::from_diagonal(&guess);
     for gamma in &model.gamma {
         let gamma = &gamma.matrix();
-        let k = gain_matrix(gamma, gain, step);
+        let k = gain_matrix(gamma, gain);
         let transition = ThetaCovariance::identity() - k * gamma;
         covariance = transition * covariance * transition.transpose() + k * noise * k.transpose();
     }
     PaperEstimate { theta, covariance, history }
 }
 
-/// The 7 x 4 gain on the innovation `Upsilon - Gamma theta_(h-1)`. The implicit step's is
+/// The 7 x 4 gain on the innovation `Upsilon - Gamma theta_(h-1)`:
 /// `(I + c Gamma^T Gamma)^-1 c Gamma^T = c Gamma^T (I + c Gamma Gamma^T)^-1`, a 4 x 4 inverse.
-fn gain_matrix(gamma: &SMatrix<f64, 4, THETA>, gain: f64, step: GradientStep) -> SMatrix<f64, THETA, 4> {
+fn gain_matrix(gamma: &SMatrix<f64, 4, THETA>, gain: f64) -> SMatrix<f64, THETA, 4> {
     let explicit = gamma.transpose() * gain;
-    match step {
-        GradientStep::Explicit => explicit,
-        GradientStep::Implicit => {
-            let inner = Matrix4::identity() + gain * gamma * gamma.transpose();
-            inner.cholesky().map_or(explicit, |factor| explicit * factor.inverse())
-        }
-    }
+    let inner = Matrix4::identity() + gain * gamma * gamma.transpose();
+    inner.cholesky().map_or(explicit, |factor| explicit * factor.inverse())
 }
 
 /// Residual variance per sample as a slow filter sees it: the sum of autocovariances over 0.5 s.
@@ -251,10 +234,14 @@ mod tests {
         let (model, truth) = model(0.002);
         let nominal = SVector::from([1.79, 0.03, 0.0, 0.0, 0.03, 0.0, 0.04]);
         // sigma T g^2 = 30 * 0.002 * 9.81^2 = 5.8 > 2
-        let implicit = gradient_descent(&model, &nominal, PAPER_SIGMA, GradientStep::Implicit);
+        let implicit = gradient_descent(&model, &nominal, PAPER_SIGMA);
         assert!((implicit.theta - truth).norm() < 2e-3, "{}", implicit.theta);
-        let explicit = gradient_descent(&model, &nominal, PAPER_SIGMA, GradientStep::Explicit);
-        let size = explicit.theta.norm();
-        assert!(size.is_nan() || size > 1e3, "{}", explicit.theta);
+        let mut explicit = nominal;
+        for (gamma, upsilon) in model.gamma.iter().zip(&model.upsilon) {
+            let gamma = gamma.matrix();
+            explicit += gamma.transpose() * (upsilon - gamma * explicit) * (PAPER_SIGMA * model.step_s);
+        }
+        let size = explicit.norm();
+        assert!(size.is_nan() || size > 1e3, "{explicit}");
     }
 }

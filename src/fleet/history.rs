@@ -105,7 +105,6 @@ impl All<'_> {
         }
         let study = CompareStudy {
             is_known,
-            drafted: None,
             flights: kept.iter().map(|flight| self.flight(flight, uri(flight))).collect(),
             balance: balance(legs),
             tracks: self.tracks(&kept),

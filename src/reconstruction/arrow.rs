@@ -45,8 +45,6 @@ pub struct Normal {
     parameters: DMatrix<f64>,
     /// gradient by the parameters
     gradient: DVector<f64>,
-    /// sum of squares
-    pub cost: f64,
 }
 
 /// The states taken out.
@@ -194,7 +192,6 @@ impl Normal {
             state_gradient: vec![State::zeros(); states],
             parameters: DMatrix::zeros(parameters, parameters),
             gradient: DVector::zeros(parameters),
-            cost: 0.0,
         };
         for (group, rows) in groups.iter().zip(rows) {
             normal.add(group.form.as_ref(), rows);
@@ -215,7 +212,6 @@ impl Normal {
                     self.state_gradient[at + block / PARTS].fixed_rows_mut::<WIDTH>(WIDTH * (block % PARTS));
                 into += slope;
             }
-            self.cost += residual.norm_squared();
             for (column, &parameter) in own.iter().enumerate() {
                 let by_parameter = by_parameters.fixed_columns::<1>(column);
                 for block in blocks.held() {

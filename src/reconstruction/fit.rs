@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, SVector};
 
 use super::arrow::{Chain, Normal, Reduced, Rows, by_states};
-use super::blocks::{Block, Pair, STATE, State, WIDTH};
+use super::blocks::{Block, Pair, STATE, WIDTH};
 use super::places::{BASE, SCALE};
 use super::problem::{Problem, Unknown};
 use super::residuals::Group;
@@ -33,8 +33,6 @@ const TAKEN_MOST: f64 = 0.98;
 pub struct Fit {
     /// s
     pub time_s: Vec<f64>,
-    /// one a time
-    pub states: Vec<State>,
     /// all parameters
     pub theta: Vec<f64>,
     /// indices of those that were free
@@ -43,10 +41,6 @@ pub struct Fit {
     pub covariance: DMatrix<f64>,
     /// of the free ones, by the scatter of the scores over blocks of time
     pub robust: DMatrix<f64>,
-    /// sum of the squares of all residuals over their standard deviations
-    pub cost: f64,
-    /// standard deviations of the groups' components
-    pub sigma: Vec<SVector<f64, WIDTH>>,
     unknowns: Vec<Unknown>,
     rows: Vec<Rows>,
     reduced: Reduced,
@@ -69,7 +63,6 @@ pub enum FitError {
 struct Turn {
     rows: Vec<Rows>,
     reduced: Reduced,
-    cost: f64,
     /// of the free parameters
     covariance: DMatrix<f64>,
     step: DVector<f64>,
@@ -111,24 +104,11 @@ impl<'a> Iterate<'a> {
     }
 
     fn finished(self) -> Result<Fit, FitError> {
-        let Turn { rows, reduced, cost, covariance, .. } = self.linearised()?;
+        let Turn { rows, reduced, covariance, .. } = self.linearised()?;
         let Self { problem, free, theta } = self;
-        let sigma = problem.groups.iter().map(|group| group.sigma).collect();
         let robust = DMatrix::zeros(0, 0);
-        let Problem { time_s, states, groups, unknowns, .. } = problem;
-        let mut fit = Fit {
-            time_s,
-            states,
-            theta,
-            free: free.to_vec(),
-            covariance,
-            robust,
-            cost,
-            sigma,
-            unknowns,
-            rows,
-            reduced,
-        };
+        let Problem { time_s, groups, unknowns, .. } = problem;
+        let mut fit = Fit { time_s, theta, free: free.to_vec(), covariance, robust, unknowns, rows, reduced };
         let scores = fit.scores(&groups, free);
         fit.robust = &fit.covariance * scores.tr_mul(&scores) * &fit.covariance * small_sample();
         Ok(fit)
@@ -150,7 +130,7 @@ impl<'a> Iterate<'a> {
         let covariance = information.try_inverse().ok_or(FitError::Singular)?;
         let step = -(&covariance * gradient);
         if step.iter().all(|part| part.is_finite()) {
-            Ok(Turn { rows, reduced, cost: normal.cost, covariance, step })
+            Ok(Turn { rows, reduced, covariance, step })
         } else {
             Err(FitError::Diverged)
         }

@@ -104,8 +104,8 @@ pub fn force_problem(
     })
 }
 
-fn group(name: &'static str, form: impl Residuals + 'static, sigma: Vector3<f64>) -> Group {
-    Group { form: Box::new(form), name, sigma, floor: None, learned_in: (0, 0) }
+fn group(form: impl Residuals + 'static, sigma: Vector3<f64>) -> Group {
+    Group { form: Box::new(form), sigma, floor: None, learned_in: (0, 0) }
 }
 
 /// First the accelerometer's level with that of the process held, then the others with the accelerometer's held: both at once
@@ -120,25 +120,25 @@ fn groups(flight: &Arc<Flight>) -> Vec<Group> {
     let root = STEP_S.sqrt();
     let learned =
         |group: Group, floor: Vector3<f64>, learned_in| Group { floor: Some(floor), learned_in, ..group };
-    let process = group("process", Process::new(flight.clone()), Vector3::new(0.02, 0.02, 0.1));
+    let process = group(Process::new(flight.clone()), Vector3::new(0.02, 0.02, 0.1));
     let accelerometer = Accelerometer { flight: flight.clone(), intervals: felt };
-    let accelerometer = group("accelerometer", accelerometer, noise / if quiet { 0.3 } else { 0.85 });
+    let accelerometer = group(accelerometer, noise / if quiet { 0.3 } else { 0.85 });
     let walk = Vector3::new(0.004, 0.004, 0.002) * root * if quiet { 0.1 } else { 1.0 };
-    let drift = group("drift of the attitude", TiltWalk(flight.clone()), walk);
+    let drift = group(TiltWalk(flight.clone()), walk);
     let driving = Vector3::repeat(if quiet { 0.01 } else { 0.1 } * (2.0 * STEP_S).sqrt());
-    let mechanization = group("mechanization", Mechanization(flight.clone()), driving);
+    let mechanization = group(Mechanization(flight.clone()), driving);
     let velocity = EstimatedVelocity { flight: flight.clone(), intervals: seen };
     let by_receiver = cells.receiver.samples.iter().map(|seen| seen.cell).collect();
     let receiver = ReceiverVelocity { flight: flight.clone(), intervals: by_receiver };
-    let receiver = group("receiver", receiver, Vector3::repeat(0.1));
+    let receiver = group(receiver, Vector3::repeat(0.1));
     let mut groups = vec![
         learned(process, Vector3::repeat(0.004), (4, ONWARD)),
         learned(accelerometer, noise * 0.9, (2, 4)),
         learned(drift, Vector3::repeat(1e-4 * root), (4, ONWARD)),
-        group("tilt at the start", Start(TILT), Vector3::new(0.02, 0.02, 0.06)),
-        group("error at the start", Start(ERROR), Vector3::repeat(0.3)),
+        group(Start(TILT), Vector3::new(0.02, 0.02, 0.06)),
+        group(Start(ERROR), Vector3::repeat(0.3)),
         learned(mechanization, Vector3::repeat(2e-5), (4, ONWARD)),
-        group("velocity", velocity, Vector3::repeat(0.003)),
+        group(velocity, Vector3::repeat(0.003)),
     ];
     if !cells.receiver.samples.is_empty() {
         groups.push(learned(receiver, Vector3::repeat(RECEIVER_FLOOR_M_S), (4, ONWARD)));

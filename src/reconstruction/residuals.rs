@@ -42,8 +42,6 @@ pub trait Residuals: std::fmt::Debug + Send + Sync {
 pub struct Group {
     /// the equation
     pub form: Box<dyn Residuals>,
-    /// name, for reports
-    pub name: &'static str,
     /// standard deviation of each component
     pub sigma: SVector<f64, WIDTH>,
     /// it is learned, and not below this

@@ -97,12 +97,6 @@ impl WeakKernel {
         out
     }
 
-    /// Sum of squared taps: variance of the output per variance of white input noise.
-    #[must_use]
-    pub fn noise_gain(&self, order: usize) -> f64 {
-        self.noise_covariance(order, 0)
-    }
-
     /// Covariance of two outputs whose centres lie `lag` samples apart, per variance of white input noise.
     #[must_use]
     pub fn noise_covariance(&self, order: usize, lag: usize) -> f64 {
@@ -189,7 +183,7 @@ mod tests {
         let (kernel, h) = (WeakKernel::new(0.2, step), 26.0 * step);
         let known = [0.907_034_142_328_260_2 * step / h, 4.405_594_405_594_406 * step / h.powi(3)];
         for (order, expected) in known.into_iter().enumerate() {
-            let found = kernel.noise_gain(order);
+            let found = kernel.noise_covariance(order, 0);
             assert!((found / expected - 1.0).abs() < 1e-5, "order {order}: {found}, not {expected}");
         }
     }

@@ -68,8 +68,6 @@ pub fn on_left_out(
          model; noise that an autopilot's estimator has smoothed is not included",
     ));
     Ok(HoldoutFit {
-        flights: ready.len(),
-        blocks,
         open_loop,
         no_open_loop,
         improvement_percent,

@@ -9,10 +9,6 @@ use crate::note::Note;
 /// The fit on flights that were not used.
 #[derive(Debug, Clone)]
 pub struct HoldoutFit {
-    /// how many flights
-    pub flights: usize,
-    /// blocks that the intervals come from
-    pub blocks: usize,
     /// open-loop prediction, one entry a length of window; none where `no_open_loop` says why
     pub open_loop: Vec<OpenLoop>,
     /// reason why nothing could be predicted

@@ -12,8 +12,6 @@ pub struct Split {
     pub holdout: Signals,
     /// s, vehicle clock, where the second part begins
     pub from_s: f64,
-    /// s, period of the trajectory; `None`: the last third is held back
-    pub period_s: Option<f64>,
 }
 
 /// Least time that must remain for the explanation, s. With less the explanation has too few rows.
@@ -50,7 +48,6 @@ pub fn split_last_periods(signals: &Signals) -> Option<Split> {
         identify,
         holdout,
         from_s,
-        period_s,
     })
 }
 

@@ -122,7 +122,7 @@ mod tests {
         let plain = synthetic(|i, _| noise[i], Some(10.0), (Followed::WorldX, &f64::sin));
         let slow =
             synthetic(|i, t| noise[i] + 3.0 * (0.4 * t).sin(), Some(10.0), (Followed::WorldX, &f64::sin));
-        let expected = plain.kernel.noise_gain(0);
+        let expected = plain.kernel.noise_covariance(0, 0);
         for view in [&plain, &slow] {
             let found = noise_variance(view, &periodogram(view, &view.residual[2])).unwrap();
             assert!((found / expected - 1.0).abs() < 0.25, "{found} {expected}");

@@ -304,7 +304,7 @@ mod tests {
         let push = |t: f64| if (20.0..26.0).contains(&t) { 2.0 } else { 0.0 };
         let view = synthetic(|i, t| noise[i] + push(t), None, (Followed::WorldX, &f64::sin));
         let mut sigma = [0.0; AXES];
-        sigma[2] = view.kernel.noise_gain(0).sqrt();
+        sigma[2] = view.kernel.noise_covariance(0, 0).sqrt();
         let spans = spans(&view, &sigma);
         let [span] = spans.as_slice() else { panic!("{spans:?}") };
         assert!((span.from_s - 20.0).abs() < 2.5 && (span.to_s - 26.0).abs() < 2.5, "{span:?}");

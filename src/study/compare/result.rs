@@ -1,7 +1,6 @@
 //! The result of comparing: every flight, what changed, and what could not have been seen.
 
 use crate::change::{BalanceChange, Groups, Moved, NAMED, Step, What};
-use crate::draft::Draft;
 use crate::note::Note;
 use crate::study::{InputFile, Track};
 use crate::trim::{Balance, mean_arm_m};
@@ -14,8 +13,6 @@ pub struct CompareStudy {
     pub vehicle: Vehicle,
     /// lengths and mass of it are known; otherwise results are shares
     pub is_known: bool,
-    /// the vehicle as it was drafted, where it came from no file
-    pub drafted: Option<Draft>,
     /// in the order in which they were given
     pub flights: Vec<ComparedFlight>,
     /// their balance

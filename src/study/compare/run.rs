@@ -83,7 +83,6 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     Ok(CompareStudy {
         flights: each_compared(&flights, reasons),
         is_known: request.vehicle.is_some(),
-        drafted: draft.filter(|_| request.vehicle.is_some()),
         vehicle,
         balance,
         tracks,

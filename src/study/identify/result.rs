@@ -3,7 +3,6 @@
 use super::joint_estimate::{EstimateWithEffects, joint_estimate, without_inertia};
 use crate::diagnose::CHANNEL_NAMES;
 use crate::diagnose::joint::JointEstimate;
-use crate::draft::Draft;
 use crate::estimate::{
     Contradiction, EstimateError, Identification, IdentifySettings, Method, MethodResult, ThrustScale,
     apply_anchor, contradictions, identify, rests_on_guessed_curve,
@@ -35,8 +34,6 @@ pub struct IdentifyStudy {
     pub notes: Vec<Note>,
     /// flights that cannot be of one vehicle with one load
     pub disagree: bool,
-    /// the vehicle as it was drafted, where it came from no file
-    pub drafted: Option<Draft>,
 }
 
 /// Effects that were identified together with the rigid body.
@@ -125,7 +122,6 @@ impl IdentifyStudy {
             with: None,
             notes: Vec::new(),
             disagree,
-            drafted: None,
         })
     }
 

@@ -47,7 +47,7 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     let study =
         IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings(), &explained)
             .map_err(|error| StudyError::of_estimate(error, &lost))?;
-    Ok(IdentifyStudy { with, notes, drafted: known.draft, ..study })
+    Ok(IdentifyStudy { with, notes, ..study })
 }
 
 /// The flights that can be used. The first reason where a log has none.
