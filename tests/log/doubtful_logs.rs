@@ -308,6 +308,9 @@ fn two_vehicles_in_one_log_are_told() {
     assert!(!same.contains("two vehicles"), "{same}");
     let (differ, _) = mavid(&["identify", &one, &another, "--vehicle", &stated]);
     assert!(differ.contains("doubtful: ") && differ.contains("two vehicles or two loads"), "{differ}");
+    let (explained, _) = mavid(&["explain", &one, &another, "--vehicle", &stated]);
+    assert!(explained.starts_with("Doubtful: "), "{explained}");
+    assert!(explained.contains("two vehicles or two loads"), "{explained}");
     let both = |other: &str| {
         let bytes = [std::fs::read(&one).unwrap(), std::fs::read(other).unwrap()].concat();
         mavid(&["inspect", written("both.tlog", &bytes).to_str().unwrap(), "--vehicle", &stated]).0

@@ -69,6 +69,7 @@ fn a_file_of_no_known_format_is_named_with_what_to_do() {
     let tar = [&b"flight.ulg"[..], &[0; 247], b"ustar\0", &[0; 200]].concat();
     for (bytes, came, advice) in [
         (&b"\xa3\x95\x80\x80\x59FMT"[..], "the first bytes of an ArduPilot log (.bin)", "the whole log"),
+        (b"\xa3\x95\x80", "or of a PX4 log of the format before ULog", "the whole log"),
         (
             b"\xa3\x95\x80\x02\x37ATT ",
             "a PX4 log of the format before ULog (sdlog2, .px4log)",

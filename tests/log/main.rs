@@ -13,6 +13,7 @@ mod both_logs;
 mod csv_recordings;
 mod damaged_logs;
 mod doubtful_logs;
+mod field_peers;
 mod foreign_logs;
 mod foreign_text;
 mod inspect;
