@@ -93,8 +93,6 @@ pub fn fly(out: &Path, connect: &str, trajectory: &Path, further: &[&str]) -> Ou
         .args(["--json", "fly", "--plain", "--arm", "--connect", connect, "--vehicle", &config("x500.toml")])
         .args(["--trajectory", &trajectory.display().to_string(), "--out", &out.display().to_string()])
         .args(further)
-        // what was set on a vehicle is noted there
-        .env("MAVID_STATE_DIR", out.with_file_name("state"))
         .output()
         .unwrap()
 }
