@@ -34,6 +34,8 @@ mod log_commands;
 #[cfg(target_os = "linux")]
 mod loopback;
 #[cfg(target_os = "linux")]
+mod own_log;
+#[cfg(target_os = "linux")]
 mod peers;
 #[cfg(target_os = "linux")]
 mod sitl_peers;
@@ -101,6 +103,7 @@ fn main() {
         fetch_interrupted::the_first_interrupt_ends_the_download_and_the_flight_is_analysed,
         demo::the_demo_names_what_it_conceals_with_its_size,
         log_commands::a_flight_sets_the_logging_of_each_autopilot_and_puts_it_back,
+        own_log::a_flight_logs_as_it_is_set_and_its_log_is_fetched,
         log_commands::logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back,
         demo::what_cannot_be_concealed_is_refused_before_anything_flies,
         log_commands::a_host_that_refuses_is_not_waited_for,

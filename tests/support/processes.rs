@@ -93,6 +93,8 @@ pub fn fly(out: &Path, connect: &str, trajectory: &Path, further: &[&str]) -> Ou
         .args(["--json", "fly", "--plain", "--arm", "--connect", connect, "--vehicle", &config("x500.toml")])
         .args(["--trajectory", &trajectory.display().to_string(), "--out", &out.display().to_string()])
         .args(further)
+        // what is set on a vehicle is noted there
+        .env("MAVID_STATE_DIR", out.with_file_name("state"))
         .output()
         .unwrap()
 }

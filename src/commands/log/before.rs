@@ -16,8 +16,9 @@ use crate::commands::{CommandError, network, output};
 
 /// A vehicle is waited for as long before a flight.
 const BEFORE: Duration = Duration::from_secs(30);
-/// One that has just flown is heard within this.
-pub(super) const AFTER: Duration = Duration::from_secs(8);
+/// One that has just flown is heard within this. A vehicle that listens for datagrams may hold the flight's address for 8 s of
+/// silence (`LinkOptions::peer_timeout`, which the embedded one has); a heartbeat then comes within 1 s, and as long again is allowed.
+pub(super) const AFTER: Duration = Duration::from_secs(12);
 
 /// What was found before a flight.
 #[derive(Debug, Default)]
