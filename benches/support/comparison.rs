@@ -58,9 +58,6 @@ pub struct PooledParameter {
     pub vehicles: usize,
     /// the standard error is smaller than that of the best single flight
     pub smaller: usize,
-    /// and smaller than that one's with the scatter of all flights
-    #[serde(default)]
-    pub smaller_than_scattered: usize,
     /// the truth is known
     pub known: usize,
     /// and lies within 1.96 standard errors

@@ -15,11 +15,15 @@ struct Pool {
     shared: f64,
 }
 
+/// Whether a value takes part: it and its standard error are numbers.
+fn is_usable((value, std): &(f64, f64)) -> bool {
+    value.is_finite() && *std > 0.0 && std.is_finite()
+}
+
 impl Pool {
     fn of(values: &[Option<(f64, f64)>], common: &[f64]) -> Option<Self> {
-        let usable = |(value, std): (f64, f64)| value.is_finite() && std > 0.0 && std.is_finite();
         let known = values.iter().zip(common).filter_map(|(value, common)| {
-            value.filter(|value| usable(*value)).map(|(value, std)| (value, std, common.min(0.999 * std)))
+            value.filter(is_usable).map(|(value, std)| (value, std, common.min(0.999 * std)))
         });
         let known: Vec<(f64, f64, f64)> = known.collect();
         let shared = known.iter().map(|(.., common)| *common).fold(f64::INFINITY, f64::min);
@@ -45,7 +49,7 @@ pub fn pooled_mean(values: &[Option<(f64, f64)>], common: &[f64]) -> Option<(f64
 }
 
 /// Each flight's value with the standard error that the others leave it: larger where the flights scatter by more than their errors,
-/// by the same factor as that of [`pooled_mean`].
+/// by the same factor as that of [`pooled_mean`]. What takes no part in that mean stays as it is.
 #[must_use]
 pub fn with_scatter(values: &[Option<(f64, f64)>], common: &[f64]) -> Vec<Option<(f64, f64)>> {
     let Some(Pool { scale, shared, .. }) = Pool::of(values, common) else { return values.to_vec() };
@@ -53,7 +57,8 @@ pub fn with_scatter(values: &[Option<(f64, f64)>], common: &[f64]) -> Vec<Option
         let own = (std * std - shared * shared).max(0.0).sqrt();
         (scale * own).hypot(shared.min(std))
     };
-    values.iter().map(|value| value.map(|(value, std)| (value, wider(std)))).collect()
+    let each = |of: (f64, f64)| if is_usable(&of) { (of.0, wider(of.1)) } else { of };
+    values.iter().map(|value| value.map(each)).collect()
 }
 
 #[cfg(test)]
@@ -77,6 +82,10 @@ mod tests {
         for (said, with) in four.iter().flatten().zip(with_scatter(&four, &[0.1; 5]).iter().flatten()) {
             assert!(said.0 == with.0 && (said.1 - with.1).abs() < 1e-12);
         }
+        // what is not known does not become known by the others
+        let unknown = [Some((1.0, 0.2)), Some((1.1, f64::NAN)), Some((1.2, f64::INFINITY))];
+        let left = with_scatter(&unknown, &[0.1; 3]);
+        assert!(left[1].unwrap().1.is_nan() && left[2].unwrap().1.is_infinite());
         // what goes the same way in all of them stays
         let (_, left) = pooled_mean(&four, &[0.1; 5]).unwrap();
         assert!((left - (0.03_f64 / 4.0 + 0.01).sqrt()).abs() < 1e-12);

@@ -12,7 +12,7 @@ use super::floors::add_floors;
 use super::latency::LatencyFinding;
 use super::latency_name::{FlightLatency, flight_latency};
 use super::left_over::add_left_over;
-use super::other_law::{of_other_laws, tested_laws};
+use super::other_law::of_other_laws;
 use super::reconstructed::{self, Forms, reconstruct};
 use super::recorded::Recorded;
 use super::signature::EffectTerm;
@@ -36,7 +36,7 @@ pub enum Owner {
     Flight,
 }
 
-/// Name of the latency between command and rotor, delay and lag together.
+/// Name of the vehicle's latency between command and rotor, delay and lag together, without that of a log.
 const LATENCY: &str = "latency";
 
 /// A parameter as one flight shows it.
@@ -104,7 +104,7 @@ pub fn each_with_model_of_all(
         let latency = explanation.search.latency;
         let of_latency = flight_latency((own, &base), &explanation.named, vehicle).ok().flatten();
         let fit = flight_fit((signals, own), base, (latency, Forms::Known)).ok()?;
-        let alone = of_other_laws(own, &tested_laws(own, &fit.0), &fit.0);
+        let alone = of_other_laws(own, &[], &fit.0);
         let laws = OtherLaws { alone: &alone, together: &together, of_all: &explanation.search.after };
         let mut out = parameters(&fit, explanation.turned_by_control, &terms, Some(&laws));
         out.extend(of_latency.map(FlightParameter::from));

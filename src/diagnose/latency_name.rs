@@ -3,6 +3,7 @@
 use super::base::Base;
 use super::confusable::APART;
 use super::fit::Newton;
+use super::floors::FORM;
 use super::latency::{FAST_MOTOR_S, LatencyFinding, REFUSED, held_s, is_delay, stated_lag_s, with_latency};
 use super::named::{Confusable, Named, NamedParameter, Strength};
 use super::signature::LatencyKind;
@@ -23,9 +24,8 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     if total_s - ordinary_s < 4.0 * std_s.hypot(ORDINARY_STD_S) {
         return None;
     }
-    let unsure_s = traces.iter().map(|trace| trace.inertial_unsure_s).fold(0.0, f64::max);
     // what every vehicle has beside it is known no better than that
-    let std_s = std_s.hypot(unsure_s).hypot(ORDINARY_STD_S);
+    let std_s = std_s.hypot(unsure_s(traces)).hypot(ORDINARY_STD_S);
     let is_lag = parts.lag_s > parts.delay_s && !is_delay(parts, vehicle);
     let (lag, delay) = (latency_signature(LatencyKind::Lag)?, latency_signature(LatencyKind::Delay)?);
     let (kind, other) = if is_lag { (lag, delay) } else { (delay, lag) };
@@ -62,6 +62,11 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     })
 }
 
+/// Uncertainty of the inertial unit's delay, s: the largest of the flights.
+fn unsure_s(traces: &[Trace]) -> f64 {
+    traces.iter().map(|trace| trace.inertial_unsure_s).fold(0.0, f64::max)
+}
+
 /// Latency of sampling, sensors and a fast motor, or of the one that is stated, s: no name says so much.
 fn ordinary_s(traces: &[Trace], vehicle: &Vehicle) -> f64 {
     let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
@@ -70,8 +75,9 @@ fn ordinary_s(traces: &[Trace], vehicle: &Vehicle) -> f64 {
     stated_lag_s(vehicle) + FAST_MOTOR_S + 0.5 * period_s + late_s
 }
 
-/// The latency of one flight where all of them gave it a name: delay and lag together, whatever the kind.
-#[derive(Debug, Clone, Copy)]
+/// The vehicle's own latency by one flight where all of them gave it a name: delay and lag together, whatever the kind, without the
+/// delay that the flight's log has.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FlightLatency {
     /// the name
     pub(super) id: &'static str,
@@ -83,8 +89,24 @@ pub(super) struct FlightLatency {
     pub(super) ordinary_s: f64,
 }
 
-/// The latency of one flight, fitted alone to the model `base`. `None` where the flights' latency has no name, and where the flight does
-/// not determine it.
+impl FlightLatency {
+    /// `total_s` and its standard error with the delay `held_s` of the log in it, ordinary up to `ordinary_s`, where the delay of the
+    /// inertial unit is uncertain by `unsure_s`, all s. What every vehicle has, how far the law of a lag holds and that delay are known
+    /// no better from several flights.
+    fn new(
+        id: &'static str,
+        (total_s, std_s): (f64, f64),
+        held_s: f64,
+        (ordinary_s, unsure_s): (f64, f64),
+    ) -> Self {
+        let common_std = ORDINARY_STD_S.hypot(FORM * total_s).hypot(unsure_s);
+        let estimate = (total_s - held_s, std_s.hypot(common_std));
+        Self { id, estimate, common_std, ordinary_s: ordinary_s - held_s }
+    }
+}
+
+/// The latency of one flight, fitted alone to the model `base`. `None` where the flights' latency has no name, where the flight does not
+/// determine it, and where it is from measured rotor speeds to the motion: no motor is in it then.
 ///
 /// # Errors
 /// [`PhysicsError`] where the base is not physical.
@@ -95,14 +117,14 @@ pub(super) fn flight_latency(
 ) -> Result<Option<FlightLatency>, PhysicsError> {
     let is_latency = |id| signature_of(id).is_some_and(|signature| signature.role.latency.is_some());
     let Some(id) = named.iter().map(|named| named.id).find(|id| is_latency(id)) else { return Ok(None) };
+    if traces.iter().any(|trace| trace.measured_speeds) {
+        return Ok(None);
+    }
     let newton = if is_delay(base.latency, vehicle) { Newton::Delay } else { Newton::Free };
     let (_, own) = with_latency(traces, base.clone(), newton)?;
-    Ok(own.is_determined().then(|| FlightLatency {
-        id,
-        estimate: (own.total_s, own.std_s.hypot(ORDINARY_STD_S)),
-        common_std: ORDINARY_STD_S,
-        ordinary_s: ordinary_s(traces, vehicle),
-    }))
+    let ordinary = (ordinary_s(traces, vehicle), unsure_s(traces));
+    let of_flight = || FlightLatency::new(id, (own.total_s, own.std_s), held_s(traces), ordinary);
+    Ok(own.is_determined().then(of_flight))
 }
 
 /// Lag of motors of which nothing is stated, s, and its standard error: 12 to 50 ms in simulators' vehicles and on
@@ -167,6 +189,20 @@ const TOLD_APART: f64 = 15.0;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_flights_latency_is_the_vehicles_and_not_that_of_its_log() {
+        // the same motors in two logs, one of which holds commands and gyroscopes back by 8 ms more
+        let [fast, slow] = [0.002, 0.010].map(|held_s| {
+            FlightLatency::new("motor_lag", (0.04 + held_s, 0.001), held_s, (0.02 + held_s, 0.003))
+        });
+        for found in [fast, slow] {
+            assert!((found.estimate.0 - 0.04).abs() < 1e-12 && (found.ordinary_s - 0.02).abs() < 1e-12);
+            assert!((found.estimate.1 - 0.001_f64.hypot(found.common_std)).abs() < 1e-12);
+        }
+        // sqrt(2.5^2 + (0.02 * 42)^2 + 3^2) ms
+        assert!((fast.common_std - 0.003_994_6).abs() < 1e-6, "{}", fast.common_std);
+    }
 
     #[test]
     fn the_lag_of_unstated_motors_is_at_most_the_latency_and_what_its_second_order_allows() {

@@ -5,7 +5,7 @@
 //! exclude it. What it brings into the other sizes belongs to their standard errors (consider covariance).
 
 use super::candidates::{Candidate, candidates};
-use super::evidence::weighted;
+use super::evidence::{Evidence, weighted};
 use super::fit::Fitted;
 use super::score::columns_of;
 use super::signature::EffectTerm;
@@ -19,15 +19,38 @@ pub(super) fn add_other_laws(flights: &[Trace], last: &[Tested], fitted: &mut Fi
     fitted.covariance += of_other_laws(flights, last, fitted);
 }
 
-/// The drag laws that a fit does not have, tested on its flights.
-pub(super) fn tested_laws(flights: &[Trace], fitted: &Fitted) -> Vec<Tested> {
-    let all = candidates(&fitted.base.vehicle, flights, ALL).into_iter();
-    let others = all.filter(|candidate| is_other_law(candidate, fitted));
-    let tested = others.filter_map(|candidate| {
-        let evidence = fitted.weighted.test(&columns_of(flights, fitted, &candidate)?)?;
-        Some(Tested { candidate, evidence })
-    });
-    tested.collect()
+/// A drag law that a fit does not have.
+struct Law {
+    part: EffectTerm,
+    /// `None`: the flights cannot tell it from what the fit has
+    evidence: Option<Evidence>,
+}
+
+impl Law {
+    /// What the flights tell of one of its coefficients, with the standard error, SI.
+    fn told(&self, index: usize) -> (f64, f64) {
+        self.evidence.as_ref().map_or((0.0, f64::INFINITY), |of| (of.theta[index], of.std(index)))
+    }
+}
+
+/// The drag laws that a fit does not have: those in `last` as they were tested, the others tested on its flights. Where they tell one
+/// form of a law, that form stands for those that they do not.
+fn other_laws(flights: &[Trace], last: &[Tested], fitted: &Fitted) -> Vec<Law> {
+    let tested = last.iter().filter(|tested| is_other_law(&tested.candidate, fitted));
+    let as_tested = |tested: &Tested| {
+        Some(Law { part: tested.candidate.parts.first()?.clone(), evidence: Some(tested.evidence.clone()) })
+    };
+    let mut laws: Vec<Law> = tested.filter_map(as_tested).collect();
+    let mut others = candidates(&fitted.base.vehicle, flights, ALL);
+    others.retain(|other| is_other_law(other, fitted) && laws.iter().all(|law| law.part.id() != other.id));
+    laws.extend(others.iter().filter_map(|candidate| {
+        let columns = columns_of(flights, fitted, candidate)?;
+        Some(Law { part: candidate.parts.first()?.clone(), evidence: fitted.weighted.test(&columns) })
+    }));
+    let told = laws.iter().filter(|law| law.evidence.is_some());
+    let told: Vec<&str> = told.map(|law| law.part.id()).collect();
+    laws.retain(|law| law.evidence.is_some() || !told.contains(&law.part.id()));
+    laws
 }
 
 fn drags(term: &EffectTerm) -> bool {
@@ -41,7 +64,8 @@ fn is_other_law(candidate: &Candidate, fitted: &Fitted) -> bool {
     candidate.through.is_none() && drags(part) && is_new()
 }
 
-/// Covariance that the drag laws among the candidates that were not taken may bring into a fit's coefficients.
+/// Covariance that the drag laws that a fit does not have may bring into its coefficients; `last` are candidates that were tested on
+/// the same flights. Of several laws it is that of the one which widens the standard errors most.
 pub(super) fn of_other_laws(flights: &[Trace], last: &[Tested], fitted: &Fitted) -> DMatrix<f64> {
     let count = fitted.covariance.nrows();
     let mut most: DMatrix<f64> = DMatrix::zeros(count, count);
@@ -52,15 +76,16 @@ pub(super) fn of_other_laws(flights: &[Trace], last: &[Tested], fitted: &Fitted)
     let with_air = |term: &EffectTerm| drags(term) || term.signature.role.wind.is_some();
     let present = &fitted.base.effects;
     let go_along: Vec<bool> = present.iter().flat_map(|term| vec![with_air(term); term.free.len()]).collect();
-    for tested in last.iter().filter(|tested| is_other_law(&tested.candidate, fitted)) {
-        let [part] = tested.candidate.parts.as_slice() else { continue };
+    let mut widest = 0.0;
+    for law in other_laws(flights, last, fitted) {
+        let part = &law.part;
         let Ok(columns) = fitted.rows.columns_of(flights, &fitted.base, part) else { continue };
         let mut added = DMatrix::zeros(count, count);
         for (index, (column, &slot)) in columns.iter().zip(&part.free).enumerate() {
             let Some(parameter) = part.parameter(slot) else { continue };
             let usual = (part.signature.naming.usual)(parameter.name, &fitted.base.vehicle);
             let Some(usual) = usual else { continue };
-            let (told, std) = (tested.evidence.theta[index], tested.evidence.std(index));
+            let (told, std) = law.told(index);
             let mut brings: DVector<f64> = fitted.weighted.part_in(&weighted(column, &fitted.weighted.sigma));
             let effects = brings.len() - go_along.len();
             for (place, brings) in brings.iter_mut().enumerate() {
@@ -69,11 +94,19 @@ pub(super) fn of_other_laws(flights: &[Trace], last: &[Tested], fitted: &Fitted)
             }
             added += &brings * brings.transpose() * second_moment(told, std, usual);
         }
-        if added.trace() > most.trace() {
-            most = added;
+        let widens = share(&added, &fitted.covariance);
+        if widens > widest {
+            (most, widest) = (added, widens);
         }
     }
     most
+}
+
+/// Sum of what is added to the coefficients' variances, each as a share of its own: coefficients have different units.
+fn share(added: &DMatrix<f64>, covariance: &DMatrix<f64>) -> f64 {
+    let (added, covariance) = (added.diagonal(), covariance.diagonal());
+    let known = added.iter().zip(covariance.iter()).filter(|(_, variance)| **variance > 0.0);
+    known.map(|(added, variance)| added / variance).sum()
 }
 
 /// Mean square of a size that is from none to `usual` on ordinary vehicles, where a flight tells `told` with an error `std`.
@@ -92,5 +125,18 @@ mod tests {
         // 1 / (1/0.01 + 1/(1/3)) = 1/103, mean 100/103 * 0.5
         assert!((second_moment(0.5, 0.1, 1.0) - (0.009_709 + 0.235_649)).abs() < 1e-5);
         assert!((second_moment(3.0, 1e6, 0.2) - 0.04 / 3.0).abs() < 1e-9);
+        assert!((second_moment(0.0, f64::INFINITY, 0.2) - 0.04 / 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn which_law_widens_more_does_not_depend_on_units() {
+        // a drag, N/(m/s), and a wind, m/s
+        let covariance = DMatrix::from_diagonal(&DVector::from_vec(vec![1e-4, 1.0]));
+        let added = |variances: [f64; 2]| DMatrix::from_diagonal(&DVector::from_vec(variances.to_vec()));
+        let (of_drag, of_wind) = (added([4e-4, 0.1]), added([0.0, 0.5]));
+        assert!(of_wind.trace() > of_drag.trace());
+        assert!((share(&of_drag, &covariance) - 4.1).abs() < 1e-12);
+        assert!((share(&of_wind, &covariance) - 0.5).abs() < 1e-12);
+        assert!(share(&of_wind, &DMatrix::zeros(2, 2)).abs() < 1e-12);
     }
 }

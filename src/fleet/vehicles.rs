@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::autopilot::Frame;
 use crate::draft::Given;
-use crate::study::{OwnWords, VehicleGiven};
+use crate::study::{AIRFRAME, OwnWords, SERIAL, VehicleGiven};
 use crate::text;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -145,32 +145,22 @@ impl FleetVehicle {
     }
 }
 
-/// Parameters that say how a vehicle is built: two vehicles that differ in one of them are of different types.
-const AIRFRAME: [&str; 7] = [
-    "SYS_AUTOSTART",
-    "CA_AIRFRAME",
-    "CA_ROTOR_COUNT",
-    "MAV_TYPE",
-    "FRAME_CLASS",
-    "FRAME_TYPE",
-    "MOT_SPIN_ARM",
-];
-/// Parameters that say which one of a type it is.
-const SERIAL: [&str; 5] = ["BRD_SERIAL_NUM", "CAL_ACC0_ID", "CAL_GYRO0_ID", "COMPASS_DEV_ID", "INS_ACC_ID"];
+/// Beside [`AIRFRAME`]: vehicles of one type are set alike.
+const SET_ALIKE: &str = "MOT_SPIN_ARM";
 /// Parameters with the system id of a log that has no frames.
 const SYSTEM: [&str; 3] = ["MAV_SYS_ID", "SYSID_THISMAV", "MAV_SYSID"];
 
 /// The type of a log's vehicle by its airframe parameters: `px4-5f3a90`.
 #[must_use]
 pub fn own_type(log: &OfLog<'_>) -> String {
-    format!("{}-{}", log.own.autopilot, digest(log.own.parameters, &AIRFRAME))
+    format!("{}-{}", log.own.autopilot, digest(log.own.parameters, AIRFRAME.into_iter().chain([SET_ALIKE])))
 }
 
 /// The name of a log's vehicle by its system id, airframe and serial numbers: `px4-5f3a90-1-0c22e1`.
 #[must_use]
 pub fn own_name(log: &OfLog<'_>) -> String {
     let system = system_of(log).map_or_else(|| "x".to_owned(), |system| system.to_string());
-    format!("{}-{system}-{}", own_type(log), digest(log.own.parameters, &SERIAL))
+    format!("{}-{system}-{}", own_type(log), digest(log.own.parameters, SERIAL.into_iter()))
 }
 
 /// The MAVLink system id of a log, by its frames or by a parameter.
@@ -182,11 +172,9 @@ pub fn system_of(log: &OfLog<'_>) -> Option<u32> {
     log.own.system.or_else(|| stated().and_then(whole))
 }
 
-fn digest(parameters: &BTreeMap<String, f64>, names: &[&str]) -> String {
-    let known: Vec<String> = names
-        .iter()
-        .filter_map(|name| parameters.get(*name).map(|value| format!("{name}={value}")))
-        .collect();
+fn digest<'a>(parameters: &BTreeMap<String, f64>, names: impl Iterator<Item = &'a str>) -> String {
+    let known: Vec<String> =
+        names.filter_map(|name| parameters.get(name).map(|value| format!("{name}={value}"))).collect();
     if known.is_empty() {
         return "unknown".to_owned();
     }

@@ -50,6 +50,7 @@ pub use input::InputFile;
 pub use known_effect::{
     KnownConfusable, KnownEffect, KnownParameter, ParameterKind, UsualOfClass, known_effects,
 };
+pub use one_vehicle::{AIRFRAME, SERIAL};
 pub use plan::{Circle, FlightExtremes, PlanStudy, PlannedSeries, PlanningRequest, plan_flight};
 pub use progress::{Progress, Silent, Stage};
 pub use prove::{

@@ -3,10 +3,18 @@
 use super::StudyError;
 use super::flight::Flight;
 use crate::autopilot::RotorPlace;
+use crate::note::{About, Note};
 use crate::recording::Recording;
 
 /// Parameters that state where the motors are: another value is another vehicle, or the same rebuilt.
 const FRAME: [&str; 3] = ["FRAME_CLASS", "FRAME_TYPE", "CA_ROTOR_COUNT"];
+
+/// Parameters that say how a vehicle is built: two vehicles that differ in one of them are of different types.
+pub const AIRFRAME: [&str; 6] =
+    ["SYS_AUTOSTART", "CA_AIRFRAME", "CA_ROTOR_COUNT", "MAV_TYPE", "FRAME_CLASS", "FRAME_TYPE"];
+/// Parameters that say which one of a type it is.
+pub const SERIAL: [&str; 5] =
+    ["BRD_SERIAL_NUM", "CAL_ACC0_ID", "CAL_GYRO0_ID", "COMPASS_DEV_ID", "INS_ACC_ID"];
 
 /// Logs of different autopilots number the motors differently, and so do different frames.
 pub(super) fn refuse_others<'a>(mut flights: impl Iterator<Item = &'a Flight>) -> Result<(), StudyError> {
@@ -45,6 +53,34 @@ pub(super) fn refuse_other_builds<'a>(
         });
     }
     Ok(())
+}
+
+/// A warning for each flight whose log states another airframe or other serial numbers than that of the first: such flights may be of
+/// two vehicles, or of one that was rebuilt.
+pub(super) fn doubt_one_vehicle<'a>(mut flights: impl Iterator<Item = &'a Flight>) -> Vec<Note> {
+    let Some(first) = flights.next() else { return Vec::new() };
+    let doubt = |flight: &Flight| {
+        let others = stated_otherwise(&flight.recording, &first.recording);
+        let about = || About::File(flight.input.path.clone());
+        let text = || {
+            format!(
+                "{} not as in {}: these flights are of two vehicles, or parts were replaced between them",
+                others.join(", "),
+                first.input.path
+            )
+        };
+        (!others.is_empty()).then(|| Note::warning(about(), text()))
+    };
+    flights.filter_map(doubt).collect()
+}
+
+/// What identifies a vehicle and is stated in both logs, otherwise in `one` than in `other`.
+fn stated_otherwise(one: &Recording, other: &Recording) -> Vec<&'static str> {
+    let is_other = |name: &&str| {
+        let value = |recording: &Recording| recording.parameters.get(*name).copied();
+        value(one).zip(value(other)).is_some_and(|(one, other)| one != other)
+    };
+    AIRFRAME.into_iter().chain(SERIAL).filter(is_other).collect()
 }
 
 /// The rotors of both are stated, and not at the same places.
@@ -97,6 +133,19 @@ mod tests {
         assert_eq!(said, Some(("a vehicle with FRAME_CLASS 2".to_owned(), "FRAME_CLASS 1".to_owned())));
         assert_eq!(differ(&of(Autopilot::Px4, 1.0), &quad), Some(("PX4".to_owned(), "ArduPilot".to_owned())));
         assert_eq!(differ(&Recording::default(), &quad), None);
+    }
+
+    #[test]
+    fn another_serial_number_is_told_and_one_that_is_not_stated_is_not() {
+        let of = |values: &[(&str, f64)]| Recording {
+            parameters: values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+            ..Recording::default()
+        };
+        let one = of(&[("SYS_AUTOSTART", 4001.0), ("CAL_ACC0_ID", 1.0), ("MPC_THR_HOVER", 0.5)]);
+        let same = of(&[("SYS_AUTOSTART", 4001.0), ("CAL_GYRO0_ID", 7.0), ("MPC_THR_HOVER", 0.4)]);
+        let other = of(&[("SYS_AUTOSTART", 4500.0), ("CAL_ACC0_ID", 2.0)]);
+        assert_eq!(stated_otherwise(&one, &same), Vec::<&str>::new());
+        assert_eq!(stated_otherwise(&other, &one), ["SYS_AUTOSTART", "CAL_ACC0_ID"]);
     }
 
     #[test]

@@ -32,7 +32,7 @@ pub struct Track {
     pub effect: Option<&'static str>,
     /// of a wind: 0 to north, 1 to west, 2 up
     pub wind_axis: Option<usize>,
-    /// value at which the effect is none
+    /// value at which the effect is none; the largest of the flights where it is not the same in all of them
     pub nothing: f64,
     /// value and standard error of each flight; `None` where it does not determine it
     pub values: Vec<Option<(f64, f64)>>,
@@ -95,6 +95,8 @@ impl Track {
                     tracks.push(Self::new(&parameter, flights));
                     tracks.len() - 1
                 });
+                // how much latency is ordinary goes with the log
+                tracks[at].nothing = tracks[at].nothing.max(parameter.nothing);
                 tracks[at].values[place] = Some(parameter.estimate);
                 tracks[at].common_std[place] = parameter.common_std;
             }
@@ -108,15 +110,65 @@ impl Track {
         pooled_mean(&self.values, &self.common_std)
     }
 
-    /// The value of one flight alone, with its standard error as the scatter of all flights leaves it.
+    /// The value of one flight alone. The standard error of what the flights have in common is as their scatter leaves it. What is each
+    /// flight's own differs in truth, and keeps its error.
     #[must_use]
     pub fn alone(&self, flight: usize) -> Option<(f64, f64)> {
+        if self.owner == Owner::Flight {
+            return self.values.get(flight).copied().flatten();
+        }
         with_scatter(&self.values, &self.common_std).get(flight).copied().flatten()
     }
 
-    /// Whether a flight alone shows that the effect is there.
+    /// Whether a flight alone shows that the effect is there, by its own standard error: an effect that one of a few flights has makes
+    /// them scatter, and the scatter would hide it in every one of them.
     #[must_use]
     pub fn is_shown_by(&self, flight: usize) -> bool {
-        self.alone(flight).is_some_and(|(value, std)| (value - self.nothing).abs() > CARRIES * std)
+        let own = self.values.get(flight).copied().flatten();
+        own.is_some_and(|(value, std)| (value - self.nothing).abs() > CARRIES * std)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn track(owner: Owner, nothing: f64, values: &[(f64, f64)]) -> Track {
+        let of = |(place, estimate): (usize, &(f64, f64))| {
+            let parameter = FlightParameter {
+                name: "one".to_owned(),
+                unit: "1",
+                owner,
+                effect: None,
+                wind_axis: None,
+                nothing,
+                estimate: *estimate,
+                common_std: 0.0,
+            };
+            (place, vec![parameter])
+        };
+        let [track] =
+            Track::all(values.iter().enumerate().map(of).collect(), values.len()).try_into().unwrap();
+        track
+    }
+
+    #[test]
+    fn what_is_each_flights_own_keeps_its_error_where_the_flights_differ() {
+        let payloads = [(0.20, 0.002), (0.50, 0.003)];
+        let own = track(Owner::Flight, 0.0, &payloads);
+        assert_eq!([0, 1].map(|flight| own.alone(flight).unwrap()), payloads);
+        let common = track(Owner::Vehicle, 0.0, &payloads);
+        assert!((0..2).all(|flight| common.alone(flight).unwrap().1 > 10.0 * payloads[flight].1));
+        assert_eq!(own.alone(2), None);
+    }
+
+    #[test]
+    fn one_flight_of_two_or_three_shows_what_it_alone_has() {
+        let (weak, whole) = ((0.9, 0.01), (1.0, 0.01));
+        for flights in [&[whole, weak][..], &[whole, weak, whole]] {
+            let rotor = track(Owner::Vehicle, 1.0, flights);
+            let shown: Vec<usize> = (0..flights.len()).filter(|flight| rotor.is_shown_by(*flight)).collect();
+            assert_eq!(shown, [1]);
+        }
     }
 }

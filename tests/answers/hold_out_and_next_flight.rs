@@ -319,6 +319,8 @@ fn flights_with_and_without_measured_rotor_speeds_are_explained_together() {
         let dx = alone.iter().find(|of| of.name == "linear_drag.dx").unwrap();
         let (value, std) = dx.estimate;
         assert!((value - 0.25).abs() < 3.0 * std && std < 0.1, "{dx:?}");
+        // an error so large that none would do as well proves nothing
+        assert!((value - 0.25).abs() < 0.05 || std < 0.03, "{dx:?}");
         assert!(dx.common_std < std && drag.parameters[0].std < std, "{dx:?}, {drag:?}");
     }
 }

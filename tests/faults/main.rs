@@ -6,6 +6,7 @@ mod caught;
 mod harness;
 
 use harness::fly;
+use harness::lot::{PHASES, Trouble};
 use rayon::prelude::*;
 
 const SEED: u64 = 1;
@@ -19,6 +20,13 @@ fn no_law_is_broken_on_a_hundred_and_fifty_flights() {
     let attacked = reports.iter().filter(|report| report.attacked).count();
     assert!(broken.is_empty(), "{} flights broke a law:\n{}", broken.len(), broken.join("\n"));
     assert!(attacked > 125, "only {attacked} flights came to their faults");
+    for kind in Trouble::KINDS {
+        assert!(reports.iter().any(|report| report.came.contains(&kind)), "no flight had a {kind}");
+    }
+    for phase in PHASES {
+        let came = reports.iter().any(|report| report.attacked && report.phase == phase);
+        assert!(came, "no fault came from '{phase}' on");
+    }
 }
 
 /// Flights of the same seed on which a law was broken once.

@@ -16,8 +16,6 @@ struct Estimate {
     std: f64,
     /// error of the flight that tells it best, by that flight
     single: f64,
-    /// the same with what the scatter of all flights adds to it
-    with_scatter: f64,
     /// that flight's value
     best: f64,
     truth: Option<f64>,
@@ -58,14 +56,14 @@ pub fn run(seed: u64, count: u64, flights: u64) -> Pooled {
         by_name.iter().map(|(name, of)| figures(name, of)).filter(|of| of.known > 0).collect();
     let whole = figures("all", &all.iter().collect::<Vec<_>>());
     println!(
-        "parameter, vehicles, smaller than the best single flight's, than that with the scatter of all, with a truth, covered, \
+        "parameter, vehicles, smaller than the best single flight's, with a truth, covered, \
          covered by the best single flight, median error over best single"
     );
     for of in parameters.iter().chain([&whole]) {
         let PooledParameter { name, vehicles, smaller, known, covered, error_ratio, .. } = of;
-        let (scattered, single) = (of.smaller_than_scattered, of.covered_by_single);
+        let single = of.covered_by_single;
         println!(
-            "  {name:<18} {vehicles:>3} {smaller:>3} {scattered:>3} {known:>3} {covered:>3} {single:>3}  {error_ratio:.2}"
+            "  {name:<18} {vehicles:>3} {smaller:>3} {known:>3} {covered:>3} {single:>3}  {error_ratio:.2}"
         );
     }
     spread("time for each vehicle's flights", &mut seconds);
@@ -101,24 +99,16 @@ fn estimates_of(seed: u64, case: &RealCase, study: &ExplainStudy) -> Vec<Estimat
                     std(one).partial_cmp(&std(other)).unwrap()
                 },
             )?;
-            let ((best, single), (_, with_scatter)) = track.values[place].zip(track.alone(place))?;
+            let (best, single) = track.values[place]?;
             let several = track.values.iter().flatten().count() > 1;
             let truth = truth(case, &track.name);
-            several.then_some(Estimate {
-                name: track.name.clone(),
-                value,
-                std,
-                single,
-                with_scatter,
-                best,
-                truth,
-            })
+            several.then_some(Estimate { name: track.name.clone(), value, std, single, best, truth })
         })
         .collect();
     for one in estimates.iter().filter(|one| one.std >= one.single || one.is_off()) {
         println!(
-            "  seed {seed}: {} {:.5e} +- {:.1e}, best single {:.1e}, with the scatter of all {:.1e}, truth {:?}",
-            one.name, one.value, one.std, one.single, one.with_scatter, one.truth
+            "  seed {seed}: {} {:.5e} +- {:.1e}, best single {:.1e}, truth {:?}",
+            one.name, one.value, one.std, one.single, one.truth
         );
     }
     estimates
@@ -163,10 +153,6 @@ fn figures(name: &str, estimates: &[&Estimate]) -> PooledParameter {
         name: name.to_owned(),
         vehicles: estimates.len(),
         smaller: estimates.iter().filter(|estimate| estimate.std < estimate.single).count(),
-        smaller_than_scattered: estimates
-            .iter()
-            .filter(|estimate| estimate.std < estimate.with_scatter)
-            .count(),
         known: known.len(),
         covered: known.iter().filter(|estimate| !estimate.is_off()).count(),
         covered_by_single: known.iter().filter(|estimate| !estimate.is_single_off()).count(),

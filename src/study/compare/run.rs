@@ -14,7 +14,7 @@ use crate::recording::{Quantity, Recording};
 use crate::signals::{ConditionSettings, Signals, ThrustPreference, best, other_settings};
 use crate::study::flight::Flight;
 use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins};
-use crate::study::one_vehicle::refuse_others;
+use crate::study::one_vehicle::{doubt_one_vehicle, refuse_others};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{InputFile, Progress, Stage, StudyError, Track, VehicleGiven};
@@ -48,6 +48,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft } = known;
     refuse_twins(before.iter().chain(&after))?;
     refuse_others(before.iter().chain(&after).flatten())?;
+    notes.extend(doubt_one_vehicle(before.iter().chain(&after).flatten()));
     refuse_same_flight(&before, &after)?;
     refuse_single(before.iter().chain(&after))?;
     progress.stage(Stage::Conditioning);

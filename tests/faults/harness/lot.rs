@@ -75,6 +75,51 @@ pub enum Trouble {
     Cut(f64),
 }
 
+impl Trouble {
+    /// Every kind of it.
+    pub const KINDS: [&str; 15] = [
+        "silence", "stall", "pilot", "forged", "replay", "flood", "reboot", "jump", "estimate", "battery",
+        "push", "station", "key", "stop", "cut",
+    ];
+
+    /// Which of [`Self::KINDS`].
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Silence { .. } => "silence",
+            Self::Stall { .. } => "stall",
+            Self::Pilot { .. } => "pilot",
+            Self::Forged(_) => "forged",
+            Self::Replay { .. } => "replay",
+            Self::Flood { .. } => "flood",
+            Self::Reboot => "reboot",
+            Self::Jump(_) => "jump",
+            Self::Estimate(_) => "estimate",
+            Self::Battery(_) => "battery",
+            Self::Push(..) => "push",
+            Self::Station { .. } => "station",
+            Self::Key(_) => "key",
+            Self::Stop => "stop",
+            Self::Cut(_) => "cut",
+        }
+    }
+}
+
+/// Phases of a flight from which on it goes wrong, some of them more often.
+pub const PHASES: [&str; 12] = [
+    "check",
+    "engage",
+    "arm",
+    "take off",
+    "take off",
+    "go to start",
+    "start gate",
+    "trajectory",
+    "trajectory",
+    "trajectory",
+    "trajectory",
+    "land",
+];
+
 /// A flight before it is flown.
 #[derive(Debug, Clone)]
 pub struct Lot {
@@ -120,20 +165,6 @@ impl Lot {
         let copter = [Firmware::ARDUPILOT_4_6, Firmware::ARDUPILOT_4_7, Firmware::ARDUPILOT_4_7];
         let kind = if chance(random, 0.5) { Firmware::PX4 } else { one(random, &copter) };
         let datagrams = chance(random, 0.7);
-        let phases = [
-            "check",
-            "engage",
-            "arm",
-            "take off",
-            "take off",
-            "go to start",
-            "start gate",
-            "trajectory",
-            "trajectory",
-            "trajectory",
-            "trajectory",
-            "land",
-        ];
         let count = one(random, &[1, 1, 2, 2, 3, 4]);
         let mut troubles = Vec::new();
         for _ in 0..count {
@@ -146,7 +177,7 @@ impl Lot {
             datagrams,
             up: quality(random, datagrams),
             down: quality(random, datagrams),
-            phase: one(random, &phases),
+            phase: one(random, &PHASES),
             troubles,
             origin: one(random, &[Origin::Local, Origin::Local, Origin::Here]),
             clearance: chance(random, 0.03),

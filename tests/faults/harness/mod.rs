@@ -42,6 +42,10 @@ pub struct Report {
     pub excerpt: String,
     /// it came to its faults
     pub attacked: bool,
+    /// phase from which on they were to come
+    pub phase: &'static str,
+    /// kinds of trouble that came
+    pub came: Vec<&'static str>,
     /// vehicle frames that were read
     pub frames: usize,
     /// of simulated time
@@ -56,7 +60,7 @@ pub fn fly(seed: u64, number: u64, whole: bool) -> Report {
 /// Flies a lot; random numbers are those of a seed's flight.
 pub fn fly_lot(lot: Lot, (seed, number): (u64, u64), whole: bool) -> Report {
     let given = given(&lot);
-    let story = lot.to_string();
+    let (story, phase) = (lot.to_string(), lot.phase);
     let mut world = World::new(lot, seed, number);
     let flown = catch_unwind(AssertUnwindSafe(|| world.fly()));
     let mut broken = check(&world.trace, &given);
@@ -78,7 +82,8 @@ pub fn fly_lot(lot: Lot, (seed, number): (u64, u64), whole: bool) -> Report {
         world.host.outcome.as_ref().map(|outcome| format!("{:?}, {:?}", outcome.cause, outcome.ending));
     let story = format!("{story}  ended: {}", ending.unwrap_or_else(|| "not".into()));
     let (attacked, frames, lasted) = (world.began(), world.host.read.len(), world.now);
-    Report { number, broken, story, excerpt, attacked, frames, lasted }
+    let came = std::mem::take(&mut world.came);
+    Report { number, broken, story, excerpt, attacked, phase, came, frames, lasted }
 }
 
 pub fn given(lot: &Lot) -> Given {

@@ -59,6 +59,8 @@ pub struct World {
     to_do: BTreeMap<(Duration, u64), Act>,
     count: u64,
     begun: bool,
+    /// kinds of trouble that came
+    pub came: Vec<&'static str>,
     is_cut: bool,
     taken: bool,
     said: VecDeque<(Duration, Vec<u8>)>,
@@ -97,6 +99,7 @@ impl World {
             to_do: BTreeMap::new(),
             count: 0,
             begun: false,
+            came: Vec::new(),
             is_cut: false,
             taken: false,
             said: VecDeque::new(),
@@ -194,6 +197,7 @@ impl World {
         match act {
             Act::Begin(trouble) => {
                 self.trace.add(now, Observation::Fault(format!("{trouble:?}")));
+                self.came.push(trouble.kind());
                 self.trouble(trouble);
             }
             Act::Pilot(mode) => {
