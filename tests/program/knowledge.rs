@@ -119,6 +119,25 @@ fn a_mapping_is_proposed_by_names_units_and_gravity() {
 }
 
 #[test]
+fn axes_are_those_of_each_groups_own_names() {
+    let mixed = "time_s,pos_e,pos_n,pos_u,vel_n,vel_e,vel_d";
+    let (recording, document) = proposed(&table("mixed", mixed, |t| format!("{t},1,2,3,4,5,6")));
+    // the program's axes are north, west, up
+    for (quantity, expected) in
+        [(Quantity::Position, [2.0, -1.0, 3.0]), (Quantity::Velocity, [4.0, -5.0, -6.0])]
+    {
+        let found = [0, 1, 2].map(|slot| mean(&recording, quantity, slot));
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{quantity:?} {found:?}");
+    }
+    assert!(!document["unsure"].to_string().contains("the axes"), "{document}");
+    // z alone shows that it is down, and is no name
+    let (_, document) = proposed(&table("unnamed", "time_s,pos_x,pos_y,pos_z,vel_x,vel_y,vel_z", |t| {
+        format!("{t},1,2,-9,1,0,0")
+    }));
+    assert!(document["unsure"].to_string().contains("z is down by the sign of the heights"), "{document}");
+}
+
+#[test]
 fn the_columns_of_the_built_in_mapping_are_proposed_as_they_are() {
     let mapping =
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/csv/default.toml"))
