@@ -5,7 +5,7 @@ use super::picture::Picture;
 use super::recorded::{Need, Recorded};
 use super::usual_size::UsualSize;
 use super::wording::Words;
-use crate::physics::Effect;
+use crate::physics::{Effect, Hook};
 use crate::vehicle::Vehicle;
 
 /// Knowledge of the diagnosis about an effect: data and small functions. Nothing else in the diagnosis, the report or
@@ -65,6 +65,13 @@ impl Signature {
     #[must_use]
     pub fn id(&self) -> &'static str {
         self.effect.id()
+    }
+
+    /// Whether it alters the thrust that a constant command gives.
+    #[must_use]
+    pub fn alters_thrust(&self) -> bool {
+        let alters = |hook: &Hook| matches!(hook, Hook::RotorSpeed | Hook::RotorThrust);
+        self.role.latency.is_none() && self.effect.hooks().iter().any(alters)
     }
 
     /// Name and value of each parameter at an ordinary size on this vehicle; `None` where no size is stated.

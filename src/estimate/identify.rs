@@ -6,7 +6,7 @@ use super::guessed_curve::{GuessedCurve, MovedByCurve, moved_by_curve};
 use super::method::Method;
 use super::nominal::Nominal;
 use super::paper_runs::PaperRuns;
-use super::plausible::disagreeing;
+use super::plausible::{FlightApart, disagreeing};
 use super::recommend::Recommendation;
 use super::recursive::History;
 use super::result::{Estimated, MethodResult};
@@ -123,7 +123,8 @@ pub fn identify(
     let mut methods = paper.results(&whole(&plain));
     let best = Recommendation::weak(whole(&plain), &nominal);
     methods.push(MethodResult::new(Method::Weak, &whole(&plain), &nominal));
-    notes.extend(disagreeing(&weak.rows, &nominal.theta));
+    let apart = disagreeing(&weak.rows, &nominal.theta);
+    notes.extend(apart.iter().map(|flight| Note::warning(About::Estimate, flight.told())));
     let by_commands = |signals: &Signals| signals.quality.thrust_source == ThrustSource::Command;
     notes.extend(flights.iter().any(by_commands).then(|| Note::remark(About::Actuators, BY_COMMANDS)));
     Ok(Identification {
@@ -174,10 +175,9 @@ pub fn inertia_by_wider_window(flights: &[Signals], vehicle: &Vehicle) -> [f64; 
     narrow.map_or([f64::NAN; 3], |narrow| weak.by_wider_window(&narrow, &nominal.theta, &settings))
 }
 
-/// Notes on flights whose masses or moments of inertia, each by its flight alone, contradict each other: they are not of one
-/// vehicle with one load.
+/// Flights whose masses or moments of inertia contradict those of the first one, each by the rigid body of its flight alone.
 #[must_use]
-pub fn contradicting_flights(flights: &[Signals], vehicle: &Vehicle) -> Vec<Note> {
+pub fn contradicting_flights(flights: &[Signals], vehicle: &Vehicle) -> Vec<FlightApart> {
     if flights.len() < 2 {
         return Vec::new();
     }

@@ -35,7 +35,7 @@ pub use live::RecursiveEstimator;
 pub use method::Method;
 pub use nominal::Nominal;
 pub use physical::{is_physical, nearest_physical, second_moments};
-pub use plausible::{Contradiction, contradictions, contradicts_file, flights_apart, stated};
+pub use plausible::{Contradiction, FlightApart, contradictions, contradicts_file, flights_apart, stated};
 pub use problem::{Channel, Problem, SCORE_LAGS, Solution};
 pub use recommend::Recommendation;
 pub use recursive::{History, PAPER_SIGMA, PaperEstimate, gradient_descent, least_squares};

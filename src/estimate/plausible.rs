@@ -114,43 +114,94 @@ pub fn contradictions(
     of_thrust.into_iter().chain(of_body).collect()
 }
 
-/// Notes on flights whose masses or moments of inertia contradict each other.
+/// The flights whose masses or moments of inertia contradict those of the first one, each by its rows alone.
 #[must_use]
-pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<Note> {
+pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<FlightApart> {
     if flights.len() < 2 {
         return Vec::new();
     }
     let alone = |rows| solve_weak(std::slice::from_ref(rows), nominal);
     let each: Vec<Option<(Theta, ThetaCovariance)>> =
         flights.iter().map(|rows| alone(rows).map(|found| (found.theta, found.covariance))).collect();
-    flights_apart(&each).into_iter().map(|text| Note::warning(About::Estimate, text)).collect()
+    flights_apart(&each)
 }
 
-/// What of each flight is further from the first one's than flights of one vehicle are, in words, by its estimate alone;
-/// `None` where there is none.
-#[must_use]
-pub fn flights_apart(flights: &[Option<(Theta, ThetaCovariance)>]) -> Vec<String> {
-    let Some((first, of_first)) = flights.first().and_then(Option::as_ref) else { return Vec::new() };
-    let apart = |(theta, covariance): &(Theta, ThetaCovariance)| {
-        let of = |index: usize| {
-            let variance = of_first[(index, index)] + covariance[(index, index)];
-            let sigma = (theta[index] - first[index]).abs() / variance.sqrt();
-            let share = if index == 0 { FLIGHTS_SHARE } else { FLIGHTS_INERTIA_SHARE };
-            let is_far = sigma > FLIGHTS_SIGMA && (theta[index] / first[index] - 1.0).abs() > share;
-            (is_far && sigma.is_finite() && first[index] > 0.0).then_some((index, sigma, theta[index]))
+/// A flight whose mass or moments of inertia are further from those of the first flight than flights of one vehicle are, by its
+/// estimate alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlightApart {
+    /// the parameter that is furthest apart, in words
+    found: String,
+    /// mass over that of the first flight
+    mass_factor: f64,
+    /// a moment of inertia is apart, and not by the factor of the mass as where the thrust differs
+    by_moments: bool,
+}
+
+impl FlightApart {
+    /// In words, as by the rigid body alone.
+    #[must_use]
+    pub fn told(&self) -> String {
+        format!("{}: two vehicles or two loads? The common estimate describes neither", self.found)
+    }
+
+    /// Whether the flight is of another vehicle: its mass is apart by more than a payload and a battery explain, or its moments of
+    /// inertia are, and no effect that was found alters the thrust (`thrust_differs`).
+    #[must_use]
+    pub fn is_other_vehicle(&self, thrust_differs: bool) -> bool {
+        self.mass_factor.ln().abs() > SCALE_FACTOR.ln() || (self.by_moments && !thrust_differs)
+    }
+
+    /// A note on it, for estimates that contain effects.
+    #[must_use]
+    pub fn note(&self, thrust_differs: bool) -> Note {
+        let text = if self.is_other_vehicle(thrust_differs) {
+            self.told()
+        } else {
+            format!(
+                "{}: a load, the battery, wind or a rotor may have differed between the flights",
+                self.found
+            )
         };
-        [0, 1, 4, 6].into_iter().filter_map(of).max_by(|a, b| a.1.total_cmp(&b.1))
+        Note::warning(About::Estimate, text)
+    }
+}
+
+/// The flights whose estimates alone are further from the first one's than those of one vehicle are.
+#[must_use]
+pub fn flights_apart(flights: &[Option<(Theta, ThetaCovariance)>]) -> Vec<FlightApart> {
+    let Some((first, of_first)) = flights.first().and_then(Option::as_ref) else { return Vec::new() };
+    let far = |theta: &Theta, covariance: &ThetaCovariance, index: usize| {
+        let variance = of_first[(index, index)] + covariance[(index, index)];
+        let sigma = (theta[index] - first[index]).abs() / variance.sqrt();
+        let is_far = sigma > FLIGHTS_SIGMA && (theta[index] / first[index] - 1.0).abs() > share(index);
+        (is_far && sigma.is_finite() && first[index] > 0.0).then_some((index, sigma))
     };
-    let told = |(number, flight): (usize, &Option<_>)| {
-        let (index, sigma, value) = apart(flight.as_ref()?)?;
+    let told = |(number, flight): (usize, &Option<(Theta, ThetaCovariance)>)| {
+        let (theta, covariance) = flight.as_ref()?;
+        let all: Vec<(usize, f64)> =
+            [0, 1, 4, 6].into_iter().filter_map(|index| far(theta, covariance, index)).collect();
+        let (index, sigma) = *all.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let name = if index == 0 { "a mass".to_owned() } else { format!("an {}", NAMES[index]) };
         let unit = UNITS[index];
-        Some(format!(
-            "flight {} alone gives {name} of {value:.4} {unit}, flight 1 {:.4} {unit}, {sigma:.0} standard errors apart: two \
-             vehicles or two loads? The common estimate describes neither",
-            number + 1,
-            first[index]
-        ))
+        let mass_factor = theta[0] / first[0];
+        let unlike_mass =
+            |index: usize| (theta[index] / first[index] / mass_factor - 1.0).abs() > share(index);
+        Some(FlightApart {
+            found: format!(
+                "flight {} alone gives {name} of {:.4} {unit}, flight 1 {:.4} {unit}, {sigma:.0} standard errors apart",
+                number + 1,
+                theta[index],
+                first[index]
+            ),
+            mass_factor,
+            by_moments: all.iter().any(|(index, _)| *index > 0 && unlike_mass(*index)),
+        })
     };
     flights.iter().enumerate().skip(1).filter_map(told).collect()
+}
+
+/// Relative difference within which a parameter of two flights agrees.
+fn share(index: usize) -> f64 {
+    if index == 0 { FLIGHTS_SHARE } else { FLIGHTS_INERTIA_SHARE }
 }

@@ -1,7 +1,8 @@
 //! MuJoCo: a free body with one thrust a rotor.
 //!
 //! A `general` actuator at each hub: control is the thrust in newtons, gear its force along body z and its
-//! reaction torque. `fullinertia` is xx yy zz xy xz yz about the centre of mass. Frames and units are ours.
+//! reaction torque. Of a weak rotor, control is the thrust that it would have, and the force of the gear its factor.
+//! `fullinertia` is xx yy zz xy xz yz about the centre of mass. Frames and units are ours.
 //!
 //! An actuator at a site measures the velocity of that site along its gear, so that one with no gain and the bias
 //! `0 0 -d` is a drag in body axes. A drag at all hubs is one at their mean, and a damping of the rotation by how far
@@ -66,6 +67,9 @@ fn thrusts(source: &mut Source<'_>, sites: &mut String, actuators: &mut String) 
     }
     source.note("controls are thrusts in newtons: the law from command to thrust is the autopilot's side");
     let factors = source.rotor_factors();
+    if factors.iter().any(|factor| (factor - 1.0).abs() > 0.0) {
+        source.note("the thrust of a weak rotor is its control times the force of its gear: its control is that of a rotor that is not weak");
+    }
     for (number, (rotor, factor)) in source.vehicle.rotors.iter().zip(factors).enumerate() {
         let p = rotor.position_m;
         let torque = factor * rotor.spin.yaw_sign() * source.vehicle.propulsion.torque_per_thrust_m;

@@ -6,7 +6,7 @@ use super::flown_rates::FlownRates;
 use super::forecast::Learnt;
 use super::inspection::{Excitation, FlightSummary, OffsetSummary, Segment};
 use super::motion::Motion;
-use crate::estimate::{Estimated, flights_apart};
+use crate::estimate::{Estimated, FlightApart, flights_apart};
 use crate::note::Note;
 use crate::recording::{Quantity, Recording};
 use crate::signals::{
@@ -222,7 +222,7 @@ impl<'a> Assessor<'a> {
             rates: self.rates,
             refusal: self.refusal.filter(|_| expected.is_none()),
             expected,
-            apart: flights_apart(&each),
+            apart: flights_apart(&each).iter().map(FlightApart::told).collect(),
             offsets: self.offsets.iter().map(offset).collect(),
             notes: self.notes,
             off_mixer: self.off_mixer,

@@ -82,6 +82,9 @@ fn usual(effect: &KnownEffect) -> String {
     if effect.usual.is_empty() {
         return "  not stated".to_owned();
     }
+    if effect.usual.iter().all(|class| class.values.is_empty()) {
+        return concealed(effect).join("\n");
+    }
     let mut lines = vec![format!("  {:<20}{:<14}", "", "")];
     for class in &effect.usual {
         let _ = write!(lines[0], "{:>12}", class.class);
@@ -99,7 +102,18 @@ fn usual(effect: &KnownEffect) -> String {
             lines.push(format!("  {name:<20}{unit:<14}{cells}"));
         }
     }
+    lines.extend(concealed(effect));
     lines.join("\n")
+}
+
+/// A row a parameter for which no size by class is known.
+fn concealed(effect: &KnownEffect) -> Vec<String> {
+    let row = |parameter: &KnownParameter| {
+        let KnownParameter { name, unit, .. } = parameter;
+        let value = significant(*effect.concealed.get(name)?, 3);
+        Some(format!("  {name:<20}{unit:<14}{value:>12}  size concealed in the tests; not known by class"))
+    };
+    effect.parameters.iter().filter_map(row).collect()
 }
 
 fn confusable(effect: &KnownEffect) -> String {

@@ -25,8 +25,10 @@ use super::{InputFile, StudyError};
 /// Stamps and values of one log that are searched for effects. Memory and time grow with them: a log of an on-board profile holds
 /// more of them a second than telemetry.
 const SEARCHED: usize = 1_500_000;
-/// What is identified and validated from of one log.
+/// What is identified of one log.
 pub(super) const IDENTIFIED: Hold = Hold { seconds: 1800.0, numbers: SEARCHED };
+/// What is validated with of one log: no effects are searched.
+pub(super) const VALIDATED: Hold = Hold { seconds: 1800.0, numbers: 2 * SEARCHED };
 /// What is explained of one log.
 pub(super) const EXPLAINED: Hold = Hold { seconds: 480.0, numbers: SEARCHED };
 /// Share of a hold-out's samples that may be in an explained flight: none are, but for chance. A hold-out that shares

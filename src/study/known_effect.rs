@@ -24,6 +24,12 @@ const CLASSES: [(&str, f64); 4] = [("palm-sized", 0.03), ("small", 0.25), ("medi
 /// The frame of each.
 const CLASS_FRAME: &str = "quadrotor-x";
 
+/// The class whose lengths are those of the signatures: they were chosen for vehicles of 0.4 to 3 kg.
+const LENGTHS_OF: &str = "medium";
+/// Parameters whose example is a size concealed in the tests, on vehicles of 0.4 to 3 kg, and tells nothing of other vehicles: a
+/// pack of four cells, and a moment that does not grow with the inertia of small vehicles.
+const OF_TESTS: [(&str, &str); 2] = [("battery_sag", "full_voltage"), ("blade_flapping", "k")];
+
 /// What the program knows of one effect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct KnownEffect {
@@ -37,8 +43,10 @@ pub struct KnownEffect {
     pub equation: &'static str,
     /// the finer ones last
     pub parameters: Vec<KnownParameter>,
-    /// an example of its size, by class of vehicle
+    /// an example of its size, by class of vehicle; without the parameters of [`KnownEffect::concealed`]
     pub usual: Vec<UsualOfClass>,
+    /// size concealed in the tests on [`KnownEffect::table_of`], of parameters for which no size by class is known, in the unit of each
+    pub concealed: BTreeMap<&'static str, f64>,
     /// effects that were not separated from it
     pub confusable: Vec<KnownConfusable>,
     /// flights in which it was concealed and it was named, of how many; `None` where it was not measured
@@ -158,9 +166,16 @@ fn known(
     measured: &Measured,
 ) -> KnownEffect {
     let id = effect.id();
-    let usual = |vehicle: &Vehicle| signature_of(id).and_then(|signature| signature.usual_values(vehicle));
+    let reference = classes.iter().find(|(class, _)| *class == LENGTHS_OF).map(|(_, vehicle)| vehicle);
+    let usual = |vehicle: &Vehicle| {
+        let values = signature_of(id)?.usual_values(vehicle)?.into_iter();
+        let scaled =
+            |(name, value)| (name, value * times(effect, name, (vehicle, reference.unwrap_or(vehicle))));
+        Some(values.map(scaled).collect::<Vec<(&'static str, f64)>>())
+    };
+    let is_of_tests = |name: &str| OF_TESTS.contains(&(id, name));
     let of_class = |(class, vehicle): &(&'static str, Vehicle)| {
-        let values = usual(vehicle)?.into_iter().collect();
+        let values = usual(vehicle)?.into_iter().filter(|(name, _)| !is_of_tests(name)).collect();
         Some(UsualOfClass { class, mass_kg: vehicle.body.mass_kg, values })
     };
     let run = measured.effects.iter().find(|run| run.id == id);
@@ -171,11 +186,20 @@ fn known(
         equation: effect.equation(),
         parameters: parameters(effect, of),
         usual: classes.iter().filter_map(of_class).collect(),
+        concealed: usual(of).into_iter().flatten().filter(|(name, _)| is_of_tests(name)).collect(),
         confusable: run.map(|run| confusable(run, measured)).unwrap_or_default(),
         named: run.map(|run| (run.named, run.flights)),
         table: table(effect, of, &usual(of).unwrap_or_default()),
         table_of: of.name.clone(),
     }
+}
+
+/// By how much the example of a length is greater on a vehicle than on the reference: as their arms. 1 of what is no length of the
+/// vehicle.
+fn times(effect: &dyn Effect, name: &str, (vehicle, reference): (&Vehicle, &Vehicle)) -> f64 {
+    let powers = effect.parameters().iter().find(|one| one.name == name).map(|one| one.bounds.powers());
+    let arms = vehicle.size().arm_m / reference.size().arm_m;
+    powers.filter(|(mass, _)| *mass == 0).map_or(1.0, |(_, arm)| arms.powi(arm))
 }
 
 fn parameters(effect: &dyn Effect, of: &Vehicle) -> Vec<KnownParameter> {
@@ -220,7 +244,9 @@ fn table(effect: &dyn Effect, of: &Vehicle, usual: &[(&str, f64)]) -> String {
     {
         let (least, greatest) = parameter.bounds.at(&of.size());
         let unit = if parameter.unit == "-" { "" } else { parameter.unit };
-        let bounds = format!("{unit} ({} to {})", compact(least), compact(greatest));
+        let of_tests = OF_TESTS.contains(&(effect.id(), parameter.name));
+        let remark = if of_tests { ", the size concealed in the tests" } else { "" };
+        let bounds = format!("{unit} ({} to {}){remark}", compact(least), compact(greatest));
         // writing to a String cannot fail
         let _ = writeln!(text, "{} = {:?} # {}", parameter.name, rounded(value), bounds.trim_start());
     }

@@ -5,11 +5,14 @@ use crate::support;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use mavid::config::load_vehicle;
+use mavid::config::{load_vehicle, parse_effect_tables, read_trajectory};
 use mavid::inspect::{Inspection, inspect, inspect_recording};
 use mavid::log::{self, Input, Loss, OpenOptions};
 use mavid::recording::{Quantity, Stream};
+use mavid::simulate::{FlightSettings, Reference, Truth, simulate_flight};
+use mavid::study::effects_of;
 use mavid::vehicle::Vehicle;
+use mavid::wire::write_recording;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use support::dataflash::DataflashLog;
@@ -318,6 +321,36 @@ fn two_vehicles_in_one_log_are_told() {
     let (same, differ) = (both(&again), both(&another));
     assert!(same.contains("This log is good for "), "{same}");
     assert!(differ.contains("Doubtful: flight 2 alone gives an i"), "{differ}");
+}
+
+/// The log of a flight of the X500 whose thrust sags with the battery, from this voltage on.
+fn flown_at(battery_v: f64, seed: u64) -> String {
+    let vehicle = load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml")).unwrap();
+    let sag = "[[effect]]\nid = \"battery_sag\"\nexponent = 1.5\nfull_voltage = 16.8\n";
+    let effects = effects_of(&parse_effect_tables(sag, "sag").unwrap(), "sag", &vehicle).unwrap();
+    let trajectory = read_trajectory(&fixture("at_bounds_trajectory.toml")).unwrap();
+    let duration_s = 4.0 + f64::from(trajectory.repeats) * trajectory.series.period_s;
+    let reference = Reference { trajectory: trajectory.series, hover_s: 4.0, ramp_s: 2.0 };
+    let settings = FlightSettings { seed, duration_s, battery_v, ..FlightSettings::default() };
+    let truth = Truth { vehicle: vehicle.clone(), effects, disturbance: None };
+    let flight = simulate_flight(truth, &vehicle, &reference, &settings).unwrap();
+    let log = written(&format!("flown_at_{battery_v}.tlog"), &[]);
+    write_recording(&flight.recording, std::fs::File::create(&log).unwrap(), support::START_US).unwrap();
+    log.display().to_string()
+}
+
+#[test]
+fn another_voltage_is_no_other_vehicle() {
+    let stated = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml").display().to_string();
+    let (explained, _) = mavid(&["explain", &flown_at(16.6, 1), &flown_at(15.4, 2), "--vehicle", &stated]);
+    assert!(explained.contains("flight 2 alone gives a"), "{explained}");
+    assert!(!explained.starts_with("Doubtful: "), "{explained}");
+    assert!(!explained.contains("two vehicles"), "{explained}");
+    let Some(shared) = support::shared() else { return };
+    let file = |name: &str| shared.join("onboard/sitl").join(name).display().to_string();
+    let logs = ["px01.ulg", "px04.ulg"].map(file);
+    let (explained, _) = mavid(&["explain", &logs[0], &logs[1], "--vehicle", &file("px4-v1.toml")]);
+    assert!(explained.starts_with("Doubtful: the flights given together differ"), "{explained}");
 }
 
 #[test]

@@ -193,6 +193,8 @@ fn a_weak_rotor_is_weak_in_gazebo_and_mujoco_and_left_out_elsewhere() {
         .map(|rest| rest.split('<').next().unwrap().parse::<f64>().unwrap() / coefficient)
         .collect();
     let mjcf = export(&vehicle, &effects, Format::Mjcf).unwrap();
+    assert!(mjcf.text.contains("is its control times the force of its gear"), "{}", mjcf.text);
+    assert!(!export(&vehicle, &[], Format::Mjcf).unwrap().text.contains("weak rotor"));
     let gears: Vec<f64> = mjcf
         .text
         .split("gear=\"0 0 ")

@@ -123,7 +123,9 @@ pub(super) struct Axes {
     pub body_down: Option<bool>,
     /// z is down
     pub world_down: Option<bool>,
-    /// x is east and y is north
+    /// columns are named north, east, down, and none east, north, up
+    pub is_ned: bool,
+    /// the other way round
     pub is_enu: bool,
 }
 
@@ -137,17 +139,21 @@ impl Axes {
             (mean.abs() > least * norm).then_some(mean < 0.0)
         };
         let places = || groups.iter().filter(|group| matches!(group.kind, Kind::Position | Kind::Velocity));
-        let named = |part: Part| places().any(|group| group.parts.contains(&part));
+        let begins = |part: Part| places().any(|group| group.parts.first() == Some(&part));
+        let (north, east) = (begins(Part::North), begins(Part::East));
+        // a table in both says nothing of its other columns
+        let (is_ned, is_enu) = (north && !east, east && !north);
         Self {
             body_down: sign(Kind::Acceleration, 0.6),
-            world_down: if named(Part::Down) {
+            world_down: if is_ned {
                 Some(true)
-            } else if named(Part::Up) {
+            } else if is_enu {
                 Some(false)
             } else {
                 sign(Kind::Position, 0.05)
             },
-            is_enu: places().any(|group| group.parts.first() == Some(&Part::East)),
+            is_ned,
+            is_enu,
         }
     }
 
@@ -168,18 +174,25 @@ impl Axes {
                 None => (Some("flu"), assumed("nothing shows whether z is up or down")),
             },
             Kind::Position | Kind::Velocity | Kind::Acceleration | Kind::WorldAcceleration => {
-                match (self.is_enu, world) {
-                    (true, _) => (Some("enu"), None),
-                    (_, Some(true)) => (Some("ned"), None),
-                    (_, Some(false)) => {
+                match group.parts.first() {
+                    Some(Part::North) => return (Some("ned"), None),
+                    Some(Part::East) => return (Some("enu"), None),
+                    _ => {}
+                }
+                match (self.is_enu, self.is_ned, world) {
+                    (true, ..) => (Some("enu"), assumed("taken to be those of the other columns")),
+                    (_, true, _) => (Some("ned"), assumed("taken to be those of the other columns")),
+                    (.., Some(true)) => (Some("ned"), assumed("z is down by the sign of the heights")),
+                    (.., Some(false)) => {
                         (Some("nwu"), assumed("z is up; x may be north, east, or an axis of the laboratory"))
                     }
-                    (_, None) => (Some("nwu"), assumed("nothing shows whether z is up or down")),
+                    (.., None) => (Some("nwu"), assumed("nothing shows whether z is up or down")),
                 }
             }
-            Kind::Euler if group.parts.len() == 1 => match (self.is_enu, world) {
-                (true, _) => (Some("enu"), None),
-                (_, Some(true)) => (Some("ned"), None),
+            Kind::Euler if group.parts.len() == 1 => match (self.is_enu, self.is_ned, world) {
+                (true, ..) => (Some("enu"), None),
+                (_, true, _) => (Some("ned"), None),
+                (.., Some(true)) => (Some("ned"), assumed("yaw is taken to grow to the right, as z is down")),
                 _ => (Some("nwu"), assumed("yaw is taken to grow to the left")),
             },
             Kind::Attitude | Kind::Euler => {

@@ -1,7 +1,9 @@
 //! Why an explanation is doubtful.
 
 use super::result::{BodyParameter, ExplainStudy};
-use crate::estimate::{Contradiction, Finding, NAMES, ThrustScale, stated};
+use crate::diagnose::signature::Signature;
+use crate::diagnose::signatures::signature_of;
+use crate::estimate::{Contradiction, Finding, FlightApart, NAMES, ThrustScale, stated};
 use crate::study::doubts::{TWO_VEHICLES, doubts};
 use crate::vehicle::Guessed;
 
@@ -24,11 +26,26 @@ impl ExplainStudy {
         self.scale().and_then(of_thrust).into_iter().chain(body).collect()
     }
 
+    /// Whether an effect is named that alters the thrust of a command: the masses and moments of inertia of single flights by the
+    /// rigid body alone then contain it.
+    fn names_thrust(&self) -> bool {
+        self.effects.iter().any(|named| signature_of(named.id).is_some_and(Signature::alters_thrust))
+    }
+
+    /// Notes on flights that the rigid body alone tells from the first one.
+    pub(super) fn tell_flights_apart(&mut self) {
+        let thrust_differs = self.names_thrust();
+        let apart = self.given.contradicting.iter().map(|flight| flight.note(thrust_differs));
+        self.notes.extend(apart);
+    }
+
     /// Why the answer is doubtful, clause by clause; none where nothing speaks against it.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
         let mut doubts = doubts(&self.given.vehicle, &self.given.quality, &self.contradictions());
-        if self.differing.is_some() || !self.given.contradicting.is_empty() {
+        let thrust_differs = self.names_thrust();
+        let other = |flight: &FlightApart| flight.is_other_vehicle(thrust_differs);
+        if self.differing.is_some() || self.given.contradicting.iter().any(other) {
             doubts.push(TWO_VEHICLES.to_owned());
         }
         doubts

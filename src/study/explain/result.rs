@@ -14,8 +14,8 @@ use crate::diagnose::{
 };
 use crate::draft::Draft;
 use crate::estimate::{
-    Estimated, Finding, MovedByCurve, NAMES, Nominal, THETA, ThrustScale, UNITS, finding, rescaled,
-    scaling_mass, theta_of,
+    Estimated, Finding, FlightApart, MovedByCurve, NAMES, Nominal, THETA, ThrustScale, UNITS, finding,
+    rescaled, scaling_mass, theta_of,
 };
 use crate::note::Note;
 use crate::physics::ActiveEffect;
@@ -38,8 +38,8 @@ pub struct Given {
     pub inertia_by_wider_window: [f64; 3],
     /// how far mass and inertia move with one standard error of a guessed thrust curve
     pub by_guessed_curve: Option<MovedByCurve>,
-    /// flights whose masses or moments of inertia contradict each other
-    pub contradicting: Vec<Note>,
+    /// flights whose masses or moments of inertia, by the rigid body alone, contradict those of the first one
+    pub contradicting: Vec<FlightApart>,
     /// settings of the method
     pub settings: ExplainSettings,
     /// s left out at the beginning of each flight

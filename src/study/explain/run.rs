@@ -156,7 +156,7 @@ impl Task<'_> {
         study.notes.extend_from_slice(self.notes);
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
-        study.notes.extend(study.given.contradicting.clone());
+        study.tell_flights_apart();
         study.evaluate_explained(flights);
         if flights.signals.len() > 1 {
             study.tell_along(&flights.signals, self.winds_m_s.to_vec());

@@ -5,7 +5,7 @@ use super::model::{contenders, drafted};
 use super::request::ValidateRequest;
 use super::result::{ValidateStudy, ValidatedFlight};
 use crate::study::flight::Flight;
-use crate::study::flights::{IDENTIFIED, load_all, ready, refuse_twins};
+use crate::study::flights::{VALIDATED, load_all, ready, refuse_twins};
 use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::unflown::unflown_first;
 use crate::study::{Progress, Stage, StudyError};
@@ -20,7 +20,7 @@ pub fn validate(request: &ValidateRequest, progress: &dyn Progress) -> Result<Va
     request.check()?;
     let (mut models, mut notes) = contenders(&request.models, progress)?;
     progress.stage(Stage::Reading);
-    let logs = load_all(&request.logs, &request.read, &IDENTIFIED)?;
+    let logs = load_all(&request.logs, &request.read, &VALIDATED)?;
     if let Some(given) = request.drafted {
         let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
         let (drafted, of_draft) = drafted(given, &logs).map_err(or_unflown)?;
