@@ -131,7 +131,9 @@ fn a_named_latency_is_told_flight_by_flight() {
     for alone in each_with_model_of_all(&flights, &[false; 2], &found, (&vehicle, &settings)) {
         let latency = alone.iter().find(|of| of.effect == Some(lag.id)).unwrap();
         let (value, std) = latency.estimate;
-        assert!((value - found.search.latency.total_s).abs() < std && std < 0.01, "{latency:?}");
+        // without the delay that the log itself has, which is below the period of its commands
+        let log_s = found.search.latency.total_s - value;
+        assert!((0.0..0.02).contains(&log_s) && std < 0.01, "{log_s} s, {latency:?}");
         // beyond what every vehicle has
         assert!(latency.name == "latency" && value - latency.nothing > 3.0 * std, "{latency:?}");
     }
