@@ -218,8 +218,7 @@ impl Outcome<'_> {
 fn beyond(shown: Option<SignificantAmount>, stands_out: bool) -> String {
     match shown {
         Some(shown) => format!(
-            "; but something stands out of this flight that, if it were this, would be {:.1} standard errors: `explain` tells \
-             what it is",
+            "; but the residual would correspond to {:.1} standard errors of this effect: `explain` searches for its cause",
             shown.deviates
         ),
         None if stands_out => "; better once what stands out of this flight is known".to_owned(),
