@@ -54,6 +54,16 @@ fn what_cannot_be_is_told_before_anybody_is_spoken_to() {
         ),
         (vec![nobody[0], nobody[1], "--yes", "--room", "4,4"], "--room: expected length, width and height"),
         (vec!["--connect", "nowhere", "--mass", "2", "--yes"], "udpin:HOST:PORT"),
+        // what is wrong is told, and not that nobody is there
+        (vec!["--connect", "nowhere", "--mass", "2"], "udpin:HOST:PORT"),
+        (
+            vec![nobody[0], nobody[1], "--mass", "2", "--room", "4,4"],
+            "--room: expected length, width and height",
+        ),
+        (
+            vec![nobody[0], nobody[1], "--mass", "2", "--tracking-max", "nan", "--yes"],
+            "--tracking-max: expected a number above 0 and at most 10, got NaN",
+        ),
         (vec!["--sitl", "--yes", "--effects", "nowhere.toml"], "nowhere.toml"),
         (vec![nobody[0], nobody[1], "--mass", "2", "--vehicle", &vehicle, "--yes"], "cannot be used with"),
     ] {

@@ -24,6 +24,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &CompareArgs) -> Result<Out
     check_targets(args)?;
     let study = compare(&request, &Spinner::new(stderr))?;
     if let Some(folder) = &args.out {
+        output::folder(folder)?;
         output::file(&folder.join(REPORT), &comparison_html(&study))?;
         output::file(&folder.join(DOCUMENT), &output::json_text(&ComparisonDocument::new(&study))?)?;
     }
@@ -50,5 +51,5 @@ fn check_targets(args: &CompareArgs) -> Result<(), CommandError> {
     let inputs: Vec<&PathBuf> = args.before.iter().chain(&args.after).chain(&args.vehicle).collect();
     let written = [REPORT, DOCUMENT].map(|name| folder.join(name));
     output::refuse_overwriting(&inputs, &written.iter().collect::<Vec<_>>())?;
-    output::folder(folder)
+    output::can_make_folder(folder)
 }

@@ -116,7 +116,7 @@ fn check_targets(args: &ExplainArgs) -> Result<(), CommandError> {
     let written: Vec<PathBuf> = written.into_iter().chain(vehicle_file).collect();
     output::refuse_overwriting(&inputs, &args.next.iter().chain(&written).collect::<Vec<_>>())?;
     if let Some(folder) = &args.out {
-        output::folder(folder)?;
+        output::can_make_folder(folder)?;
     }
     args.next.as_deref().map_or(Ok(()), output::folder_of)
 }

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use mavid::autopilot::Autopilot;
+use mavid::config::effects_of;
 use mavid::export::{AircraftParameter, AircraftParameters, Exported, Format, aircraft_parameters, export};
 use mavid::note::Note;
-use mavid::study::effects_of;
 use mavid::text;
 use serde::Serialize;
 

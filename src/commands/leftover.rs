@@ -10,6 +10,8 @@ use mavid::wire::{STAMP_BYTES, SystemId};
 
 use super::{CommandError, output};
 
+/// The system id of this station.
+pub const STATION: SystemId = SystemId(255);
 /// A recording with more bytes than this is not looked through: somebody was there.
 const LOOK_BYTES: u64 = 1 << 20;
 

@@ -140,7 +140,22 @@ pub fn silent_folder(path: &Path) -> Result<(), CommandError> {
         .map_err(|error| CommandError::Input(format!("cannot make {}: {error}", text::path(&path))))
 }
 
-/// The same of the folder of a file that is to be written.
+/// Refuses a folder that cannot be made, and leaves none behind: the work comes first, and may have no result.
+pub fn can_make_folder(path: &Path) -> Result<(), CommandError> {
+    let missing: Vec<&Path> =
+        path.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists()).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let made = silent_folder(path);
+    for folder in missing {
+        // what could not be made is not there, and what holds anything stays
+        let _ = std::fs::remove_dir(folder);
+    }
+    made
+}
+
+/// Makes the folder of a file that is to be written, as [`folder`] does.
 pub fn folder_of(file: &Path) -> Result<(), CommandError> {
     file.parent().map_or(Ok(()), folder)
 }

@@ -12,7 +12,7 @@ use super::standard_error::StandardError;
 use super::words::Word;
 
 /// Between two pictures of the line.
-const TICK: Duration = Duration::from_millis(100);
+pub(super) const TICK: Duration = Duration::from_millis(100);
 
 fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
     match ProgressStyle::with_template(template) {

@@ -58,10 +58,11 @@ pub enum ConfigError {
         /// line, column, what stands there and what is wrong with it
         reason: String,
     },
-    /// a form that no version of the program up to this one has
+    /// a form that a later version of the program has
     #[error(
-        "{origin}: `format`: expected {known} or no such key, got {came}: a later version of mavid wrote this file; read it \
-         with that version, or write it again with this one"
+        "{origin}: `format`: expected {known} or no such key, got {came}: a later version of mavid wrote this file; use that \
+         version, or make the file again with this one (`mavid vehicle init` drafts a vehicle file, `mavid identify` and `mavid \
+         explain` write a model with --out)"
     )]
     Format {
         /// file name, or what the text is
@@ -69,7 +70,7 @@ pub enum ConfigError {
         /// the latest that is known
         known: u32,
         /// what the file says
-        came: String,
+        came: i64,
     },
     /// a value, or several together, that cannot be
     #[error("{origin}: `{key}`: expected {expected}, got {came}")]

@@ -4,6 +4,7 @@ mod check;
 mod csv_mapping;
 mod csv_proposal;
 mod effect_tables;
+mod effects;
 mod error;
 mod faults;
 mod form;
@@ -19,6 +20,7 @@ mod vehicle_writer;
 pub use csv_mapping::{load_csv_mapping, parse_csv_mapping};
 pub use csv_proposal::{CsvProposal, propose_csv_mapping};
 pub use effect_tables::{parse_effect_tables, read_effect_tables};
+pub use effects::{each_once, effects_of};
 pub use error::ConfigError;
 pub use trajectory::{
     StoredTrajectory, StoredTransitions, parse_limits, parse_trajectory, read_limits, read_trajectory,

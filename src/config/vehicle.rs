@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use super::ConfigError;
 use super::check::Check;
+use super::effects;
 use super::faults::Faults;
 use super::kind::Kind;
 use super::propulsion::propulsion;
@@ -45,7 +46,7 @@ pub struct ModelTables {
     pub identified: Option<toml::Table>,
     /// hashes of the inputs, version, settings
     pub provenance: Option<toml::Table>,
-    /// the effects found, one table each
+    /// the effects found, one table each; [`super::effects_of`] makes them, and of a file they are checked
     pub effects: Vec<toml::Table>,
 }
 
@@ -88,6 +89,8 @@ pub fn parse_vehicle(text: &str, origin: &str) -> Result<LoadedVehicle, ConfigEr
         },
         guesses: guesses(&check, file.guesses, &mut faults),
     };
+    let sound = (faults.count() == 0).then_some(&vehicle);
+    effects::checked(&check, &file.effects, sound, &mut faults);
     faults.refuse(origin)?;
     let doubts = doubts.into_iter().chain(vehicle.implausible());
     let warnings = doubts.map(|doubt| Note::warning(About::Vehicle, doubt)).collect();
@@ -116,16 +119,21 @@ fn guesses(check: &Check<'_>, tables: Vec<GuessTable>, faults: &mut Faults) -> V
     tables.into_iter().enumerate().filter_map(guess).collect()
 }
 
-/// Refuses a later form before its unknown keys are refused. What is no TOML is told elsewhere.
+/// Refuses another form before its unknown keys are refused. What is no TOML is told elsewhere.
 fn check_format(text: &str, origin: &str) -> Result<(), ConfigError> {
     let table: Option<toml::Table> = toml::from_str(text).ok();
     let Some(format) = table.and_then(|table| table.get("format").cloned()) else { return Ok(()) };
-    let known = format.as_integer().is_some_and(|format| (1..=i64::from(FORMAT)).contains(&format));
-    let came = || text::excerpt(&format.to_string(), FORMAT_CHARS);
-    if known {
-        Ok(())
-    } else {
-        Err(ConfigError::Format { origin: origin.to_owned(), known: FORMAT, came: came() })
+    match format.as_integer() {
+        Some(number) if (1..=i64::from(FORMAT)).contains(&number) => Ok(()),
+        Some(came) if came > i64::from(FORMAT) => {
+            Err(ConfigError::Format { origin: origin.to_owned(), known: FORMAT, came })
+        }
+        _ => Err(ConfigError::Invalid {
+            origin: origin.to_owned(),
+            key: "format".to_owned(),
+            expected: format!("the whole number {FORMAT} or no such key"),
+            came: text::excerpt(&format.to_string(), FORMAT_CHARS),
+        }),
     }
 }
 

@@ -67,7 +67,7 @@ fn written_and_read_again_it_is_the_same() {
         let limits = "[limits]\nyaw_max_deg = 180.0\nthrust_max_n = 34.4\n";
         let vehicle = parse(&[BODY, propulsion, ROTORS, limits]).unwrap().vehicle;
         let mut text = vehicle_to_toml(&vehicle).unwrap();
-        text.push_str("[identified]\nmass = 1.5\n[provenance]\nversion = \"0\"\n[[effect]]\nid = \"x\"\n");
+        text.push_str("[identified]\nmass = 1.5\n[provenance]\nversion = \"0\"\n[[effect]]\nid = \"inflow\"\nkz = 0.1\n");
         let again = parse_vehicle(&text, "model.toml").unwrap();
         let ratio = again.vehicle.propulsion.torque_per_thrust_m;
         assert!((ratio / vehicle.propulsion.torque_per_thrust_m - 1.0).abs() < 1e-12);

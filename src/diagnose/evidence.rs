@@ -14,8 +14,10 @@ use std::ops::Range;
 
 /// Least number of rows for the cluster test over twelve blocks. Set by judgement: ten rows a block.
 pub(super) const LEAST_ROWS: usize = 120;
-/// Least usable time of flight for a search of effects, s: so many rows, twenty a second.
-pub const LEAST_FLIGHT_S: f64 = LEAST_ROWS as f64 * 0.05;
+/// Time from row to row that lengths of flights are stated with, s: twenty rows a second.
+pub(super) const ROW_S: f64 = 0.05;
+/// Least usable time of flight for a search of effects, s: so many rows.
+pub const LEAST_FLIGHT_S: f64 = LEAST_ROWS as f64 * ROW_S;
 
 /// Rows weighted by each channel's residual, and the nuisances' projection.
 #[derive(Debug, Clone)]

@@ -3,10 +3,11 @@
 
 use super::base::Base;
 use super::candidates::Candidate;
-use super::evidence::{Evidence, LEAST_ROWS, Weighted};
+use super::evidence::{Evidence, LEAST_FLIGHT_S, LEAST_ROWS, ROW_S, Weighted};
 use super::explain::ExplainError;
 use super::fit::Fitted;
 use super::floors::FORM;
+use super::gates::NAME_Z;
 use super::latency::with_any_latency;
 use super::recorded::Recorded;
 use super::rows::Rows;
@@ -76,9 +77,6 @@ impl ExpectedError {
     }
 }
 
-/// From so many standard errors on it stands out: as many as [`explain`](super::explain) asks for.
-const STANDS_OUT: f64 = 4.0;
-
 /// How well flights determine each of [`EFFECT_QUANTITIES`].
 ///
 /// # Errors
@@ -89,7 +87,7 @@ pub fn expected_errors(flights: &[Signals], vehicle: &Vehicle) -> Result<Vec<Exp
     let traces = traces?;
     let rows: usize = traces.iter().map(Trace::rows).sum();
     if rows < LEAST_ROWS {
-        let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);
+        let (seconds, needed_s) = (rows as f64 * ROW_S, LEAST_FLIGHT_S);
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
     let (fitted, latency_std_s) = with_any_latency(&traces, Base::rigid(vehicle))?;
@@ -221,7 +219,7 @@ fn significant_amount(
         amounts.collect::<Vec<_>>()
     };
     let all = tested.iter().flat_map(of).filter(|shown| shown.deviates.is_finite());
-    all.filter(|shown| shown.deviates >= STANDS_OUT).max_by(|a, b| a.deviates.total_cmp(&b.deviates))
+    all.filter(|shown| shown.deviates >= NAME_Z).max_by(|a, b| a.deviates.total_cmp(&b.deviates))
 }
 
 /// The parameter that is determined worst, and its standard error: of each parameter that of the best form, and of each

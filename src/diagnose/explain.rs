@@ -2,7 +2,7 @@
 
 use super::channels::{AXES, CHANNELS};
 use super::confusable::confusable_with;
-use super::evidence::LEAST_ROWS;
+use super::evidence::{LEAST_FLIGHT_S, LEAST_ROWS, ROW_S};
 use super::explanation::{Explanation, Verdict};
 use super::feedback_noise::is_fed_back;
 use super::fit::Fitted;
@@ -110,7 +110,7 @@ pub fn explain(
     let traces: Vec<Trace> = flights.iter().map(trace).collect::<Result<_, _>>()?;
     let rows: usize = traces.iter().map(Trace::rows).sum();
     if rows < LEAST_ROWS {
-        let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);
+        let (seconds, needed_s) = (rows as f64 * ROW_S, LEAST_FLIGHT_S);
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
     let mut found = search(&traces, vehicle, &settings.gates, settings.signatures)?;

@@ -47,7 +47,7 @@ impl Gates {
 }
 
 /// Standard errors by which an effect must differ from zero to get a name; see [`Gates`].
-pub(in crate::diagnose) const NAME_Z: f64 = 4.0;
+pub const NAME_Z: f64 = 4.0;
 
 impl Default for Gates {
     fn default() -> Self {

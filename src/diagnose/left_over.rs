@@ -1,4 +1,4 @@
-//! What the torque that a fit leaves over may do to parameters that only torques tell.
+//! Error that the residual torque causes in parameters that only torques determine.
 //!
 //! Statistics of one flight take what is left over for noise that has nothing to do with the motion. A controller answers the motion,
 //! and what the model lacks goes with it, so a part of what is left over goes with the angular acceleration and is taken for

@@ -89,7 +89,7 @@ pub use explain::{ExplainError, ExplainSettings, explain};
 pub use explanation::{Explanation, Verdict};
 pub use fit::{Fitted, fit};
 pub use floors::{LAW_OF_THRUST, LAW_OF_TORQUE};
-pub use gates::{Gate, Gates, refused_by};
+pub use gates::{Gate, Gates, NAME_Z, refused_by};
 pub use harmonics::{LackOfFit, Line, flown_period_s, lack_of_fit, period_s};
 pub use latency::{LatencyFinding, NO_LATENCY, fit_latency};
 pub use materiality::Materiality;

@@ -1,4 +1,4 @@
-//! The wind of each flight's own day, and the flight as one sees it who drifts with the wind.
+//! Wind of each flight, and the flight in the frame of the moving air.
 //!
 //! The equations of motion are the same for an observer who moves at a constant velocity. Seen with the air, flights of days with
 //! different winds have the vehicle's parameters in common and no wind.

@@ -44,7 +44,7 @@ impl Need {
             Self::Voltage => ("battery voltage", "thrust falls with it; record BATTERY_STATUS or SYS_STATUS"),
             Self::Torques => (
                 "fast actuator commands and body rates",
-                "only torques tell it from its like; record both at 20 Hz at least",
+                "only torques distinguish it from similar effects; record both at 20 Hz at least",
             ),
             Self::OneFlight => ("one flight", "its moment belongs to one"),
         }

@@ -7,14 +7,12 @@
 use super::drag::RotorDrag;
 use super::error::ExportError;
 use super::notes::line_comments;
-use super::source::{Exported, Source};
+use super::source::{Exported, FAST_S, Source};
 use crate::text::line_comment;
 use nalgebra::Vector3;
 use std::fmt::Write;
 
 const FORMAT: &str = "rotorpy";
-/// s, a lag that is nearly none.
-const FAST_S: f64 = 0.001;
 
 pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     let (coefficient, speed_max) = source.speeds(FORMAT)?;

@@ -6,7 +6,7 @@
 use super::drag::RotorDrag;
 use super::error::ExportError;
 use super::notes::xml_comments;
-use super::source::{Exported, Source};
+use super::source::{Exported, FAST_S, Source};
 use crate::text::markup;
 use crate::vehicle::{Rotor, Spin};
 use nalgebra::{Matrix3, Vector3};
@@ -15,8 +15,6 @@ const FORMAT: &str = "sdf";
 /// kg and kg m^2 of a rotor's link, which the solver needs above zero.
 const ROTOR_KG: f64 = 1e-3;
 const ROTOR_KG_M2: f64 = 1e-7;
-/// s, a lag that is nearly none.
-const FAST_S: f64 = 0.001;
 
 pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     let (coefficient, speed_max) = source.speeds(FORMAT)?;

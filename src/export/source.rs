@@ -5,6 +5,9 @@ use crate::physics::{ActiveEffect, Airframe};
 use crate::vehicle::{ThrustLaw, Vehicle};
 use nalgebra::Vector3;
 
+/// Lag that is nearly none, s, for formats that need one.
+pub(super) const FAST_S: f64 = 0.001;
+
 /// The model as the writers read it; what they do not take is told at the end.
 pub(super) struct Source<'a> {
     pub(super) vehicle: &'a Vehicle,

@@ -87,11 +87,23 @@ impl Finding {
     }
 }
 
+impl Finding {
+    /// What it says, without its level. What was found is a sentence where it ends as one.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let Self { subject, expected, came, remedy, .. } = self;
+        let said = if came.ends_with('.') {
+            format!("{subject}: {came} Expected: {expected}")
+        } else {
+            format!("{subject}: expected {expected}, got {came}")
+        };
+        if remedy.is_empty() { said } else { format!("{said}; {remedy}") }
+    }
+}
+
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { level, subject, expected, came, remedy } = self;
-        write!(f, "{}: {subject}: expected {expected}, got {came}", level.name())?;
-        if remedy.is_empty() { Ok(()) } else { write!(f, "; {remedy}") }
+        write!(f, "{}: {}", self.level.name(), self.words())
     }
 }
 

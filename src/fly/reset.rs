@@ -10,7 +10,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use crate::frames::Attitude;
 
 /// Largest time between two samples that show a step, s. Over more, velocity and its error explain any step.
-const GAP_MAX_S: f64 = 0.5;
+pub(super) const GAP_MAX_S: f64 = 0.5;
 /// Largest step of the position with which the flight continues, m. Setpoints that leap by more would throw the
 /// vehicle; a smaller limit would end flights at every correction.
 const POSITION_MAX_M: f64 = 0.3;

@@ -14,6 +14,7 @@ use super::health::{BatteryLevel, EstimatorReport, SystemReport, battery_status,
 use super::lift::Outputs;
 use super::news::Novelty;
 use super::order::SendingOrder;
+use super::reset::GAP_MAX_S;
 use super::reset::{Pose, Step};
 pub use super::state::{FlightState, Motion, Timestamped};
 use crate::autopilot::Stack;
@@ -29,8 +30,6 @@ const TEXTS: usize = 64;
 /// A step of the position beyond what velocity explains from which the estimate was reset, m. Twice the step with
 /// which a flight goes on; smaller ones are told by the reset counters.
 const JUMP_M: f64 = 0.7;
-/// Largest time between two samples that show a step, s. Over more, velocity and its error explain any step.
-const JUMP_GAP_S: f64 = 0.5;
 /// Positions further apart in time are not one stream.
 const POSITION_GAP: Duration = Duration::from_secs(1);
 /// Time for which a report of the estimator or the battery is valid. Innovation tests fail for an instant, so a fault
@@ -297,7 +296,7 @@ impl Telemetry {
             }
             let mean = 0.5 * (motion.velocity_m_s + last.velocity_m_s);
             let jump_m = (motion.position_m - last.position_m - mean * passed_s).norm();
-            if (0.0..JUMP_GAP_S).contains(&passed_s) && jump_m > JUMP_M {
+            if (0.0..GAP_MAX_S).contains(&passed_s) && jump_m > JUMP_M {
                 news.push(Novelty::EstimatorReset(format!(
                     "position stepped by {jump_m:.2} m beyond what velocity explains"
                 )));

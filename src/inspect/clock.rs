@@ -4,11 +4,10 @@ use super::inspection::ClockSummary;
 use crate::log::Place;
 use crate::recording::Event;
 use crate::units::seconds_from_us;
+use crate::wire::HOST_STEP_US;
 
 /// Time over which arrivals are evaluated together, s. It averages jitter and is short against a drift.
 const BLOCK_S: f64 = 1.0;
-/// Change of the lateness from which the host's clock was set, s: no link delays a message for so long.
-const HOST_STEP_S: f64 = 10.0;
 /// Restarts that are kept; a log with more is broken. Only memory depends on it.
 const KEPT_RESETS: usize = 1000;
 /// Largest standard error of a drift that is reported, parts per million. Quartz clocks are off by 50: a worse
@@ -124,7 +123,11 @@ impl ClockTally {
         // microseconds of a recording fit a double exactly
         let since_s = seconds_from_us(host_us as f64 - start_host_us as f64);
         let late_s = since_s - time_s;
-        if self.block.as_ref().is_some_and(|block| (late_s - block.least_s).abs() > HOST_STEP_S) {
+        if self
+            .block
+            .as_ref()
+            .is_some_and(|block| (late_s - block.least_s).abs() > seconds_from_us(HOST_STEP_US as f64))
+        {
             // the host's clock was set: what lies before is no part of the same line
             self.end_line();
         }

@@ -7,11 +7,11 @@ use super::missing_streams::{Lack, Need, lack, remedy};
 use super::outlook::judged;
 use super::quantity::{ExpectedParameter, QuantitySummary};
 use crate::diagnose::signatures::{DeterminedBy, EFFECT_QUANTITIES, EffectQuantity};
-use crate::diagnose::{Expected, ExpectedError, LEAST_FLIGHT_S, SignificantAmount};
+use crate::diagnose::{Expected, ExpectedError, LEAST_FLIGHT_S, NAME_Z, SignificantAmount};
 
 /// A quantity's standard error as a share of its usual size up to which it is told: an effect of usual size is then four
 /// standard errors from nothing, which is what `explain` asks for.
-const TOLD: f64 = 0.25;
+const TOLD: f64 = 1.0 / NAME_Z;
 
 /// One of them.
 struct Asked {
@@ -218,8 +218,7 @@ impl Outcome<'_> {
 fn beyond(shown: Option<SignificantAmount>, stands_out: bool) -> String {
     match shown {
         Some(shown) => format!(
-            "; but something stands out of this flight that, if it were this, would be {:.1} standard errors: `explain` tells \
-             what it is",
+            "; but the residual would correspond to {:.1} standard errors of this effect: `explain` searches for its cause",
             shown.deviates
         ),
         None if stands_out => "; better once what stands out of this flight is known".to_owned(),

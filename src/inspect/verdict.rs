@@ -120,10 +120,9 @@ fn no_parameter(evidence: &Evidence<'_>, time: &str) -> String {
 
 fn without_vehicle(good: &[&Outlook], bad: &[&str], time: &str) -> String {
     let names: Vec<&str> = good.iter().map(|outlook| label(outlook.name)).collect();
-    let but =
-        if bad.is_empty() { String::new() } else { format!(", but not what {} would need", bad.join(", ")) };
+    let but = if bad.is_empty() { String::new() } else { format!(", but not for {}", bad.join(", ")) };
     format!(
-        "Has what identification of {} needs{but}: {time}. With --vehicle this says how well it will do.",
+        "The log contains the data for identifying {}{but}: {time}. With --vehicle this says how well it will do.",
         names.join(", ")
     )
 }
@@ -345,8 +344,8 @@ fn remarks(evidence: &Evidence<'_>, vehicle: &VehicleSummary) -> Vec<String> {
         );
         if let Some(names) = evidence.missing_curve {
             advice.push(format!(
-                "The autopilot's thrust curve is not in the log: record its parameters ({names}); until then the vehicle \
-                 file's counts."
+                "The autopilot's thrust curve is not in the log: record its parameters ({names}). The curve in the \
+                 vehicle file is used until then."
             ));
         }
     }

@@ -1,5 +1,5 @@
-//! A stamp that leaps ahead: time that passed, or damage. Which of them, the stamps behind it tell; until they have, messages
-//! wait, so that neither a sound log loses one nor a damaged one makes the log longer.
+//! A stamp that leaps ahead: time that passed, or damage. The following stamps decide. Messages are buffered until then.
+//! A sound log loses none, and a damaged one does not get longer.
 
 /// So many stamps from before a leap that threads do not explain, behind it: it was damage.
 const BACK: usize = 2;

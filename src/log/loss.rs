@@ -249,7 +249,7 @@ impl fmt::Display for Oddity {
             }
             Self::ImplausibleStamps { count } => write!(
                 f,
-                "{count} host stamps are of no wall clock (before 2010 or after 2100): the recording computer's clock was \
+                "{count} host time stamps are not plausible dates (before 2010 or after 2100): the recording computer's clock was \
                  not set"
             ),
             Self::Dropouts { count, ms } => {

@@ -1,11 +1,7 @@
 //! What was met in a log that the vehicle wrote itself.
 
 use crate::autopilot::VehicleKind;
-
-/// Fewer messages of a kind, or within less time in s, have no rate. Only what is shown depends on it: of fewer
-/// messages a rate would be chance.
-const LEAST_MESSAGES: u64 = 10;
-const LEAST_SPAN_S: f64 = 0.1;
+use crate::recording::{LEAST_SAMPLES, LEAST_SPAN_S};
 
 /// What was met in a log that the vehicle wrote itself.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -44,7 +40,7 @@ impl Topic {
     #[must_use]
     pub fn rate_hz(&self) -> Option<f64> {
         let (first_s, last_s) = self.span_s?;
-        let has_rate = self.count >= LEAST_MESSAGES && last_s - first_s >= LEAST_SPAN_S;
+        let has_rate = self.count >= LEAST_SAMPLES && last_s - first_s >= LEAST_SPAN_S;
         has_rate.then(|| (self.count - 1) as f64 / (last_s - first_s))
     }
 }

@@ -53,7 +53,7 @@ pub struct Opened {
 pub fn open<'a>(log: impl Into<Input<'a>>, options: &OpenOptions) -> Result<Opened, LogError> {
     let input = log.into();
     let format = format_of(input)?;
-    let _stage = tracing::info_span!("read", format = format.name).entered();
+    let _stage = stage(&input, format).entered();
     let (mut report, builder) = of_the_flown(options, |options| {
         let mut builder = RecordingBuilder::new();
         let report = match format.read_whole {
@@ -65,6 +65,7 @@ pub fn open<'a>(log: impl Into<Input<'a>>, options: &OpenOptions) -> Result<Open
     let (mut recording, repairs) = builder.finish();
     report.repaired(repairs);
     report.leave_out_leaps(&mut recording);
+    emit_losses(&report);
     Ok(Opened { recording, report })
 }
 
@@ -89,6 +90,7 @@ pub fn open_flights<'a>(
 ) -> Result<OpenedFlights, LogError> {
     let input = log.into();
     let format = format_of(input)?;
+    let _stage = stage(&input, format).entered();
     let (mut report, (cells, builder)) = of_the_flown(options, |options| {
         let mut cells = Cells::default();
         let mut builder = Some(RecordingBuilder::new());
@@ -120,6 +122,7 @@ pub fn open_flights<'a>(
     if flights.left_out_s > 0.0 {
         report.losses.push(Loss::NotHeld { seconds: flights.left_out_s });
     }
+    emit_losses(&report);
     Ok(OpenedFlights { flights, report })
 }
 
@@ -134,7 +137,23 @@ pub fn stream<'a>(
     sink: &mut Sink<'_>,
 ) -> Result<ReadReport, LogError> {
     let input = log.into();
-    (format_of(input)?.read)(&input, options, sink)
+    let format = format_of(input)?;
+    let _stage = stage(&input, format).entered();
+    let report = (format.read)(&input, options, sink)?;
+    emit_losses(&report);
+    Ok(report)
+}
+
+/// The reading of a log as a stage of the trace.
+fn stage(input: &Input<'_>, format: &Format) -> tracing::Span {
+    tracing::info_span!("read", path = input.name(), format = format.name)
+}
+
+/// Each loss as an event of the trace.
+fn emit_losses(report: &ReadReport) {
+    for loss in &report.losses {
+        tracing::info!(%loss, "data lost");
+    }
 }
 
 /// The format that a log's first bytes are of.

@@ -22,5 +22,5 @@ pub use flight::{ParameterChange, Recording};
 pub use growing::{Growing, StreamRepair};
 pub use overlap::shared_share;
 pub use quantity::Quantity;
-pub use statistics::{StreamStats, StreamTally};
+pub use statistics::{LEAST_SAMPLES, LEAST_SPAN_S, StreamStats, StreamTally};
 pub use stream::{Stream, StreamKey};

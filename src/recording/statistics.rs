@@ -11,9 +11,10 @@ const GAP_PERIODS: f64 = 3.0;
 /// Periods of which more than this share are so long come in bursts: then none is a gap, and the mean tells the rate.
 /// A link that loses a fifth of its frames is still a stream with gaps; with more there is no period to compare with.
 const RARE: f64 = 0.2;
-/// Fewer samples, or over less time in s, have no rate. Of fewer a median period is chance.
-const LEAST_SAMPLES: u64 = 10;
-const LEAST_SPAN_S: f64 = 0.1;
+/// Fewer samples have no rate. Of fewer a median period is chance.
+pub const LEAST_SAMPLES: u64 = 10;
+/// Samples over less time, s, have no rate.
+pub const LEAST_SPAN_S: f64 = 0.1;
 
 /// How a stream runs.
 #[derive(Debug, Clone, Copy, PartialEq)]

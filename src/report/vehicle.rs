@@ -43,6 +43,12 @@ pub fn vehicle_text(summary: &VehicleSummary) -> String {
         let _ =
             writeln!(page, "    {:<20}{:>5}{fz:>12.4}{tx:>13.5}{ty:>13.5}{tz:>13.5}", rotor.name, rotor.spin);
     }
+    if !summary.effect_lines.is_empty() {
+        let _ = writeln!(page, "  effects");
+    }
+    for line in &summary.effect_lines {
+        let _ = writeln!(page, "    {line}");
+    }
     page.truncate(page.trim_end().len());
     page
 }

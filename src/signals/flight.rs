@@ -76,11 +76,12 @@ impl Signals {
         let (samples, step_s) = (self.grid.count, self.grid.step_s);
         let usable_s = self.usable.iter().filter(|usable| **usable).count() as f64 * step_s;
         let Quality { sources, thrust_source, offsets, .. } = &self.quality;
-        for (quantity, message, rate_hz) in sources {
-            tracing::debug!(?quantity, message, rate_hz, "stream chosen");
+        for (quantity, source, rate_hz) in sources {
+            tracing::debug!(?quantity, source, rate_hz, "stream chosen");
         }
         for (quantity, offset) in offsets {
-            tracing::debug!(?quantity, ?offset, "stream aligned");
+            let StreamOffset { late_s, std_s, repaired } = *offset;
+            tracing::debug!(?quantity, late_s, std_s, repaired, "stream aligned");
         }
         tracing::info!(samples, step_s, usable_s, thrust = ?thrust_source, "flight conditioned");
     }

@@ -126,7 +126,8 @@ pub fn is_live(stream: &Stream) -> bool {
     })
 }
 
-/// A stream of fewer samples says nothing. Of fewer neither rate nor noise can be told.
+/// A stream of fewer samples is not used. Of fewer neither rate nor noise can be told. It is a number of its own: that of
+/// `recording` decides only whether a rate is shown.
 pub(super) const LEAST_SAMPLES: usize = 10;
 
 /// The refusal of a recording whose longest stream of a quantity that satisfies `fits` is too short to be used;

@@ -274,7 +274,7 @@ pub(super) fn refuse_off_mixer<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) 
         if seconds < LEAST_BEFORE_S {
             let all: Vec<String> = flight.off_mixer.iter().map(ToString::to_string).collect();
             let why = format!(
-                "{}: the log shows the cause itself, and no hidden effect is searched for; before that there are {:.0} s of flight, expected \
+                "{}: the log shows the cause, so mavid does not search for effects; before that there are {:.0} s of flight, expected \
                  {LEAST_BEFORE_S:.0} s at least",
                 all.join("; "),
                 seconds.max(0.0)

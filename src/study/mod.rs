@@ -34,7 +34,7 @@ pub use compare::{
     Change, Changed, CompareRequest, CompareStudy, Compared, ComparedFlight, Judge, LeastChange, compare,
 };
 pub use correlation::Correlation;
-pub use effects::{effects_file, effects_of, with_further, with_stated_lag};
+pub use effects::{effects_file, with_further, with_stated_lag};
 pub use error::StudyError;
 pub use explain::{
     AlongFlights, AxisFit, AxisResidual, AxisShare, BodyParameter, Estimate, ExplainRequest, ExplainStudy,

@@ -1,7 +1,8 @@
 //! What follows from a vehicle's file.
 
-use crate::config::LoadedVehicle;
+use crate::config::{LoadedVehicle, effects_of};
 use crate::note::Note;
+use crate::physics::ActiveEffect;
 use crate::text;
 use crate::vehicle::{Actuator, Anchor, Spin, ThrustLaw, Vehicle};
 use serde::Serialize;
@@ -41,6 +42,8 @@ pub struct VehicleSummary {
     pub anchor: String,
     /// how many the file holds
     pub effects: usize,
+    /// each of them, one line: its id and its parameters, with unit
+    pub effect_lines: Vec<String>,
     /// what is possible but hardly meant
     pub warnings: Vec<Note>,
 }
@@ -90,8 +93,29 @@ pub fn vehicle_summary(loaded: &LoadedVehicle) -> VehicleSummary {
             Anchor::Mass => "mass: the thrust coefficient is identified".to_owned(),
         },
         effects: loaded.model.effects.len(),
+        effect_lines: effect_lines(loaded),
         warnings: loaded.warnings.clone(),
     }
+}
+
+/// Those of a file were checked when it was read.
+fn effect_lines(loaded: &LoadedVehicle) -> Vec<String> {
+    let effects =
+        effects_of(&loaded.model.effects, &loaded.vehicle.name, &loaded.vehicle).unwrap_or_default();
+    effects.iter().map(effect_line).collect()
+}
+
+fn effect_line(active: &ActiveEffect) -> String {
+    let effect = active.effect();
+    let known = effect.parameters().iter().chain(effect.finer_parameters());
+    let values: Vec<String> = known
+        .zip(active.parameters())
+        .map(|(parameter, value)| match parameter.unit {
+            "-" => format!("{} {}", parameter.name, text::compact(*value)),
+            unit => format!("{} {} {unit}", parameter.name, text::compact(*value)),
+        })
+        .collect();
+    format!("{}: {}", effect.id(), values.join(", "))
 }
 
 fn rotors(vehicle: &Vehicle) -> Vec<RotorSummary> {

@@ -13,11 +13,11 @@ const WINDOW: usize = 31;
 const BURST_US: u64 = 2000;
 /// A difference this far from the median is of a message that was old when it was sent.
 const OLD_US: u64 = 50_000;
-/// A difference that changes by more than this from one stamped message to the next: the host's clock was set. No link
+/// A difference that changes by more than this from one stamped message to the next, us: the host's clock was set. No link
 /// holds a message back for so long.
-const HOST_STEP_US: u64 = 10_000_000;
-/// Host's stamps further apart than this, either way, say nothing of the time that passed until the vehicle's do.
-const HOST_LEAP_US: u64 = 3_600_000_000;
+pub const HOST_STEP_US: u64 = 10_000_000;
+/// Host's stamps further apart than this, us, either way, say nothing of the time that passed until the vehicle's do.
+pub const HOST_LEAP_US: u64 = 3_600_000_000;
 /// Stamps of different messages may run back against each other by this much.
 pub const BACKWARD_US: i64 = 2_000_000;
 /// A leap forward beyond this must be matched by the host's clock.

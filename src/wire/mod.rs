@@ -21,7 +21,7 @@ mod splitter;
 mod stamped;
 
 pub use self::checksum::{CrcSeeds, checksum};
-pub use clock::{Anchor, BACKWARD_US, Stamp, WITNESSES};
+pub use clock::{Anchor, BACKWARD_US, HOST_LEAP_US, HOST_STEP_US, Stamp, WITNESSES};
 pub use decode::{DecodeReport, Decoder, STATUSTEXT_BYTES, Source, Vehicle};
 pub use embedded::{EMBEDDED_UID2, Nonce, UID2_BYTES};
 pub use encode::write_recording;

@@ -209,7 +209,7 @@ fn an_output_that_left_the_mixer_is_told_with_its_times_and_nothing_hidden_is_se
     let StudyError::File { why, .. } = refused else { panic!("{refused}") };
     assert!(
         why.contains("output 2 does not follow the controllers")
-            && why.contains("no hidden effect is searched for"),
+            && why.contains("mavid does not search for effects"),
         "{why}"
     );
 }

@@ -59,7 +59,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("estimate", &["note", "vehicle", "physics", "signals", "regression"]),
     // never estimate
     ("simulate", &["units", "vehicle", "trajectory", "physics", "recording"]),
-    ("config", &["note", "units", "text", "vehicle", "trajectory", "recording", "log"]),
+    ("config", &["note", "units", "text", "vehicle", "trajectory", "physics", "recording", "log"]),
     ("compare", &["vehicle", "physics", "recording", "signals", "simulate"]),
     // estimate: what a flight will determine is for its estimator to say
     (

@@ -559,7 +559,7 @@ fn where_nothing_is_safe_to_send_it_refuses_and_says_what_would_be() {
     scene.parameters = ardupilot(&[("WP_ACC", 0.2), ("PSC_NE_JERK", 0.2)]);
     let said = scene.said(DIES);
     assert_eq!(said.level, Level::Refusal, "{said}");
-    assert!(said.came.starts_with("the setpoints nearest to it lead"), "{said}");
+    assert!(said.came.starts_with("the closest safe setpoints deviate"), "{said}");
     assert!(said.remedy.contains("--tracking-max"), "{said}");
     assert!(said.remedy.contains("slower"), "{said}");
 }

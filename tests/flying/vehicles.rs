@@ -116,14 +116,21 @@ fn a_later_format_is_refused_with_what_to_do() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
     let text = std::fs::read_to_string(path).unwrap();
     assert!(parse_vehicle(&format!("format = 1\n{text}"), "v.toml").is_ok());
-    for (came, shown) in [("2", "got 2"), ("0", "got 0"), ("\"new\"", "got \"new\"")] {
+    for (came, shown, is_later) in [
+        ("2", "got 2", true),
+        ("0", "got 0", false),
+        ("\"1\"", "got \"1\"", false),
+        ("[1]", "got [1]", false),
+    ] {
         // its unknown keys are not what is told
         let later = format!("format = {came}\nnew_key = 1\n{text}");
         let said = parse_vehicle(&later, "v.toml").unwrap_err().to_string();
         assert!(
-            said.starts_with("v.toml: `format`: expected 1 or no such key") && said.contains(shown),
+            said.starts_with("v.toml: `format`: expected ") && said.contains(" or no such key"),
             "{said}"
         );
-        assert!(said.contains("a later version of mavid"), "{said}");
+        assert!(said.contains(shown), "{said}");
+        assert_eq!(said.contains("a later version of mavid"), is_later, "{said}");
+        assert_eq!(said.contains("mavid vehicle init"), is_later, "{said}");
     }
 }

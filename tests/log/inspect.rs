@@ -229,7 +229,7 @@ fn every_shared_flight_is_inspected_without_and_with_its_vehicle() {
         // a mission flown on an estimator's belief need not turn enough for inertia; without a vehicle file that is said
         let needs = if path.starts_with(shared.join("noisy")) { "mass" } else { "mass, Ixx" };
         let verdict = inspected(&path, None).verdict;
-        let expected = format!("Has what identification of {needs}");
+        let expected = format!("The log contains the data for identifying {needs}");
         assert!(verdict.starts_with(&expected), "{}: {verdict}", path.display());
         let inspection = inspected(&path, Some(&vehicle));
         // the stated torque per thrust of one vehicle is far from what it flew with, as `identify` says of it too
@@ -257,14 +257,15 @@ fn every_shared_log_of_a_simulator_with_a_log_on_board_is_inspected() {
         let inspection = inspected(path, None);
         let verdict = &inspection.verdict;
         let (needs, stood) = (
-            "Has what identification of mass",
+            "The log contains the data for identifying mass",
             "Nothing can be identified from this log: no stretch of flight can be used",
         );
         assert!(verdict.starts_with(needs) || verdict.starts_with(stood), "{}: {verdict}", path.display());
         // one takes off, stands in the air for 3 s and lands
         still += usize::from(verdict.starts_with(stood));
         assert!(inspection.losses.is_empty(), "{}: {:?}", path.display(), inspection.losses);
-        turned += usize::from(verdict.starts_with("Has what identification of mass, Ixx, Iyy, Izz needs"));
+        turned +=
+            usize::from(verdict.starts_with("The log contains the data for identifying mass, Ixx, Iyy, Izz"));
     }
     // some of the flights go straight
     assert!(paths.len() >= 32 && turned >= 24 && still <= 1, "{turned} and {still} of {}", paths.len());

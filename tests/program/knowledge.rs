@@ -3,12 +3,11 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use mavid::config::{load_csv_mapping, load_vehicle, parse_csv_mapping, parse_effect_tables};
+use mavid::config::{effects_of, load_csv_mapping, load_vehicle, parse_csv_mapping, parse_effect_tables};
 use mavid::log::csv::CsvMapping;
 use mavid::log::{self, OpenOptions};
 use mavid::physics::effects::ALL;
 use mavid::recording::{Quantity, Recording};
-use mavid::study::effects_of;
 
 fn mavid(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_mavid")).args(arguments).output().unwrap()
@@ -72,6 +71,22 @@ fn one_effect_is_told_with_its_size_on_a_vehicle() {
     let unknown = mavid(&["effects", "drag"]);
     assert_eq!(unknown.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&unknown.stderr).contains("expected one of linear_drag, "));
+}
+
+/// A command that does not need the effects refuses them as well.
+#[test]
+fn a_models_effects_are_listed_and_checked_when_it_is_read() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let model = root.join("fixtures/models/first_explain.toml");
+    let page = said(&["vehicle", &model.display().to_string()]);
+    assert!(page.contains("  effects\n    linear_drag: dx "), "{page}");
+    let text = std::fs::read_to_string(&model).unwrap().replace("linear_drag", "linear_dragg");
+    let wrong = Path::new(env!("CARGO_TARGET_TMPDIR")).join("knowledge-wrong-effect.toml");
+    std::fs::write(&wrong, text).unwrap();
+    let refused = mavid(&["vehicle", &wrong.display().to_string()]);
+    let stderr = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{stderr}");
+    assert!(stderr.contains("`effect[0].id`: expected one of linear_drag, "), "{stderr}");
 }
 
 /// What a flight of ten seconds would be in a table with these columns.

@@ -4,6 +4,8 @@
 //! What counts is the program's own time: the setpoint's, against that at which the part last ran. A busy machine
 //! changes neither; what it adds until the setpoint is sent is measured beside them.
 
+#![allow(clippy::print_stdout, reason = "the figures of the documents are printed")]
+
 use crate::flying;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use mavid::config::parse_vehicle;
 use mavid::study::effects_file;
-use mavid::wire::SystemId;
 
 use crate::cli::{DemoArgs, RunArgs, ShapeArgs};
 use crate::commands::live::{self, Work};
@@ -19,8 +18,6 @@ const EFFECTS: &str = include_str!("../../../configs/demo/concealed.toml");
 const CONCEALED: &str = "concealed.toml";
 /// The room, and how lively it is flown.
 const LIMITS: &str = include_str!("../../../configs/demo/limits.toml");
-/// The system id of the demo's station.
-const STATION: SystemId = SystemId(255);
 /// The folder where none is given.
 const FOLDER: &str = "mavid-demo";
 
@@ -74,6 +71,6 @@ fn folder(args: &DemoArgs) -> Result<PathBuf, CommandError> {
     let numbered = (2_u32..).map(|number| PathBuf::from(format!("{FOLDER}-{number}")));
     let free = || std::iter::once(PathBuf::from(FOLDER)).chain(numbered).find(|path| !path.exists());
     let folder = args.out.clone().or_else(free).unwrap_or_else(|| PathBuf::from(FOLDER));
-    leftover::make_way(Path::new(&folder.join("flight1")), STATION)?;
+    leftover::make_way(Path::new(&folder.join("flight1")), leftover::STATION)?;
     Ok(folder)
 }

@@ -11,5 +11,5 @@ mod watch;
 mod words;
 
 pub use one_flight::{FlightRun, Manner, one_flight};
-pub use ride::is_attended;
+pub use ride::{TRACKING_MOST_M, is_attended, within};
 pub use verb::{outcome, run};

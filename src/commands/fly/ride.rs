@@ -42,21 +42,29 @@ pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
     Ok(Ride { sortie, vehicle, address, signing, dir: args.out.clone(), parking })
 }
 
+/// Largest distance from the reference that can be asked for, m. A guard beyond it would guard nothing.
+pub const TRACKING_MOST_M: f64 = 10.0;
+
+/// Refuses the value of an option that is not above zero and at most as large as stated.
+pub fn within((name, value, most): (&str, Option<f64>, f64)) -> Result<(), CommandError> {
+    match value.filter(|value| !(*value > 0.0 && *value <= most)) {
+        Some(value) => Err(CommandError::Input(format!(
+            "{name}: expected a number above 0 and at most {most}, got {value}"
+        ))),
+        None => Ok(()),
+    }
+}
+
 fn sortie(args: &FlyArgs, trajectory: &StoredTrajectory, vehicle: &Vehicle) -> Result<Sortie, CommandError> {
     // a guard beyond these would guard nothing
     let ranges = [
-        ("--tracking-max", Some(args.tracking_max), 10.0),
+        ("--tracking-max", Some(args.tracking_max), TRACKING_MOST_M),
         ("--tilt-max", args.tilt_max, 90.0),
         ("--hover-time", args.hover_time, 1e5),
         ("--gate-distance", args.gate_distance, 10.0),
         ("--gate-speed", args.gate_speed, 10.0),
     ];
-    for (name, value, most) in ranges {
-        if let Some(value) = value.filter(|value| !(*value > 0.0 && *value <= most)) {
-            let expected = format!("expected a number above 0 and at most {most}");
-            return Err(CommandError::Input(format!("{name}: {expected}, got {value}")));
-        }
-    }
+    ranges.into_iter().try_for_each(within)?;
     let around = trajectory.transitions.map(|stored| Around {
         takeoff: stored.takeoff,
         landing: stored.landing,

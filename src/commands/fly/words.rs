@@ -15,27 +15,24 @@ pub fn words(record: &Record) -> Vec<Word> {
     let why = cause.as_ref().map_or_else(String::new, |cause| format!(": {cause}"));
     let stream = &record.stream;
     let said = format!("{how}{why}");
-    let mut lines = vec![
-        if record.outcome.is_whole() { Word::Message(said) } else { Word::Error(said) },
-        Word::Message(format!(
+    let mut lines = vec![if record.outcome.is_whole() { Word::Message(said) } else { Word::Error(said) }];
+    let frames = format!("{} frames recorded, {} lost", record.recorder.frames, record.recorder.dropped);
+    if *ending == Ending::NotFlown {
+        lines.push(Word::Message(frames));
+    } else {
+        lines.push(Word::Message(format!(
             "{} periods, {:.3} m rms off the reference, {:.3} m at most; tilt {:.1} degrees, planned {:.1}",
             flown.periods,
             flown.tracking_rms_m,
             flown.tracking_max_m,
             flown.tilt_max_deg,
             flown.tilt_planned_deg
-        )),
-        Word::Message(format!(
-            "{} setpoints, {} of them more than 3 ms late, {} overtaken by the next, {} refused by the link; {} frames \
-             recorded, {} lost",
-            stream.sent,
-            stream.late,
-            stream.overtaken,
-            stream.refused,
-            record.recorder.frames,
-            record.recorder.dropped
-        )),
-    ];
+        )));
+        lines.push(Word::Message(format!(
+            "{} setpoints, {} of them more than 3 ms late, {} overtaken by the next, {} refused by the link; {frames}",
+            stream.sent, stream.late, stream.overtaken, stream.refused
+        )));
+    }
     let mut warnings: Vec<String> = losses.iter().map(ToString::to_string).collect();
     warnings.extend(record.events_failure.iter().map(|failure| format!("{}: {failure}", fly::EVENTS)));
     let recording = record.recorder.failure.iter();

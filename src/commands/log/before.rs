@@ -95,8 +95,8 @@ async fn set(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     }
     if !prepared.unsure.is_empty() {
         output::warning(&format!(
-            "whether the autopilot was restarted since {} was set, its time since its start does not tell: if it was not, it \
-             logs as before",
+            "It is not known whether the autopilot was restarted after {} was set. Without a restart the old setting is in \
+             effect.",
             prepared.unsure.join(", ")
         ));
     }

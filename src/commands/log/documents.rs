@@ -153,8 +153,8 @@ pub(super) fn checked_words(checked: Checked) -> String {
             "its length is that of the vehicle; the vehicle did not answer for the checksum".to_owned()
         }
         Checked::Grown(bytes) => format!(
-            "the vehicle still writes on it ({bytes} bytes now): this is what there was when the download began, and no \
-             checksum is of it"
+            "the vehicle still writes on it ({bytes} bytes now): only the part that existed at the start was fetched. It \
+             has no checksum"
         ),
     }
 }

@@ -149,8 +149,8 @@ fn says(session: &Session, prepared: &LoggingState) -> String {
     if changes.is_empty() && unknown.is_empty() && awaited.is_empty() {
         lines.push(match from_start {
             Some(name) if !unsure.is_empty() => format!(
-                "that is enough for an identification if the autopilot was restarted since {name} was set: whether it was, \
-                 its time since its start does not tell"
+                "that is enough for an identification if the autopilot was restarted since {name} was set. The \
+                 autopilot's uptime does not show whether it was restarted."
             ),
             Some(name) if !noted.iter().any(|noted| noted.name == name) => format!(
                 "that is enough for an identification, if {name} was not changed since the autopilot's last start"

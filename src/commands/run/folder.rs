@@ -5,15 +5,12 @@ use std::path::{Path, PathBuf};
 
 use mavid::fly::{EVENTS, TLOG};
 use mavid::text;
-use mavid::wire::SystemId;
 use serde::Deserialize;
 
 use crate::commands::{CommandError, leftover, output};
 
 /// Endings of the logs that a vehicle writes itself.
 const ONBOARD: [&str; 2] = ["ulg", "bin"];
-/// What this station calls itself.
-const STATION: SystemId = SystemId(255);
 /// The phase of a flight from which on there is something to explain.
 const TRAJECTORY: &str = "trajectory";
 
@@ -85,7 +82,7 @@ impl Folder {
     /// The folder of the next flight: the first that holds no recording of a vehicle.
     pub fn new_flight(&self) -> PathBuf {
         let mut folders = (1..).map(|number| self.flight(number));
-        folders.find(|folder| leftover::is_free(folder, STATION)).unwrap_or_default()
+        folders.find(|folder| leftover::is_free(folder, leftover::STATION)).unwrap_or_default()
     }
 
     fn flight(&self, number: usize) -> PathBuf {

@@ -7,14 +7,13 @@ use indicatif::{ProgressBar, ProgressStyle};
 use mavid::fly::view::ViewModel;
 
 use crate::commands::output;
+use crate::commands::progress::TICK;
 use crate::commands::standard_error::StandardError;
 
 /// Hundredths of the whole at which the stages end.
 const READY: u64 = 20;
 const FLOWN: u64 = 85;
 const LANDED: u64 = 99;
-/// Of the bar's own picture.
-const TICK: Duration = Duration::from_millis(100);
 
 /// The display.
 #[derive(Debug, Clone)]

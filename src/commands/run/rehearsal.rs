@@ -122,7 +122,7 @@ fn free(context: &Context<'_>) -> Result<std::path::PathBuf, CommandError> {
     let names = (2_u32..).map(|number| format!("rehearsal{number}"));
     let mut folders =
         std::iter::once("rehearsal".to_owned()).chain(names).map(|name| context.folder.of(&name));
-    let folder = folders.find(|folder| leftover::is_free(folder, mavid::wire::SystemId(255)));
+    let folder = folders.find(|folder| leftover::is_free(folder, leftover::STATION));
     let folder = folder.unwrap_or_else(|| context.folder.of("rehearsal"));
     output::silent_folder(&folder)?;
     Ok(folder)

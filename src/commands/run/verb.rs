@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use mavid::config::{parse_vehicle, read_vehicle};
 use mavid::fly::Record;
+use mavid::link::Address;
 use mavid::vehicle::Vehicle;
 
 use super::ask::Ask;
@@ -17,6 +18,7 @@ use super::page::{Document, Made, places};
 use super::target::Target;
 use super::{finish, flying, planned, rehearsal, room, vehicle};
 use crate::cli::RunArgs;
+use crate::commands::fly::{TRACKING_MOST_M, within};
 use crate::commands::live::{self, Work};
 use crate::commands::sitl::DEFAULT_VEHICLE;
 use crate::commands::standard_error::StandardError;
@@ -41,8 +43,8 @@ pub fn story(
     work: &Work,
 ) -> Result<Outcome, CommandError> {
     let since = Instant::now();
-    let ask = Ask::new(args.yes)?;
     checked(args)?;
+    let ask = Ask::new(args.yes)?;
     let folder = Folder::at(args.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER)))?;
     let context = Context::new((args, recipe), (folder, ask), (stderr, work));
     let flown = all_flights(&context)?;
@@ -75,6 +77,10 @@ pub fn story(
 fn checked(args: &RunArgs) -> Result<(), CommandError> {
     if let Some(numbers) = &args.room {
         room::sides(numbers).map_err(|why| CommandError::Input(format!("--room: expected {why}")))?;
+    }
+    within(("--tracking-max", args.tracking_max, TRACKING_MOST_M))?;
+    if let Some(Err(error)) = args.connect.as_deref().map(str::parse::<Address>) {
+        return Err(CommandError::Input(format!("--connect: {error}")));
     }
     if let Some(file) = &args.effects {
         acting(file, &flying_vehicle(args)?)?;

@@ -1,14 +1,12 @@
 //! Limits for a vehicle file without limits: those of the previous flights, which were safe.
 
-use crate::signals::Signals;
+use crate::signals::{Signals, WEAK_HALF_WIDTH_S};
 use crate::vehicle::Limits;
 use nalgebra::Vector3;
 
 /// Limits of speeds and accelerations over those that were flown. The room and the tilt stay as they were flown. A
 /// person agrees to it before it is flown; more would be another flight.
 const MORE: f64 = 1.5;
-/// Time over which accelerations are averaged, s. The half width of the weak form's kernel.
-const OVER_S: f64 = 0.2;
 
 /// The room, speeds, accelerations and angles of the usable parts of flights.
 #[must_use]
@@ -16,7 +14,9 @@ pub fn flown_limits(flights: &[Signals]) -> Limits {
     let mut most = [0.0_f64; 8];
     let mut height = (f64::INFINITY, f64::NEG_INFINITY);
     for signals in flights {
-        let back = (1..10_000).find(|n| f64::from(*n) * signals.grid.step_s >= OVER_S).unwrap_or(1);
+        // accelerations are averaged over the half width of the weak form's kernel
+        let back =
+            (1..10_000).find(|n| f64::from(*n) * signals.grid.step_s >= WEAK_HALF_WIDTH_S).unwrap_or(1);
         let back = usize::try_from(back).unwrap_or(1);
         for index in (0..signals.grid.count).filter(|&index| signals.usable[index]) {
             let mut widen = |slot: usize, value: f64| most[slot] = most[slot].max(value.abs());
@@ -29,7 +29,7 @@ pub fn flown_limits(flights: &[Signals]) -> Limits {
                 widen(2, velocity[index].amax());
                 if let Some(before) = index.checked_sub(back) {
                     let by: Vector3<f64> = velocity[index] - velocity[before];
-                    widen(3, by.amax() / OVER_S);
+                    widen(3, by.amax() / WEAK_HALF_WIDTH_S);
                 }
             }
             if let Some(attitude) = &signals.attitude {

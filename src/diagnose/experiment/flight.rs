@@ -1,5 +1,6 @@
 //! The next flight and its expected results.
 
+use crate::diagnose::confusable::APART;
 use crate::diagnose::signatures::latency_kind;
 use crate::trajectory::FourierTrajectory;
 use crate::vehicle::Limits;
@@ -32,11 +33,8 @@ impl NextFlight {
         };
         let pairs = self.pairs.iter().map(|pair| match pair.other {
             Some(other) => {
-                let better = if latency_kind(pair.named).is_some() && pair.after < ENOUGH_SIGMA {
-                    BY_SPEEDS
-                } else {
-                    ""
-                };
+                let better =
+                    if latency_kind(pair.named).is_some() && pair.after < APART { BY_SPEEDS } else { "" };
                 format!("{} from {other}: {}{better}", pair.named, after(pair))
             }
             None => {
@@ -84,8 +82,5 @@ impl std::fmt::Display for Inseparable {
         write!(out, "no trajectory separates {} from {}: {}", self.named, self.other, self.why)
     }
 }
-
-/// Effects whose distance is below this many standard deviations are not distinguished, as in the confusable sets.
-const ENOUGH_SIGMA: f64 = 5.0;
 
 const BY_SPEEDS: &str = " (rotor speed telemetry, or doublets of 5 Hz and more, separate them)";

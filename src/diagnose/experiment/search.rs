@@ -24,8 +24,8 @@ const HALVINGS: u32 = 14;
 /// First size of a move, relative to the series. It shrinks by [`SHRINK`] when a move fails. A number of steps: only
 /// the time of a search and its last digits depend on it.
 const MOVE: f64 = 0.5;
-/// Factor on the size of a move after a failure. A number of steps: only the time of a search and its last digits
-/// depend on it.
+/// Factor on the size of a move after a failure. A step size: nearer to one the search is longer and more thorough. The
+/// trajectory that it proposes depends on it, and its stated gain is that of this trajectory.
 const SHRINK: f64 = 0.97;
 
 /// The best series and the distance of every pair.

@@ -30,7 +30,7 @@ const DAMPED_EVERY: f64 = 0.01;
 const DAMPINGS: [f64; 5] = [0.4, 0.65, 1.0, 1.5, 2.2];
 /// Time around the moment of a change in which moments are tried, s. It is the step of the search before.
 const ABOUT_S: f64 = 4.0;
-/// Step between these moments, s. A number of steps: only the time of a search and its last digits depend on it.
+/// Step between these moments, s. The resolution of the search, which is part of the stated error of a moment.
 const EVERY_S: f64 = 0.25;
 
 /// Chooses one form of every effect with columns of its own, in the requested order.

@@ -8,7 +8,7 @@ use super::result::{JointEstimate, Physical};
 use super::scale::Kept;
 use super::{choose, latency, swing};
 use crate::diagnose::base::Base;
-use crate::diagnose::evidence::LEAST_ROWS;
+use crate::diagnose::evidence::{LEAST_FLIGHT_S, LEAST_ROWS, ROW_S};
 use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::latency::{LatencyFinding, finding_of};
 use crate::diagnose::left_over::add_left_over;
@@ -44,7 +44,7 @@ pub fn identify_jointly(
     wanted.check_flights(&recorded, &airframe)?;
     let rows: usize = traces.iter().map(Trace::rows).sum();
     if rows < LEAST_ROWS {
-        let (seconds, needed_s) = (rows as f64 * 0.05, LEAST_ROWS as f64 * 0.05);
+        let (seconds, needed_s) = (rows as f64 * ROW_S, LEAST_FLIGHT_S);
         return Err(JointError::TooShort { seconds, needed_s });
     }
     let kept: Vec<&ActiveEffect> = known.iter().filter(|of| !wanted.has(of.effect().id())).collect();

@@ -36,7 +36,8 @@ pub struct Coherence {
 
 /// Length of a window, s. It resolves an eighth of a hertz; only what is shown depends on it.
 const WINDOW_S: f64 = 8.0;
-/// Highest frequency of the mean, Hz. Only what is shown depends on it.
+/// Highest frequency of the mean, Hz. Only what is shown depends on it. The highest of the harmonics' test is one of its own:
+/// a decision depends on that.
 const HIGHEST_HZ: f64 = 2.0;
 /// Least number of windows for a coherence. Of fewer a coherence is near one by chance.
 const LEAST_WINDOWS: usize = 5;

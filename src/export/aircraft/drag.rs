@@ -48,7 +48,7 @@ pub(super) fn drag(
     }
     if all.iter().all(|(_, found)| matches!(found, Coefficient::Absent)) {
         source.note(format!(
-            "{} and {}/{} do not follow from this model: no drag that is told from none is in it",
+            "{} and {}/{} are not written: the model contains no significant drag",
             names.momentum, names.ballistic[0], names.ballistic[1]
         ));
         return Vec::new();

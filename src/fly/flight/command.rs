@@ -8,14 +8,9 @@ use super::state::Flight;
 use crate::autopilot::Mode;
 use crate::fly::commander::{Manner, Permission};
 use crate::fly::outcome::{Cause, Level};
-use crate::fly::safety::{Doubted, Lead};
+use crate::fly::safety::{Doubted, Lead, SHORT, SILENT_AFTER};
 use crate::fly::target::{MessageId, Order, timesync};
 use mavlink::dialects::ardupilotmega::HEARTBEAT_DATA;
-
-/// The flight is stepped every 10 ms. After a longer pause, its knowledge may be outdated.
-const STOOD_STILL: Duration = Duration::from_millis(100);
-/// After a longer pause, a flight is not continued, whether setpoints are sent or not.
-const STALLED: Duration = Duration::from_millis(300);
 
 impl Flight {
     /// Requests the mode if it is needed, and sends the commands that it permits.
@@ -50,11 +45,11 @@ impl Flight {
     /// hold unread messages.
     pub(super) fn note_time(&mut self, now: Duration) {
         let gap = self.stepped.replace(now).map_or(Duration::ZERO, |last| now.saturating_sub(last));
-        if gap <= STOOD_STILL || self.contact.is_none() {
+        if gap <= SILENT_AFTER || self.contact.is_none() {
             return;
         }
         self.known.doubt(now, Doubted::Stall(gap));
-        if gap >= STALLED {
+        if gap >= SHORT {
             self.watch.awake = now;
             if self.phase.is_ours() && self.phase.is_airborne() {
                 self.stalled(now, gap);
@@ -81,7 +76,7 @@ impl Flight {
     }
 
     pub(super) fn stalled(&mut self, now: Duration, gap: Duration) {
-        if gap >= STALLED {
+        if gap >= SHORT {
             self.watch.awake = now;
         }
         tracing::warn!(gap_s = gap.as_secs_f64(), "setpoints stalled");

@@ -9,6 +9,7 @@ use crate::autopilot::{Mode, SetpointRules};
 use crate::fly::commander::{Answer, AnswerResult, Manner};
 use crate::fly::health::BatteryLevel;
 use crate::fly::outcome::{Cause, Level};
+use crate::fly::preflight::ESTIMATE_GOOD_FOR;
 use crate::fly::roster::Choice;
 use crate::fly::safety::Lead;
 use crate::fly::setpoint::Place;
@@ -18,8 +19,6 @@ use crate::fly::telemetry::Telemetry;
 use crate::wire::Payload;
 use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavCmd};
 
-/// The estimate must have been good for this long.
-const ESTIMATOR_GOOD: Duration = Duration::from_secs(5);
 /// Time for which setpoints are sent before OFFBOARD.
 const PRIME: Duration = Duration::from_millis(1500);
 /// A position older than this counts as missing.
@@ -192,8 +191,9 @@ impl Flight {
         let telemetry = &contact.telemetry;
         let mut missing = telemetry.estimator_faults(now);
         let motion = telemetry.motion.filter(|motion| now.saturating_sub(motion.at) < POSITION_FRESH);
-        let good =
-            |since: Option<Duration>| since.is_some_and(|since| now.saturating_sub(since) >= ESTIMATOR_GOOD);
+        let good = |since: Option<Duration>| {
+            since.is_some_and(|since| now.saturating_sub(since) >= ESTIMATE_GOOD_FOR)
+        };
         match motion {
             None => missing.push("no local position arrives".to_owned()),
             Some(_) if !good(telemetry.position_since) => {

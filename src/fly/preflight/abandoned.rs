@@ -328,7 +328,7 @@ fn refused(situation: &Situation<'_>, laws: &[FollowLaw], tried: &Tried) -> Find
     let stated = laws.first().map_or_else(String::new, |law| timeout(situation, law));
     let expected = format!("{EXPECTED} ({stated})");
     let costs = format!(
-        "the setpoints nearest to it lead {:.2} m off the reference, and {:.2} m end the flight",
+        "the closest safe setpoints deviate by {:.2} m; the limit is {:.2} m",
         tried.tracking_m, situation.tracking_max_m
     );
     let came = if tried.tracking_m > TRACKING_SHARE * situation.tracking_max_m {

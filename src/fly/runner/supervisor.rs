@@ -197,7 +197,12 @@ impl Supervisor {
             let finding::Finding { subject, expected, came, remedy, .. } = finding;
             let found = finding.level.name();
             tracing::debug!(subject, level = found, expected, came, remedy, "checked before the flight");
-            self.note(now, level, "check", finding.to_string());
+            let text = match finding.level {
+                // the line says it
+                finding::Level::Warning => finding.words(),
+                _ => finding.to_string(),
+            };
+            self.note(now, level, "check", text);
         }
         let lift = Lift::new(&self.vehicle, &cleared.parameters);
         let verdict = cleared.verdict().map(|()| Box::new(lift));

@@ -15,8 +15,8 @@ use std::time::Duration;
 
 /// Time between two requests.
 const ASK_AGAIN: Duration = Duration::from_millis(200);
-/// After a shorter stall, commands wait for a report but setpoints do not.
-const SHORT: Duration = Duration::from_millis(300);
+/// After a shorter stall, commands wait for a report but setpoints do not. After a longer one a flight is not continued.
+pub(in crate::fly) const SHORT: Duration = Duration::from_millis(300);
 
 /// The reason why the mode is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

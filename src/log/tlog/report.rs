@@ -4,17 +4,14 @@ use std::collections::BTreeMap;
 
 use crate::log::loss::{Loss, Oddity};
 use crate::wire::{
-    ByteOrder, ComponentId, DecodeReport, Header, Record, Sender, SystemId, Version, is_wall_clock,
+    ByteOrder, ComponentId, DecodeReport, HOST_LEAP_US, HOST_STEP_US, Header, Record, Sender, SystemId,
+    Version, is_wall_clock,
 };
 
 /// Damaged places kept with their offsets; further ones are only counted.
 const KEPT_RESYNCS: usize = 1000;
 /// Stamps of several threads run back against each other by less, which is not odd.
 const TOLD_BACKWARD_US: u64 = 1_000_000;
-/// Stamps run back by more, us, where a clock was set or frames stand in another order. Links hold none back for so long.
-const FAR_US: u64 = 10_000_000;
-/// Host stamps further apart than an hour leap.
-const LEAP_US: u64 = 3_600_000_000;
 
 /// Bytes that had to be skipped to find the next record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -150,9 +147,9 @@ impl TlogReport {
         let back_us = last_us.saturating_sub(stamp_us);
         self.backward_stamps += u64::from(back_us > 0);
         self.backward_most_us = self.backward_most_us.max(back_us);
-        self.backward_far += u64::from(back_us > FAR_US);
+        self.backward_far += u64::from(back_us > HOST_STEP_US);
         self.doubled_stamps += u64::from(stamp_us == last_us && !shared_stamp);
-        self.leaping_stamps += u64::from(stamp_us.saturating_sub(last_us) > LEAP_US);
+        self.leaping_stamps += u64::from(stamp_us.saturating_sub(last_us) > HOST_LEAP_US);
     }
 
     pub(super) fn tally(&mut self, record: &Record<'_>, last_stamp_us: Option<u64>, shared_stamp: bool) {

@@ -15,11 +15,11 @@ use crate::study::{Predicted, StudyError};
 use crate::text::significant;
 
 /// What a law of the rates is.
-const BY_RATE_LAW: &str = "over 0.5 s, no change at all predicts these flights' body rates or attitude better than the \
-                           torques of the model do: calm flight under a controller says little about them. Open-loop \
+const BY_RATE_LAW: &str = "over 0.5 s, a constant state predicts body rates or attitude better than the model: calm \
+                           flight under a controller says little about torques. Open-loop \
                            predictions use an empirical law of the rates instead (\"rate_law\"). It is valid for this \
                            vehicle under this controller and is no property of the vehicle. model.toml does not contain \
-                           it, so a simulation of the model alone predicts them worse than no change does. With a \
+                           it, so a simulation of the model alone predicts them worse than a constant state does. With a \
                            trajectory that turns the vehicle more (`mavid plan`), the torques can be compared";
 
 /// A flight that was used, or a part of it, shows nothing as a hold-out.

@@ -1,4 +1,4 @@
-//! The effects as readers want them: what is one thing to them is one entry, and what is two things are two.
+//! Merges or splits effects for the report: an isotropic drag is one entry.
 
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::{ALL, signature_of};

@@ -5,6 +5,7 @@ use super::hold_out::{hold_back, refuse_shared};
 use super::request::ExplainRequest;
 use super::result::{ExplainStudy, Given};
 use super::validation_data::ValidationData;
+use crate::config::effects_of;
 use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::diagnose::signatures::signature_of;
@@ -18,7 +19,7 @@ use crate::study::flights::{EXPLAINED, Prepared, load_all, names, prepare, refus
 use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
-use crate::study::{Progress, Stage, StudyError, effects_of};
+use crate::study::{Progress, Stage, StudyError};
 use crate::text;
 use crate::vehicle::Vehicle;
 

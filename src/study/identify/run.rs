@@ -2,6 +2,7 @@
 
 use super::request::IdentifyRequest;
 use super::result::{IdentifyStudy, WithEffects};
+use crate::config::effects_of;
 use crate::diagnose::ExplainSettings;
 use crate::diagnose::joint::{RequestedEffects, identify_jointly};
 use crate::signals::{ConditionSettings, Signals, other_settings};
@@ -10,7 +11,7 @@ use crate::study::flights::{IDENTIFIED, Prepared, load_all, names, prepare, refu
 use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
-use crate::study::{InputFile, Progress, Stage, StudyError, effects_of};
+use crate::study::{InputFile, Progress, Stage, StudyError};
 use crate::text;
 use crate::vehicle::Vehicle;
 use std::path::Path;

@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use super::result::ValidatedModel;
-use crate::config::{LoadedVehicle, read_vehicle};
+use crate::config::{LoadedVehicle, effects_of, read_vehicle};
 use crate::draft::Given;
 use crate::note::Note;
 use crate::physics::Model;
 use crate::study::flight::Flight;
 use crate::study::flights::file_notes;
-use crate::study::{InputFile, Progress, StudyError, VehicleGiven, effects_of, with_stated_lag};
+use crate::study::{InputFile, Progress, StudyError, VehicleGiven, with_stated_lag};
 use crate::text;
 use crate::vehicle::Vehicle;
 
