@@ -5,12 +5,12 @@ use crate::support;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use mavid::config::effects_of;
 use mavid::config::{load_vehicle, parse_effect_tables, read_trajectory};
 use mavid::inspect::{Inspection, inspect, inspect_recording};
 use mavid::log::{self, Input, Loss, OpenOptions};
 use mavid::recording::{Quantity, Stream};
 use mavid::simulate::{FlightSettings, Reference, Truth, simulate_flight};
-use mavid::study::effects_of;
 use mavid::vehicle::Vehicle;
 use mavid::wire::write_recording;
 use rand::{RngExt, SeedableRng};
