@@ -37,7 +37,7 @@ pub enum Owner {
 }
 
 /// Name of the vehicle's latency between command and rotor, delay and lag together, without that of a log.
-const LATENCY: &str = "latency";
+pub const LATENCY: &str = "latency";
 
 /// A parameter as one flight shows it.
 #[derive(Debug, Clone, PartialEq)]

@@ -78,7 +78,7 @@ mod words;
 
 pub use base::Base;
 pub use by_flight::{
-    FlightParameter, Owner, by_flight, each_with_model_of_all, of_one_flight, rigid_by_flight,
+    FlightParameter, LATENCY, Owner, by_flight, each_with_model_of_all, of_one_flight, rigid_by_flight,
 };
 pub use candidates::{Candidate, candidates};
 pub use channels::{AXES, CHANNEL_NAMES, CHANNELS, Channels, Nuisance, NuisanceColumn, SECOND};

@@ -1,7 +1,7 @@
 //! A parameter along the flights of a vehicle.
 
 use crate::change::{Spread, pooled_mean, with_scatter};
-use crate::diagnose::{FlightParameter, Owner};
+use crate::diagnose::{FlightParameter, LATENCY, Owner};
 use crate::estimate::UNITS;
 use crate::physics::effects::ALL;
 
@@ -125,7 +125,13 @@ impl Track {
     #[must_use]
     pub fn is_shown_by(&self, flight: usize) -> bool {
         let own = self.values.get(flight).copied().flatten();
-        own.is_some_and(|(value, std)| (value - self.nothing).abs() > CARRIES * std)
+        own.is_some_and(|(value, std)| self.beyond(value) > CARRIES * std)
+    }
+
+    /// How far a value is from that of no effect. A latency is ordinary up to there.
+    fn beyond(&self, value: f64) -> f64 {
+        let by = value - self.nothing;
+        if self.name == LATENCY { by } else { by.abs() }
     }
 }
 
@@ -170,5 +176,8 @@ mod tests {
             let shown: Vec<usize> = (0..flights.len()).filter(|flight| rotor.is_shown_by(*flight)).collect();
             assert_eq!(shown, [1]);
         }
+        // less latency than is ordinary is no lag
+        let of = |value| Track { name: LATENCY.to_owned(), ..track(Owner::Vehicle, 0.02, &[(value, 0.003)]) };
+        assert!(of(0.03).is_shown_by(0) && !of(0.005).is_shown_by(0));
     }
 }
