@@ -96,7 +96,7 @@ impl Butterworth {
     }
 }
 
-/// State of [`Butterworth::next`] for one signal.
+/// State of [`Butterworth::step`] for one signal.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ButterworthMemory(Option<[[f64; 2]; 2]>);
 
