@@ -105,7 +105,8 @@ pub(super) fn judged(
         if index == 0 {
             all = found;
         } else {
-            all.iter_mut().zip(found).for_each(|(all, one)| pool(all, &one));
+            let (pairs, alone) = matched(found, all);
+            all = pairs.into_iter().map(|(one, all)| pooled(all, &one)).chain(alone).collect();
         }
     }
     let jumps: Vec<(usize, f64)> = weak
@@ -161,7 +162,8 @@ pub fn differing(
             first = Some(own);
             continue;
         };
-        let pairs = own.into_iter().zip(first).map(|(own, first)| Agreement {
+        let (pairs, _) = matched(own, first.clone());
+        let pairs = pairs.into_iter().map(|(own, first)| Agreement {
             identified: first.held_out,
             identified_std: first.held_out_std,
             ..own
@@ -305,11 +307,70 @@ fn column_of((place, present): (usize, &EffectTerm), slot: usize, fitted: &Fitte
     Some(fitted.rows.nuisances.len() + before + index)
 }
 
+/// The parameters that two flights have in common, in pairs, and those that only one of them has: a flight whose torques are not
+/// compared has no inertia. A parameter that occurs several times is paired in its order.
+fn matched(
+    ones: Vec<Agreement>,
+    mut others: Vec<Agreement>,
+) -> (Vec<(Agreement, Agreement)>, Vec<Agreement>) {
+    let (mut pairs, mut alone) = (Vec::new(), Vec::new());
+    for one in ones {
+        match others.iter().position(|other| other.name == one.name) {
+            Some(at) => pairs.push((one, others.remove(at))),
+            None => alone.push(one),
+        }
+    }
+    alone.append(&mut others);
+    (pairs, alone)
+}
+
 /// Two flights' values weighted by their variances.
-fn pool(all: &mut Agreement, one: &Agreement) {
+fn pooled(all: Agreement, one: &Agreement) -> Agreement {
     let (a, b) = (all.held_out_std.powi(-2), one.held_out_std.powi(-2));
-    if a.is_finite() && b.is_finite() && a + b > 0.0 {
-        all.held_out = (all.held_out * a + one.held_out * b) / (a + b);
-        all.held_out_std = (a + b).powf(-0.5);
+    if !(a.is_finite() && b.is_finite() && a + b > 0.0) {
+        return all;
+    }
+    let held_out = (all.held_out * a + one.held_out * b) / (a + b);
+    Agreement { held_out, held_out_std: (a + b).powf(-0.5), ..all }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn agreement(name: &str, held_out: f64) -> Agreement {
+        Agreement {
+            name: name.to_owned(),
+            unit: "",
+            identified: 1.0,
+            identified_std: 0.1,
+            held_out,
+            held_out_std: 0.1,
+            relevance: Relevance::share(MASS_SHARE),
+        }
+    }
+
+    /// A flight whose torques are not compared has no inertia between its mass and its drag.
+    #[test]
+    fn flights_are_compared_by_the_names_of_their_parameters() {
+        let whole = vec![
+            agreement("mass", 1.0),
+            agreement("ixx", 2.0),
+            agreement("drag", 3.0),
+            agreement("drag", 4.0),
+        ];
+        let forces = vec![agreement("mass", 1.0), agreement("drag", 3.0), agreement("drag", 4.0)];
+        let (pairs, alone) = matched(forces, whole);
+        assert_eq!(pairs.len(), 3);
+        assert!(pairs.iter().all(|(one, other)| one.name == other.name && one.held_out == other.held_out));
+        assert_eq!(alone, [agreement("ixx", 2.0)]);
+    }
+
+    #[test]
+    fn a_mean_is_weighted_by_variances() {
+        let mean = pooled(agreement("mass", 1.0), &Agreement { held_out_std: 0.2, ..agreement("mass", 2.0) });
+        assert!(
+            (mean.held_out - 1.2).abs() < 1e-12 && (mean.held_out_std - 0.2 / 5.0_f64.sqrt()).abs() < 1e-12
+        );
     }
 }
