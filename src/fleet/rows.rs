@@ -52,9 +52,9 @@ table_rows! {
         unit: String, "", "unit of value and error";
         value: f64, "in `unit`", "value";
         std: Option<f64>, "in `unit`", "standard error";
-        common_std: f64, "in `unit`", "part of the error that goes the same way in every flight of the vehicle";
+        common_std: f64, "in `unit`", "systematic part of the error: it is the same in every flight of the vehicle";
         owner: String, "", "`vehicle`: the same in every flight; `flight`: of the day (load, battery, air), never a change of the vehicle";
-        effect: Option<String>, "", "effect of which it is";
+        effect: Option<String>, "", "effect that the parameter belongs to";
     }
 }
 
