@@ -103,7 +103,7 @@ fn twin(name: &str, mutations: u32) {
 
 #[test]
 fn splitter() {
-    twin("splitter", 40_000);
+    twin("splitter", 100_000);
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn ulog() {
 
 #[test]
 fn dataflash() {
-    twin("dataflash", 10_000);
+    twin("dataflash", 20_000);
 }
 
 #[test]
@@ -138,12 +138,12 @@ fn signing() {
 
 #[test]
 fn flight() {
-    twin("flight", 1000);
+    twin("flight", 2000);
 }
 
 #[test]
 fn identify() {
-    twin("identify", 30);
+    twin("identify", 100);
 }
 
 #[test]
