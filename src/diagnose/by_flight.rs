@@ -4,6 +4,7 @@
 //! covariance of what is left has them in it. Put together by their information, such values are what one fit of all flights gives.
 
 use super::base::Base;
+use super::channels::Nuisance;
 use super::explain::ExplainSettings;
 use super::explanation::{Explanation, Verdict};
 use super::feedback_noise::is_fed_back;
@@ -20,7 +21,7 @@ use super::signatures::ALL;
 use super::tested::Search;
 use super::torques_by_instruments::torques_by_instruments;
 use super::trace::Trace;
-use crate::estimate::{NAMES, UNITS};
+use crate::estimate::{INERTIA_ENTRIES, NAMES, UNITS};
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
@@ -197,36 +198,55 @@ pub fn rigid_by_flight(
 }
 
 impl Explanation {
-    /// The same models, `before` and `after`, with other values: mass, moments of inertia and effects by the names of
+    /// The same models, `before` and `after`, with other values and standard errors: mass, moments of inertia and effects by the names of
     /// [`FlightParameter`], SI. What is not among them stays.
     #[must_use]
-    pub fn with_values(&self, before: &[(&str, f64)], after: &[(&str, f64)]) -> Self {
+    pub fn with_values(&self, before: &[(&str, (f64, f64))], after: &[(&str, (f64, f64))]) -> Self {
         let mut moved = self.clone();
-        set_values(&mut moved.search.before.base, before);
-        set_values(&mut moved.search.after.base, after);
+        set_values(&mut moved.search.before, before);
+        set_values(&mut moved.search.after, after);
         moved
     }
 }
 
-fn set_values(base: &mut Base, values: &[(&str, f64)]) {
-    let of = |name: &str| values.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
-    let body = &mut base.vehicle.body;
-    // a vehicle that was weighed has its mass
-    if let Some(mass_kg) = of(NAMES[0]).filter(|_| base.weighed_kg.is_none()) {
-        body.mass_kg = mass_kg;
-    }
-    for (axis, name) in [NAMES[1], NAMES[4], NAMES[6]].into_iter().enumerate() {
-        if let Some(moment) = of(name) {
-            body.inertia_kg_m2[(axis, axis)] = moment;
+fn set_values(fitted: &mut Fitted, values: &[(&str, (f64, f64))]) {
+    let of = |name: &str| values.iter().find(|(known, _)| *known == name).map(|(_, estimate)| *estimate);
+    for index in 0..fitted.rows.nuisances.len() {
+        let body = &mut fitted.base.vehicle.body;
+        let known = match fitted.rows.nuisances[index].nuisance {
+            // a vehicle that was weighed has its mass
+            Nuisance::Mass if fitted.base.weighed_kg.is_some() => None,
+            Nuisance::Mass => of(NAMES[0]).inspect(|known| body.mass_kg = known.0),
+            Nuisance::Inertia(entry) => {
+                let (row, column) = INERTIA_ENTRIES[entry];
+                let moment = (row == column).then(|| of(NAMES[1 + entry])).flatten();
+                moment.inspect(|known| body.inertia_kg_m2[(row, column)] = known.0)
+            }
+            _ => None,
+        };
+        if let Some((_, std)) = known {
+            set_std(&mut fitted.covariance, index, std);
         }
     }
-    for present in &mut base.effects {
+    let mut index = fitted.rows.nuisances.len();
+    for present in &mut fitted.base.effects {
         for slot in present.free.clone() {
             let name = present.parameter(slot).map(|parameter| named(present, parameter.name));
-            if let Some(value) = name.and_then(|name| of(&name)) {
+            if let Some((value, std)) = name.and_then(|name| of(&name)) {
                 present.values[slot] = value;
+                set_std(&mut fitted.covariance, index, std);
             }
+            index += 1;
         }
+    }
+}
+
+/// Another standard error of one coefficient, with the correlations as they are.
+fn set_std(covariance: &mut DMatrix<f64>, index: usize, std: f64) {
+    let by = std / covariance[(index, index)].max(0.0).sqrt();
+    if by.is_finite() && by > 0.0 {
+        covariance.row_mut(index).scale_mut(by);
+        covariance.column_mut(index).scale_mut(by);
     }
 }
 

@@ -73,9 +73,10 @@ impl Fitted {
             let channel = 3 + axis;
             let left = DVector::from_vec(self.weighted.left_of(channel));
             let mut with_body = left.clone();
-            for column in &self.rows.nuisances {
+            for (column, moved) in self.rows.nuisances.iter().zip(self.coefficients.iter()) {
                 let Nuisance::Inertia(index) = column.nuisance else { continue };
-                let along = column.values[channel].iter().map(|value| value * theta[1 + index]);
+                // what is left is left by the inertia that the rows tell, a step from the base's
+                let along = column.values[channel].iter().map(|value| value * (theta[1 + index] + moved));
                 with_body += DVector::from_iterator(left.len(), along);
             }
             1.0 - left.variance() / with_body.variance().max(f64::MIN_POSITIVE)

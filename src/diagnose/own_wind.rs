@@ -11,7 +11,7 @@ use super::trace::Trace;
 use crate::recording::Stream;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
 
 /// A wind and its drag are believed from so many standard errors on. Set by judgement: a wind that is believed moves
@@ -25,6 +25,9 @@ const DRAG_1_S: f64 = 0.1;
 pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings) -> Option<Vector3<f64>> {
     let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
     if !(trace.known.velocity && trace.known.attitude) {
+        return None;
+    }
+    if speed_spread_m_s(&trace) < CALM_M_S {
         return None;
     }
     let carried = ALL.iter().find_map(|signature| signature.role.wind)?().into_iter().next()?;
@@ -51,6 +54,15 @@ pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings
     let is_dragged =
         fitted.base.effects[0].free.iter().all(|&slot| fitted.base.effects[0].values[slot] > 0.0);
     (is_shown && is_dragged && wind.norm() > CALM_M_S).then_some(wind)
+}
+
+/// Root mean square of the velocity along the ground about its mean, m/s. Where it is no more than the error of a velocity estimate, the
+/// slope of the drag on it comes out too small and the wind, which is a force divided by that slope, too strong.
+fn speed_spread_m_s(trace: &Trace) -> f64 {
+    let count = trace.centers.len().max(1) as f64;
+    let along = || trace.centers.iter().map(|&center| trace.states[center].velocity_m_s.xy());
+    let mean = along().sum::<Vector2<f64>>() / count;
+    (along().map(|velocity| (velocity - mean).norm_squared()).sum::<f64>() / count).sqrt()
 }
 
 /// The flight as seen with air that moves at `wind` (world, m/s).

@@ -114,7 +114,9 @@ impl Trace {
             position: signals.position.is_some(),
         };
         let kinematic = known.attitude && known.velocity;
-        let measured = signals.specific_force.as_ref();
+        // readings that their rounding hides are a constant, and no measurement
+        let measured =
+            signals.specific_force.as_ref().filter(|_| !kinematic || signals.resolves_specific_force());
         if measured.is_none() && !kinematic {
             return Err(TraceError::NoForce);
         }

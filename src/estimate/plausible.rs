@@ -1,7 +1,7 @@
 //! Checks of implausible results: another vehicle, a wrong unit, two vehicles at once.
 
-use super::result::{Finding, MethodResult};
-use super::theta::{NAMES, Theta, ThetaCovariance, UNITS, theta_of};
+use super::result::{Estimated, Finding, MethodResult};
+use super::theta::{NAMES, Theta, UNITS, theta_of};
 use super::thrust_scale::ThrustScale;
 use super::weak::solve_weak;
 use crate::note::{About, Note};
@@ -121,8 +121,8 @@ pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<FlightApart> {
         return Vec::new();
     }
     let alone = |rows| solve_weak(std::slice::from_ref(rows), nominal);
-    let each: Vec<Option<(Theta, ThetaCovariance)>> =
-        flights.iter().map(|rows| alone(rows).map(|found| (found.theta, found.covariance))).collect();
+    let each: Vec<Option<Estimated>> =
+        flights.iter().map(|rows| alone(rows).map(|found| Estimated::of(&found))).collect();
     flights_apart(&each)
 }
 
@@ -167,20 +167,27 @@ impl FlightApart {
     }
 }
 
-/// The flights whose estimates alone are further from the first one's than those of one vehicle are.
+/// The flights whose estimates alone are further from the first one's than those of one vehicle are. A moment of inertia counts only where
+/// the rigid body explains the torque in both flights.
 #[must_use]
-pub fn flights_apart(flights: &[Option<(Theta, ThetaCovariance)>]) -> Vec<FlightApart> {
-    let Some((first, of_first)) = flights.first().and_then(Option::as_ref) else { return Vec::new() };
-    let far = |theta: &Theta, covariance: &ThetaCovariance, index: usize| {
-        let variance = of_first[(index, index)] + covariance[(index, index)];
+pub fn flights_apart(flights: &[Option<Estimated>]) -> Vec<FlightApart> {
+    let Some(of_first) = flights.first().and_then(Option::as_ref) else { return Vec::new() };
+    let first = &of_first.theta;
+    let far = |flight: &Estimated, index: usize| {
+        if !(of_first.explains(index) && flight.explains(index)) {
+            return None;
+        }
+        let theta = &flight.theta;
+        let variance = of_first.covariance[(index, index)] + flight.covariance[(index, index)];
         let sigma = (theta[index] - first[index]).abs() / variance.sqrt();
         let is_far = sigma > FLIGHTS_SIGMA && (theta[index] / first[index] - 1.0).abs() > share(index);
         (is_far && sigma.is_finite() && first[index] > 0.0).then_some((index, sigma))
     };
-    let told = |(number, flight): (usize, &Option<(Theta, ThetaCovariance)>)| {
-        let (theta, covariance) = flight.as_ref()?;
+    let told = |(number, flight): (usize, &Option<Estimated>)| {
+        let flight = flight.as_ref()?;
+        let theta = &flight.theta;
         let all: Vec<(usize, f64)> =
-            [0, 1, 4, 6].into_iter().filter_map(|index| far(theta, covariance, index)).collect();
+            [0, 1, 4, 6].into_iter().filter_map(|index| far(flight, index)).collect();
         let (index, sigma) = *all.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let name = if index == 0 { "a mass".to_owned() } else { format!("an {}", NAMES[index]) };
         let unit = UNITS[index];

@@ -109,6 +109,12 @@ impl Estimated {
         Self { by_guessed_curve: moved, ..self }
     }
 
+    /// Whether the rigid body explains the torques that tell a parameter (place in `Theta`), as far as that was assessed.
+    #[must_use]
+    pub fn explains(&self, index: usize) -> bool {
+        unexplained(self, index).is_none()
+    }
+
     /// How far a guessed thrust curve moves a parameter, in its unit.
     #[must_use]
     pub fn moved_by_curve(&self, index: usize) -> f64 {

@@ -206,11 +206,8 @@ impl<'a> Assessor<'a> {
     /// What was collected.
     pub(super) fn finish(self) -> Assessment {
         let expected = self.learnt.as_ref().map(Learnt::combined);
-        let alone = |learnt: &Learnt| {
-            let Estimated { theta, covariance, .. } = learnt.combined();
-            Some((theta, covariance))
-        };
-        let each: Vec<_> = self.of_each.iter().map(alone).collect();
+        let each: Vec<Option<Estimated>> =
+            self.of_each.iter().map(|learnt| Some(learnt.combined())).collect();
         let offset = |sum: &OffsetSum| OffsetSummary {
             quantity: sum.quantity.name(),
             late_s: sum.weighted_s / sum.weight,

@@ -21,6 +21,7 @@ mod plausible;
 mod rebuilt;
 mod reference;
 mod reported_state;
+mod resolution;
 mod rotor_thrusts;
 mod select;
 mod spectrum;

@@ -2,7 +2,7 @@
 
 use super::error::HoldoutError;
 use super::ready::{Ready, trace_of};
-use super::settings::{HeldOut, HoldoutSettings};
+use super::settings::{Explained, HeldOut, HoldoutSettings};
 use super::weak::Weak;
 use crate::diagnose::channels::{AXES, CHANNEL_NAMES, CHANNELS, Nuisance};
 use crate::diagnose::explanation::Explanation;
@@ -91,22 +91,24 @@ const LEFT_RATIO: f64 = 4.0;
 /// difference of parameters counts only if the flight is predicted worse by it.
 const RESIDUAL_RATIO: f64 = 1.3;
 
-/// Compares the model with the held-out flights' own values, which come from one linear step at the transferred model.
+/// Compares the models with the held-out flights' own values, which come from one linear step at the transferred model. `of_each` is the
+/// model that a flight was predicted by; flights of one model are compared together, those of models of their own one by one.
 pub(super) fn judged(
     ready: &[Ready],
-    explanation: &Explanation,
+    (explanation, of_each): (&Explanation, &[Explained]),
     weak: &Weak,
     same_flight: bool,
 ) -> Result<(Vec<Agreement>, Option<OtherVehicle>), PhysicsError> {
     let identified = &explanation.search.after;
+    let is_one_model = of_each.iter().all(|of| std::ptr::eq(of.explanation, explanation));
     let mut all: Vec<Agreement> = Vec::new();
-    for (index, own) in weak.own.iter().enumerate() {
-        let found = agreements(own, identified);
-        if index == 0 {
-            all = found;
-        } else {
+    for (own, of) in weak.own.iter().zip(of_each) {
+        let found = agreements(own, &of.explanation.search.after);
+        if is_one_model {
             let (pairs, alone) = matched(found, all);
             all = pairs.into_iter().map(|(one, all)| pooled(all, &one)).chain(alone).collect();
+        } else {
+            all.extend(found);
         }
     }
     let jumps: Vec<(usize, f64)> = weak
@@ -247,7 +249,7 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
     let (step, _) = identified.weighted.coefficients(&identified.rows);
     let moved =
         |index: usize, known: Option<usize>| own.coefficients[index] - known.map_or(0.0, |known| step[known]);
-    let body = &own.base.vehicle.body;
+    let (body, own_body) = (&own.base.vehicle.body, own.rigid_body());
     let std = |fitted: &Fitted, index: usize| fitted.covariance[(index, index)].max(0.0).sqrt();
     let first_s = own.rows.time_s.first().copied();
     let mut out = Vec::new();
@@ -258,7 +260,9 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
             Nuisance::Mass => (NAMES[0], UNITS[0], body.mass_kg, Relevance::share(MASS_SHARE)),
             Nuisance::Inertia(entry) => {
                 let (row, column) = INERTIA_ENTRIES[entry];
-                let principal = (row == column).then_some(INERTIA_SHARE).and_then(Relevance::share);
+                // a flight whose torque the rigid body does not explain has none of its own
+                let tells = row == column && own_body.explains(1 + entry);
+                let principal = tells.then_some(INERTIA_SHARE).and_then(Relevance::share);
                 (NAMES[1 + entry], UNITS[1 + entry], body.inertia_kg_m2[(row, column)], principal)
             }
             _ => continue,

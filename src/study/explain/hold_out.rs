@@ -1,6 +1,6 @@
 //! What the better model is shown on, and how it does there.
 
-use super::left_out::of_others;
+use super::left_out::{of_others, shown_only_by};
 use super::result::ExplainStudy;
 use super::validation_data::ValidationData;
 use crate::diagnose::holdout::{
@@ -142,12 +142,30 @@ impl ExplainStudy {
 
     /// The same on each flight that was explained, by models of the others.
     pub(super) fn evaluate_left_out(&mut self, flights: &Prepared) {
-        let shown_on = ValidationData::LeftOut { flights: flights.signals.len() };
         let settings = HoldoutSettings::default();
+        let (mut predicted, mut each, mut alone) = (Vec::new(), Vec::new(), Vec::new());
         let models = of_others(self, &flights.signals);
-        let explained = |explanation| Explained { explanation, ..self.explained() };
-        let each: Vec<Explained> = models.iter().map(explained).collect();
-        match on_left_out(self.explained(), &each, &flights.held_out(), (&self.given.vehicle, &settings)) {
+        for ((place, flight), explanation) in flights.held_out().into_iter().enumerate().zip(&models) {
+            match shown_only_by(self, place) {
+                Some(id) => alone.push(format!("{id} is shown by {} alone", flight.name)),
+                None => {
+                    predicted.push(flight);
+                    each.push(Explained { explanation, ..self.explained() });
+                }
+            }
+        }
+        if predicted.is_empty() {
+            let reason = format!("no flight can be predicted by the others: {}", alone.join("; "));
+            self.shown_on = ValidationData::Nothing { reason };
+            return;
+        }
+        let shown_on = ValidationData::LeftOut { flights: predicted.len() };
+        let shown = on_left_out(self.explained(), &each, &predicted, (&self.given.vehicle, &settings));
+        self.notes.extend(alone.iter().map(|of| {
+            let text = format!("{of}, so the others do not predict this flight");
+            Note::remark(About::HoldOut, text)
+        }));
+        match shown {
             Ok(shown) => self.take_prediction(shown, shown_on),
             Err(error) => {
                 self.notes.push(Note::warning(About::HoldOut, format!("hold-out: {error}")));

@@ -19,12 +19,18 @@ pub(super) fn of_others(study: &ExplainStudy, flights: &[Signals]) -> Vec<Explan
     (0..flights.len()).map(one).collect()
 }
 
-/// What the other flights have in common, by name.
-fn without(tracks: &[Track], flight: usize) -> Vec<(&str, f64)> {
+/// A named effect that one flight shows and no other: without that flight nothing tells its size.
+pub(super) fn shown_only_by(study: &ExplainStudy, flight: usize) -> Option<&'static str> {
+    let carried = study.along.iter().flat_map(|along| &along.carried_by);
+    carried.filter_map(|(id, by)| (by.as_deref()? == [flight]).then_some(*id)).next()
+}
+
+/// What the other flights have in common, by name, with its standard error.
+fn without(tracks: &[Track], flight: usize) -> Vec<(&str, (f64, f64))> {
     let others = |track: &Track| {
         let mut track = track.clone();
         track.values[flight] = None;
-        track.pooled().map(|(value, _)| value)
+        track.pooled()
     };
     tracks.iter().filter_map(|track| Some((track.name.as_str(), others(track)?))).collect()
 }

@@ -14,7 +14,7 @@ pub enum ValidationData {
         /// s of flight
         seconds: f64,
     },
-    /// each flight that was explained, predicted by models that rest on the others
+    /// each flight that was explained, predicted by models that rest on the others; without those whose effects no other shows
     LeftOut {
         /// how many
         flights: usize,
@@ -47,6 +47,7 @@ impl ValidationData {
             Self::HeldBack { from_s, seconds } => {
                 format!("held back: {seconds:.0} s from {from_s:.0} s on")
             }
+            Self::LeftOut { flights: 1 } => "one flight by models of the others".to_owned(),
             Self::LeftOut { flights } => format!("each of {flights} flights by models of the others"),
             Self::Nothing { reason } => format!("no hold-out: {reason}"),
         }
