@@ -3,7 +3,7 @@
 use crate::autopilot::Autopilot;
 use crate::recording::landed::MOVES;
 use crate::recording::{Quantity, Recording, Stream};
-use crate::signals::{LEAST_FREE_S, ReportedState, best};
+use crate::signals::{LEAST_FREE_S, ReportedState, SHORTEST_FLIGHT_S, best, off_ground, within};
 use crate::stats::median;
 
 /// Command from which a motor does more than idle: autopilots let motors idle at up to this value. ArduPilot's
@@ -19,8 +19,6 @@ const FLYING_SHARE: f64 = 0.2;
 /// Time over which actuation is smoothed, s, so that a single sample at a bound is not a landing. Longer would hide a
 /// hop.
 const SMOOTHING_S: f64 = 0.3;
-/// Shortest time in the air that counts, s. Less is a test of motors.
-const SHORTEST_S: f64 = 2.0;
 /// So many samples of it are no knock. A knock lasts for fewer.
 const LEAST_MOVING: usize = 5;
 
@@ -133,10 +131,11 @@ pub(super) fn airborne(recording: &Recording, commands: Option<&Stream>, before:
     } else {
         found.moving(recording, before.in_air)
     };
+    let found = found.off_ground(recording);
     let end_s = found.flown_s.last().map(|(_, end_s)| *end_s);
     let streams = || recording.streams.values();
     let last_s = streams().filter_map(|s| s.time_s.last()).copied().fold(f64::NEG_INFINITY, f64::max);
-    before.in_air = end_s.is_some_and(|end_s| last_s - end_s < SHORTEST_S);
+    before.in_air = end_s.is_some_and(|end_s| last_s - end_s < SHORTEST_FLIGHT_S);
     found
 }
 
@@ -152,6 +151,16 @@ impl Airborne {
         let seconds: f64 = free_s.iter().map(|(start_s, end_s)| end_s - start_s).sum();
         let free_s = if seconds < LEAST_FREE_S { flown_s.clone() } else { free_s };
         Self { flown_s, free_s, from }
+    }
+
+    /// Only what the height does not exclude.
+    fn off_ground(mut self, recording: &Recording) -> Self {
+        self.flown_s = off_ground(recording, self.flown_s);
+        self.free_s = within(&self.free_s, &self.flown_s);
+        for spans_s in [&mut self.flown_s, &mut self.free_s] {
+            spans_s.retain(|(start_s, end_s)| end_s - start_s > SHORTEST_FLIGHT_S);
+        }
+        self
     }
 
     /// Only spans during which the vehicle moved. One that began in the window before has moved there.
@@ -177,7 +186,7 @@ impl Airborne {
             let within = |(start_s, end_s): &(f64, f64)| (start_s.max(first_s), end_s.min(last_s));
             self.flown_s = self.flown_s.iter().map(within).collect();
             self.free_s = self.free_s.iter().map(within).collect();
-            self.flown_s.retain(|(start_s, end_s)| end_s - start_s > SHORTEST_S);
+            self.flown_s.retain(|(start_s, end_s)| end_s - start_s > SHORTEST_FLIGHT_S);
         }
         let flown_s = &self.flown_s;
         self.free_s.retain(|(start_s, end_s)| {
@@ -228,6 +237,6 @@ fn spans(time_s: &[f64], holds: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
         }
     }
     spans.extend(open.zip(time_s.last().copied()));
-    spans.retain(|(start, end)| end - start > SHORTEST_S);
+    spans.retain(|(start, end)| end - start > SHORTEST_FLIGHT_S);
     spans
 }

@@ -118,7 +118,8 @@ impl Evidence<'_> {
         match self.armed {
             Some(false) => Some("the vehicle was never armed".into()),
             Some(true) if !flown && self.said_in_air_s >= LEAST_USABLE_S => Some(format!(
-                "the autopilot says that it was in the air for {:.0} s, and its motor outputs in this log carry nothing",
+                "the autopilot says that it was in the air for {:.0} s, and neither its motor outputs nor its height in \
+                 this log show it",
                 self.said_in_air_s
             )),
             Some(true) if !flown => Some("the vehicle was armed and never in the air".into()),

@@ -1,6 +1,7 @@
 //! The instants of a flight that identification may use.
 
 use super::actuation::Actuation;
+use super::off_ground::{SHORTEST_FLIGHT_S, off_ground, within};
 use super::reported_state::{LEAST_FREE_S, ReportedState};
 use super::select::median_period_s;
 use super::{Grid, hold_onto};
@@ -96,12 +97,19 @@ pub(super) fn airborne_spans(
 ) -> Vec<(f64, f64)> {
     let needed = FLYING_SHARE * vehicle.body.mass_kg * vehicle.gravity_m_s2;
     let words = ReportedState::of(recording);
-    let free = carried_spans(actuation, needed, |t_s| words.may_fly(t_s));
+    let told = carried_spans(actuation, needed, |t_s| words.may_be_off_ground(t_s));
+    // a height off the ground is clear of it: the margin at both ends is for words
+    let clear = off_ground(recording, told.clone()).into_iter();
+    let clear: Vec<(f64, f64)> =
+        clear.map(|(from_s, to_s)| (from_s - GROUND_MARGIN_S, to_s + GROUND_MARGIN_S)).collect();
+    let flown = within(&told, &clear);
+    let mut free = within(&carried_spans(actuation, needed, |t_s| words.may_fly(t_s)), &clear);
+    free.retain(|(start, end)| end - start > SHORTEST_FLIGHT_S);
     let seconds = |spans: &[(f64, f64)]| spans.iter().map(|(start, end)| end - start).sum::<f64>();
     if seconds(&free) >= LEAST_FREE_S {
         return free;
     }
-    carried_spans(actuation, needed, |t_s| words.may_be_off_ground(t_s))
+    flown
 }
 
 /// Spans in which the rotors give more than `needed` (N) and the autopilot's words allow flight, s.
@@ -129,7 +137,7 @@ fn carried_spans(actuation: &Actuation, needed: f64, may_fly: impl Fn(f64) -> bo
     if let (Some(start), Some(&end)) = (open, stream.time_s.last()) {
         spans.push((start, end));
     }
-    spans.retain(|(start, end)| end - start > 2.0);
+    spans.retain(|(start, end)| end - start > SHORTEST_FLIGHT_S);
     spans
 }
 

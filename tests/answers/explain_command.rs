@@ -269,3 +269,28 @@ fn identify_and_validate_write_reports_of_one_file() {
         &text[..2500]
     );
 }
+
+/// A hover is predicted by the flight that moves, and says nothing against it; it cannot predict that flight.
+#[test]
+fn a_hover_beside_a_flight_that_moves_raises_no_doubt() {
+    let Some(shared) = support::shared() else { return };
+    let sitl = shared.join("onboard/sitl");
+    let path = |name: &str| sitl.join(name).display().to_string();
+    for kind in ["tlog", "bin"] {
+        let [moving, hover] = ["ap07", "ap08"].map(|flight| path(&format!("{flight}.{kind}")));
+        let vehicle = path("ardupilot-quad-c.toml");
+        let output = mavid(&["explain", &moving, &hover, "--vehicle", &vehicle, "--json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let said = document.to_string();
+        for doubt in ["not of the vehicle", "differ by more than flights of one vehicle", "two vehicles"] {
+            assert!(!said.contains(doubt), "{kind}: {doubt}");
+        }
+        assert!(said.contains("so the others do not predict this flight"), "{kind}");
+        let effects = document["effects"].as_array().unwrap();
+        let drag = effects.iter().find(|effect| effect["id"] == "linear_drag").unwrap();
+        let along = drag["parameters"].as_array().unwrap();
+        let dx = along.iter().find(|of| of["name"] == "dx").unwrap();
+        assert!((dx["value"].as_f64().unwrap() / 0.297 - 1.0).abs() < 0.05, "{kind}: {dx}");
+    }
+}

@@ -6,12 +6,13 @@ use mavid::diagnose::holdout::{
     split_last_periods,
 };
 use mavid::diagnose::{
-    Along, Empirical, ExplainSettings, Explanation, Verdict, each_with_model_of_all, explain,
+    Along, Empirical, ExplainSettings, Explanation, FlightParameter, Trace, Verdict, each_with_model_of_all,
+    explain,
 };
 use mavid::physics::effects::by_id;
 use mavid::physics::{ActiveEffect, Wrench};
 use mavid::recording::{Quantity, Recording};
-use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
+use mavid::signals::{ConditionSettings, Series, Signals, ThrustPreference, condition};
 use mavid::simulate::{
     Disturbance, FlightSettings, RandomTrajectory, Reference, Truth, VehiclePair, random_vehicle,
     simulate_flight,
@@ -19,6 +20,7 @@ use mavid::simulate::{
 use mavid::trajectory::FourierTrajectory;
 use mavid::vehicle::Vehicle;
 use nalgebra::Vector3;
+use std::sync::Arc;
 
 const VEHICLE: u64 = 21;
 
@@ -379,6 +381,41 @@ fn a_hover_has_too_little_excitation_for_a_name() {
     }
     let (lively, _) = explained(&vehicles, Vec::new());
     assert!(!lively.too_little_excitation);
+}
+
+/// An accelerometer whose steps hide all that it feels is no measurement: a hover then says nothing certain of a drag.
+#[test]
+fn a_hover_within_the_steps_of_its_accelerometer_does_not_tell_the_drag() {
+    let vehicles = pair();
+    let drag = || vec![effect("linear_drag", &[0.25, 0.25, 0.0])];
+    let (found, moving) = explained(&vehicles, drag());
+    let mut hover = trajectory(5);
+    for axis in &mut hover.axes {
+        axis.a.iter_mut().chain(&mut axis.b).for_each(|coefficient| *coefficient = 0.0);
+    }
+    let both = (&vehicles.truth, &vehicles.nominal);
+    let (_, mut hover) = flown(both, (drag(), None), hover, (1, 44.0));
+    let along = |signals: &Signals| -> Vec<_> {
+        signals.specific_force.as_ref().unwrap().iter().map(|force| Vector3::z() * force.z).collect()
+    };
+    hover.specific_force = Some(Series::new(along(&hover)));
+    let stream = Arc::make_mut(hover.as_recorded.specific_force.as_mut().unwrap());
+    stream.values.iter_mut().enumerate().for_each(|(place, value)| {
+        *value = if place % 3 == 2 { (*value / 0.0098).round() * 0.0098 } else { 0.0 };
+    });
+    assert!(moving.resolves_specific_force() && !hover.resolves_specific_force());
+    let settings = ExplainSettings::default();
+    let trace = Trace::new(&hover, &vehicles.nominal, settings.half_width_s).unwrap();
+    assert!(!trace.has_accelerometer());
+    let flights = [moving, hover];
+    let each = each_with_model_of_all(&flights, &[false; 2], &found, (&vehicles.nominal, &settings));
+    let [moving, hover] = each.try_into().unwrap();
+    for name in ["linear_drag.dx", "linear_drag.dy"] {
+        let of = |flight: &[FlightParameter]| flight.iter().find(|of| of.name == name).unwrap().estimate;
+        let ((value, std), (in_hover, std_in_hover)) = (of(&moving), of(&hover));
+        assert!((value - 0.25).abs() < 0.02 && std_in_hover > 2.0 * std, "{name}: {value} {std}");
+        assert!((in_hover - value).abs() < 3.0 * std_in_hover, "{name}: {in_hover} {std_in_hover}");
+    }
 }
 
 /// Thrust that falls with climb is a drag along the rotor axis: no flight tells one from the other.

@@ -125,6 +125,8 @@ pub(super) fn judged(
     let worst = jumps.iter().max_by(|a, b| a.1.total_cmp(&b.1));
     let whose = if same_flight {
         "something changed in the part of the flight that was held back"
+    } else if !is_one_model {
+        "the flights are not of one vehicle"
     } else if ready.len() == 1 {
         "the hold-out is not of the vehicle that was identified"
     } else {

@@ -3,7 +3,7 @@
 /// By what they hold; what is not listed is not known here.
 const KNOWN: &[&[&str]] = &[
     // what the controllers asked for, with their own feedback in it, and height and speed that the estimators tell as well
-    &["CTUN", "NTUN", "PSC", "PSCZ", "GUID", "GUIA", "PIDR", "PIDP", "PIDY", "PIDA", "PIDN", "PIDE", "ATSK"],
+    &["NTUN", "PSC", "PSCZ", "GUID", "GUIA", "PIDR", "PIDP", "PIDY", "PIDA", "PIDN", "PIDE", "ATSK"],
     // a frequency sweep: it runs for the test alone, and rates and attitude of it are logged beside it
     &["SIDD", "SIDS"],
     // by how much the outputs make up for the battery: undone in commands that are rebuilt, it makes results worse

@@ -132,6 +132,7 @@ const COURSE: &[Column] = &[
     c(&["Status"], Plain),
 ];
 const HEIGHT: &[Column] = &[c(&["Alt"], Metres)];
+const CONTROLLED_HEIGHT: &[Column] = &[c(&["BAlt", "BarAlt"], Metres)];
 const RATES: &[Column] =
     &[c(&["R"], DegreesPerSecond), c(&["P"], DegreesPerSecond), c(&["Y"], DegreesPerSecond)];
 const DESIRED_RATES: &[Column] =
@@ -274,6 +275,8 @@ pub(super) const TOPICS: &[&[Topic]] = &[
         Topic::new("BARO", BarometricHeight, HEIGHT, as_is),
         Topic::new("BAR2", BarometricHeight, HEIGHT, as_is).number(1),
         Topic::new("BAR3", BarometricHeight, HEIGHT, as_is).number(2),
+        // where the others are not logged, as before 3.2
+        Topic::new("CTUN", BarometricHeight, CONTROLLED_HEIGHT, as_is).number(3),
     ],
     // rate controller and outputs
     &[

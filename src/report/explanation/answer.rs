@@ -4,7 +4,7 @@ use crate::diagnose::signatures::ALL;
 use crate::diagnose::wording::Words;
 use crate::diagnose::{Along, DetectionLimit, Named, Verdict, brief, called, clause, limit};
 use crate::report::number::significant;
-use crate::study::{ExplainStudy, Located, Predicted, ValidationData};
+use crate::study::{ExplainStudy, Located, Predicted, Refuted, ValidationData};
 use crate::vehicle::AXIS_NAMES;
 use std::fmt::Write;
 
@@ -117,10 +117,10 @@ fn gain(study: &ExplainStudy) -> String {
 }
 
 fn whose(study: &ExplainStudy) -> &'static str {
-    if matches!(study.shown_on, ValidationData::HeldBack { .. }) {
-        "something changed in the part of the flight that was held back"
-    } else {
-        "the hold-out is of another vehicle"
+    match study.shown_on {
+        ValidationData::HeldBack { .. } => "something changed in the part of the flight that was held back",
+        ValidationData::LeftOut { .. } => "the flights are not of one vehicle",
+        _ => "the hold-out is of another vehicle",
     }
 }
 
@@ -143,6 +143,9 @@ fn nothing(study: &ExplainStudy) -> String {
              similar effects could not be detected at any usual size{could}, and none of this was found. Fly a \
              trajectory that moves all axes (mavid plan).{other}"
         );
+    }
+    if let Some(refuted) = &study.refuted {
+        return taken_back(refuted, &study.shown_on);
     }
     let would =
         if seen.is_empty() { String::new() } else { format!("; it would have shown {}", list_or(&seen)) };
@@ -170,8 +173,21 @@ fn nothing(study: &ExplainStudy) -> String {
     )
 }
 
+/// The flights that were explained show something that the others refute: that is not the same as nothing.
+fn taken_back(Refuted { names, worse_percent }: &Refuted, shown_on: &ValidationData) -> String {
+    let them = if names.len() > 1 { "them" } else { "it" };
+    format!(
+        "No name holds. What was explained shows {}, but with {them} the 0.5 s errors on {} are {} % larger in the mean. Why the two \
+         differ is not known, so the model stays the rigid body. Fly again, and give both flights.",
+        list(names),
+        shown_on.words(),
+        significant(*worse_percent, 2)
+    )
+}
+
 fn unexplained(study: &ExplainStudy) -> String {
-    let closest: Vec<&str> = study.closest.iter().map(|effect| called(effect.id)).collect();
+    let mut closest: Vec<&str> = study.closest.iter().map(|effect| called(effect.id)).collect();
+    closest.dedup();
     let closest = if closest.is_empty() {
         String::new()
     } else {

@@ -61,6 +61,27 @@ pub(super) fn hold_back(flights: &mut Prepared) -> (ValidationData, Option<Signa
     (ValidationData::HeldBack { from_s, seconds }, Some(holdout))
 }
 
+/// Names that the flights explained would give, and that flights which were not used refute.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refuted {
+    /// each in brief, with its size
+    pub names: Vec<String>,
+    /// by how much errors over 0.5 s are larger with them, mean over the quantities, %
+    pub worse_percent: f64,
+}
+
+impl Refuted {
+    pub(super) fn note(&self) -> Note {
+        let text = format!(
+            "the flights explained alone would give a name to {}; with it, errors over 0.5 s are {} % larger in the mean on the \
+             hold-out, so it gets none",
+            self.names.join(", "),
+            significant(self.worse_percent, 2)
+        );
+        Note::warning(About::HoldOut, text)
+    }
+}
+
 impl ExplainStudy {
     /// Prediction errors before and after on the flights that were explained, and, of several, whether they are of one
     /// vehicle. An empirical term stands in where no mechanism serves.
@@ -102,19 +123,12 @@ impl ExplainStudy {
 
     /// What speaks against the names: with them, flights that were not used are predicted worse. `None` where they help, and where
     /// the hold-out is of another vehicle.
-    pub(super) fn refuted_by_holdout(&self) -> Option<String> {
+    pub(super) fn refuted_by_holdout(&self) -> Option<Refuted> {
         let named = self.explanation.named.iter();
-        let worse = -self.holdout.as_ref()?.work_of_effects()?;
+        let worse_percent = -self.holdout.as_ref()?.work_of_effects()?;
         let names: Vec<String> = named.map(|named| brief(named, &self.given.vehicle, true)).collect();
-        let refuted = worse > 0.0 && !names.is_empty() && self.other_vehicle().is_none();
-        refuted.then(|| {
-            format!(
-                "the flights explained alone would give a name to {}; with it, errors over 0.5 s are {} % larger in the mean on the \
-                 hold-out, so it gets none",
-                names.join(", "),
-                significant(worse, 2)
-            )
-        })
+        let refuted = worse_percent > 0.0 && !names.is_empty() && self.other_vehicle().is_none();
+        refuted.then_some(Refuted { names, worse_percent })
     }
 
     /// What predicts.

@@ -22,6 +22,7 @@ mod validation_data;
 pub use along_flights::AlongFlights;
 pub use evidence::{Tried, TriedAs};
 pub use figures::{AxisResidual, Figures, Followed, Harmonics, Heat, LeftAlongTime, RecordedAndSimulated};
+pub use hold_out::Refuted;
 pub use located::{AxisShare, Field, Located, StateShare};
 pub use next_flight::stored_trajectory;
 pub use path::FlownPath;

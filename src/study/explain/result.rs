@@ -1,6 +1,7 @@
 //! The result of explaining: what went in, what was found, and what shows it.
 
 use super::along_flights::AlongFlights;
+use super::hold_out::Refuted;
 use super::located::Located;
 use super::predicted::Predicted;
 use super::readers::for_readers;
@@ -77,6 +78,8 @@ pub struct ExplainStudy {
     pub notes: Vec<Note>,
     /// why the flights cannot be of one vehicle
     pub(super) differing: Option<String>,
+    /// names that were taken back, because flights that were not used refute them
+    pub refuted: Option<Refuted>,
     /// the vehicle as it was drafted, where it came from no file
     pub drafted: Option<Draft>,
     /// of several flights: what they have in common, and what is each one's own
@@ -149,6 +152,7 @@ impl ExplainStudy {
             shown_on: ValidationData::Nothing { reason: "no hold-out".to_owned() },
             notes: Vec::new(),
             differing: None,
+            refuted: None,
             drafted: None,
             along: None,
             traces: Vec::new(),

@@ -138,10 +138,11 @@ impl Task<'_> {
         };
         self.progress.stage(Stage::Predicting);
         let study = self.evaluated(given, explanation, flights, (held, back, shown_on.clone()));
-        let Some(why) = study.refuted_by_holdout() else { return Ok(study) };
+        let Some(refuted) = study.refuted_by_holdout() else { return Ok(study) };
         let ExplainStudy { given, explanation, .. } = study;
         let mut study = self.evaluated(given, explanation.refuted(), flights, (held, back, shown_on));
-        study.notes.push(Note::warning(About::HoldOut, why));
+        study.notes.push(refuted.note());
+        study.refuted = Some(refuted);
         Ok(study)
     }
 
