@@ -3,6 +3,7 @@
 //! An autopilot says that it is off the ground from the moment when it raises the throttle for take-off, and a vehicle that crashed with
 //! its motors on has not landed by its words. The height tells more.
 
+use super::reported_state::DAMAGED_S;
 use super::select::best;
 use crate::recording::{Quantity, Recording, Stream};
 use crate::stats::median;
@@ -26,11 +27,13 @@ const LEAST_SAMPLES: usize = 3;
 /// follows at once: that is no landing.
 pub fn off_ground(recording: &Recording, spans_s: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let Some(heights) = Heights::of(recording) else { return spans_s };
+    let margin_s = if recording.is_damaged { DAMAGED_S } else { 0.0 };
     let one = |(place, span): (usize, &(f64, f64))| {
         let before_s = place.checked_sub(1).map_or(f64::NEG_INFINITY, |before| spans_s[before].1);
         let after_s = spans_s.get(place + 1).map_or(f64::INFINITY, |(from_s, _)| *from_s);
         let (began, ends) = (span.0 - before_s > GROUND_S, after_s - span.1 > GROUND_S);
         let (lifted_s, down_s) = heights.off_ground(*span)?;
+        let (lifted_s, down_s) = (lifted_s + margin_s, down_s - margin_s);
         Some((if began { lifted_s } else { span.0 }, if ends { down_s } else { span.1 }))
     };
     spans_s.iter().enumerate().filter_map(one).collect()
@@ -79,10 +82,24 @@ impl<'a> Heights<'a> {
         (heights.len() >= LEAST_SAMPLES).then(|| median(&mut heights))
     }
 
+    /// Height of the ground before a span that begins at `from_s`, m: there the vehicle stands for some time. A log that begins in the
+    /// air has no ground there.
+    fn ground(&self, from_s: f64) -> Option<f64> {
+        let halves =
+            [from_s - GROUND_S, from_s - 0.5 * GROUND_S].map(|at_s| self.rest(at_s, at_s + 0.5 * GROUND_S));
+        let [Some(earlier), Some(later)] = halves else { return None };
+        ((later - earlier).abs() < LIFTED_M).then_some(later)
+    }
+
     fn off_ground(&self, (from_s, to_s): (f64, f64)) -> Option<(f64, f64)> {
-        let Some(ground_m) = self.rest(from_s - GROUND_S, from_s) else { return Some((from_s, to_s)) };
+        let Some(ground_m) = self.ground(from_s) else { return Some((from_s, to_s)) };
         let time_s = |index: usize| self.stream.time_s[index];
-        let away = |index: &usize, from_m: f64| (self.height(*index) - from_m).abs() > LIFTED_M;
+        // one sample that is damaged is no height
+        let away = |index: &usize, from_m: f64| {
+            let around = index.saturating_sub(1)..(index + 2).min(self.stream.len());
+            let mut heights: Vec<f64> = around.map(|index| self.height(index)).collect();
+            (median(&mut heights) - from_m).abs() > LIFTED_M
+        };
         let mut inside = self.between(from_s, to_s);
         let lifted_s = inside.clone().find(|index| away(index, ground_m)).map(time_s)?;
         let rest_m = self.rest(to_s - REST_S, to_s + REST_S);

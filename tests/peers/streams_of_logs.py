@@ -251,6 +251,7 @@ DATAFLASH = {
     "GPS": [("gps_velocity", course)],
     "POS": [("position", lambda row: COUNTED)],
     "BARO": [("barometric_height", picks("Alt"))],
+    "CTUN": [("barometric_height", picks("BAlt"))],
     "RCOU": [("actuator_command", outputs)],
     "BAT": [("battery_voltage", picks("Volt")), ("battery_current", picks("Curr"))],
     "RATE": [

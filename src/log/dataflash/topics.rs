@@ -276,7 +276,7 @@ pub(super) const TOPICS: &[&[Topic]] = &[
         Topic::new("BAR2", BarometricHeight, HEIGHT, as_is).number(1),
         Topic::new("BAR3", BarometricHeight, HEIGHT, as_is).number(2),
         // where the others are not logged, as before 3.2
-        Topic::new("CTUN", BarometricHeight, CONTROLLED_HEIGHT, as_is).number(3),
+        Topic::new("CTUN", BarometricHeight, CONTROLLED_HEIGHT, as_is),
     ],
     // rate controller and outputs
     &[
