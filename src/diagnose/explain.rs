@@ -14,7 +14,7 @@ use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, fi
 use super::named::{Confusable, Named, NamedParameter, Strength};
 use super::refinement::{fitted_strength, refine};
 use super::search::search;
-use super::signature::Signature;
+use super::signature::{EffectTerm, Signature};
 use super::signatures::ALL;
 use super::slight::{FoundEffect, Slight, named_and_slight};
 use super::tested::{Search, Step, Tested};
@@ -315,5 +315,17 @@ fn strength(step: &Step) -> Strength {
 fn confusable(traces: &[Trace], found: &Search, place: usize, step: &Step) -> Vec<Confusable> {
     let close = |rival: &&Tested| rival.evidence.energy > RIVAL * step.taken.evidence.energy;
     let rivals: Vec<&Tested> = step.rivals.iter().filter(close).collect();
-    confusable_with(traces, &found.after, place, (&found.last, &rivals))
+    let mut all = confusable_with(traces, &found.after, place, (&found.last, &rivals));
+    let terms = &found.after.base.effects;
+    // along the rotor axis it is the same term as that of another effect, which the model has along the others only
+    let whole = terms[place].signature.role.axial_part_of.map(|whole| whole.id());
+    let lacks_axis = |term: &&EffectTerm| {
+        Some(term.id()) == whole && term.signature.role.axial.is_some_and(|slot| !term.free.contains(&slot))
+    };
+    if let Some(whole) =
+        terms.iter().find(lacks_axis).filter(|whole| all.iter().all(|of| of.id != whole.id()))
+    {
+        all.insert(0, Confusable { id: whole.id(), distinguishability: Some(0.0) });
+    }
+    all
 }

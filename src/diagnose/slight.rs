@@ -1,5 +1,6 @@
 //! Separates the effects that get a name from the traces, which are significant but immaterial.
 
+use super::channels::Nuisance;
 use super::fit::Fitted;
 use super::materiality::Materiality;
 use super::named::Named;
@@ -81,6 +82,11 @@ pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) ->
 /// Whether an effect matters by itself. One whose own part is not known (`None`) does.
 fn is_material(fitted: &Fitted, of: &FoundEffect, own: Option<Materiality>) -> bool {
     let term = &fitted.base.effects[of.place];
+    // what it stands for is an error of the sensors that every vehicle has
+    let stands_for_offset = (term.signature.role.stands_for)(term, Nuisance::Tilt(0));
+    if stands_for_offset && !is_beyond_ordinary(fitted, term, of.columns.start) {
+        return false;
+    }
     if term.is_of_sensors() {
         is_beyond_ordinary(fitted, term, of.columns.start) && own.is_none_or(|of| of.shows())
     } else {
