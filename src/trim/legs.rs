@@ -13,9 +13,9 @@ pub const LEG_S: f64 = 2.0;
 pub const LEAST_LEGS: usize = 6;
 /// Components of the balance.
 pub const AXES: usize = 3;
-/// s after lift-off and before touch-down that are left out. At 1 m/s the vehicle is then higher than its own size,
-/// beyond the reach of the ground.
-const NEAR_GROUND_S: f64 = 2.5;
+/// s after lift-off and before touch-down that are left out. Lift-off is 0.3 m above the ground; at 1 m/s the vehicle is then higher
+/// than its own size, beyond the reach of the ground.
+const NEAR_GROUND_S: f64 = 1.0;
 /// Body rate beyond which a leg shows manoeuvres more than balance, rad/s rms. More would hold what inertia takes
 /// instead of what balances.
 const MOST_RATE_RAD_S: f64 = 2.0;
