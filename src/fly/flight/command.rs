@@ -49,6 +49,7 @@ impl Flight {
             return;
         }
         self.known.doubt(now, Doubted::Stall(gap));
+        self.stall = Some((now, gap));
         if gap >= SHORT {
             self.watch.awake = now;
             if self.phase.is_ours() && self.phase.is_airborne() {
@@ -80,6 +81,7 @@ impl Flight {
             self.watch.awake = now;
         }
         tracing::warn!(gap_s = gap.as_secs_f64(), "setpoints stalled");
+        self.stall = Some((now, gap));
         self.known.doubt(now, Doubted::Stall(gap));
         self.end(now, Cause::Stalled(stall(gap)));
     }
