@@ -123,7 +123,7 @@ impl Case {
             rotors.iter().map(|rotor| (rotor.position_m - body.center_of_mass_m).into()).collect();
         let signs: Vec<f64> = rotors.iter().map(|rotor| rotor.spin.yaw_sign()).collect();
         let given = json!({
-            "format": peer.format, "text": exported["text"], "period_s": PERIOD_S, "reference": wanted,
+            "format": peer.format, "text": exported["text"], "callback": exported["callback"], "period_s": PERIOD_S, "reference": wanted,
             "thrust_coefficient": propulsion.thrust_coefficient, "noise": [0.02, 0.02], "seed": 5,
             "believed": {
                 "mass": body.mass_kg, "gravity": self.vehicle.gravity_m_s2, "inertia": body.inertia_kg_m2.as_slice(),
@@ -261,6 +261,34 @@ fn comes_back(peer: &Peer) {
     for (name, truth) in ["dx", "dy", "dz"].iter().zip(DRAG) {
         check(of_drag.iter().find(|one| one["name"] == *name).unwrap(), name, truth, 0.05);
     }
+}
+
+/// What `MuJoCo`'s file cannot hold is in the callback beside it: with both it moves as the model does.
+#[test]
+fn mujoco_with_the_callback_flies_as_the_model() {
+    let peer = Peer {
+        name: "mujoco-callback",
+        format: "mjcf",
+        needed: Needed::Mujoco,
+        with_speed: 0.0,
+        effects: &[
+            ("quadratic_drag", &[("cx", 0.05), ("cy", 0.08), ("cz", 0.1), ("by_face", 0.4)]),
+            ("steady_wind", &[("north", 1.5), ("west", -1.0), ("up", 0.2)]),
+            ("thrust_tilt", &[("x", 0.01), ("y", -0.02)]),
+            ("translational_lift", &[("kh", 0.03)]),
+            ("blade_flapping", &[("k", 0.004)]),
+            ("ground_effect", &[("rho", 3.0), ("ca", 0.1), ("cb", 1.0), ("levelling", 0.6)]),
+        ],
+        apart: (1e-5, 1e-5),
+    };
+    let case = Case::new(&peer);
+    let rows = match case.fly(&peer) {
+        Ok(rows) => rows,
+        Err(why) => return support::skip(peer.needed, &why),
+    };
+    let (away_m, turned_rad) = apart(&case, &rows);
+    println!("{}: after 2 s at most {away_m:.2e} m and {turned_rad:.2e} rad apart", peer.name);
+    assert!(away_m < peer.apart.0 && turned_rad < peer.apart.1, "{away_m} m, {turned_rad} rad");
 }
 
 #[test]

@@ -18,6 +18,7 @@ mod request;
 mod result;
 mod run;
 mod validation_data;
+mod worth;
 
 pub use along_flights::AlongFlights;
 pub use evidence::{Tried, TriedAs};
@@ -32,5 +33,6 @@ pub(super) use result::BY_CONTROL;
 pub use result::{AxisFit, BodyParameter, Estimate, ExplainStudy, Given};
 pub use run::explain;
 pub use validation_data::ValidationData;
+pub use worth::Worth;
 
 pub(super) use request::check_transient;
