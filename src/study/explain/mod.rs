@@ -19,6 +19,7 @@ mod result;
 mod run;
 mod validation_data;
 mod worth;
+mod worth_measured;
 
 pub use along_flights::AlongFlights;
 pub use evidence::{Tried, TriedAs};
