@@ -64,8 +64,9 @@ impl From<ExportFormat> for Target {
 
 /// The program's file beside that of the model: `model.xml` has `model_effects.py`.
 fn callback_of(path: &Path) -> PathBuf {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    path.with_file_name(format!("{stem}_effects.py"))
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push("_effects.py");
+    path.with_file_name(name)
 }
 
 /// Runs the verb.
