@@ -117,7 +117,7 @@ fn after_the_landing_the_view_shows_the_analysis_and_then_the_answer() {
         "not yet: the flight is analysed",
         "4 periods",
         "reading the logs, 0 s",
-        "designing the next flight  ██████░",
+        "designing the next flight ██████░",
         "3 of 12, 9 s left",
         "no velocity is recorded",
         "Ctrl-C ends the analysis",

@@ -59,6 +59,8 @@ struct Peer {
     with_speed: f64,
     /// with values, beside the drag
     effects: &'static [(&'static str, &'static [(&'static str, f64)])],
+    /// of its flight
+    periods: u32,
     /// greatest distance after [`WINDOW`] periods from one state, m and rad
     apart: (f64, f64),
 }
@@ -110,7 +112,7 @@ impl Case {
         let (body, propulsion) = (&self.vehicle.body, &self.vehicle.propulsion);
         let trajectory = RandomTrajectory::default().draw(7).unwrap();
         let reference = Reference { trajectory, hover_s: 2.0, ramp_s: 2.0 };
-        let wanted: Vec<Vec<f64>> = (0..PERIODS)
+        let wanted: Vec<Vec<f64>> = (0..peer.periods)
             .map(|period| {
                 let at = reference.at(f64::from(period) * PERIOD_S);
                 let vectors = [at.position_m, at.velocity_m_s, at.acceleration_m_s2];
@@ -279,6 +281,7 @@ fn mujoco_with_the_callback_flies_as_the_model() {
             ("blade_flapping", &[("k", 0.004)]),
             ("ground_effect", &[("rho", 3.0), ("ca", 0.1), ("cb", 1.0), ("levelling", 0.6)]),
         ],
+        periods: 5 * u32::try_from(WINDOW).unwrap(),
         apart: (1e-5, 1e-5),
     };
     let case = Case::new(&peer);
@@ -299,6 +302,7 @@ fn rotorpy_flies_as_the_model_and_gives_it_back() {
         needed: Needed::Peers,
         with_speed: 1.0,
         effects: &[("motor_lag", &[("time_constant", 0.03)])],
+        periods: PERIODS,
         apart: (1e-5, 1e-5),
     });
 }
@@ -311,6 +315,7 @@ fn mujoco_flies_as_the_model_and_gives_it_back() {
         needed: Needed::Mujoco,
         with_speed: 0.0,
         effects: &[("angular_damping", &[("bx", 0.02), ("by", 0.02), ("bz", 0.02)])],
+        periods: PERIODS,
         apart: (1e-5, 1e-5),
     });
 }
@@ -324,6 +329,7 @@ fn mujoco_gives_a_model_back_that_it_holds_about_hover_only() {
         needed: Needed::Mujoco,
         with_speed: 1.0,
         effects: &[("motor_lag", &[("time_constant", 0.03)])],
+        periods: PERIODS,
         apart: (0.15, 0.1),
     });
 }

@@ -8,7 +8,7 @@ use crate::fly::health::BatteryLevel;
 use crate::fly::safety::Lead;
 
 /// A stall is shown for so long.
-const LATELY: Duration = Duration::from_secs(5);
+pub(super) const STALL_SHOWN: Duration = Duration::from_secs(5);
 
 /// Status for a display.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,7 +77,7 @@ impl Flight {
             link_age_s: telemetry.map(|telemetry| now.saturating_sub(telemetry.heard).as_secs_f64()),
             stall_s: self
                 .stall
-                .filter(|(ended, _)| now.saturating_sub(*ended) < LATELY)
+                .filter(|(ended, _)| now.saturating_sub(*ended) < STALL_SHOWN)
                 .map(|(_, gap)| gap.as_secs_f64()),
             battery_is_low: self.battery_level() > BatteryLevel::Good,
             battery_percent: telemetry.and_then(|telemetry| telemetry.battery?.value.1),
