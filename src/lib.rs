@@ -102,7 +102,7 @@
 //!
 //! // export: the same model for another simulator
 //! let effects = [ActiveEffect::new(&LinearDrag, &[drag.value("dx"), drag.value("dy"), 0.0])?];
-//! let gazebo = export(&found.vehicle, &effects, Format::Sdf)?;
+//! let gazebo = export(&found.vehicle, &effects, None, Format::Sdf)?;
 //! assert!(gazebo.text.contains("<sdf"));
 //! # Ok(())
 //! # }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use mavid::fly;
 use mavid::report::{IdentificationDocument, explanation_answer, identification_text};
-use mavid::study::{AfterFlight, ExplainStudy, FlightLogs, IdentifyStudy, after_flight};
+use mavid::study::{AfterFlight, ExplainStudy, FlightLogs, IdentifyStudy, Progress, after_flight};
 use mavid::text;
 use mavid::wire::SystemId;
 
@@ -40,12 +40,12 @@ pub struct Analysis {
 
 impl Analysis {
     /// Of the flight in this folder; none of one that did not land. Results of an earlier flight go: beside this
-    /// one's recording they would pass for its own. Lines for the user are given to `tell`.
+    /// one's recording they would pass for its own. Lines for the user are given to `tell`, and how far the work is to `watches`.
     pub fn of(
         (folder, landed, onboard): (&Path, bool, Option<&Path>),
         vehicle: &Path,
         system: Option<SystemId>,
-        tell: &mut impl FnMut(Word),
+        (watches, tell): (&dyn Progress, &mut impl FnMut(Word)),
     ) -> Result<Option<Self>, CommandError> {
         let parameters =
             [MODEL, REPORT, CHART, PAGE, DOCUMENT].map(|name| folder.join(RIGID_BODY).join(name));
@@ -54,16 +54,16 @@ impl Analysis {
         for path in parameters.iter().chain(&explanation).filter(|path| !output::is_same(path, vehicle)) {
             output::outdated(path)?.map(Word::Message).into_iter().for_each(&mut *tell);
         }
-        Ok(landed.then(|| Self::made((folder, onboard), vehicle, system, tell)))
+        Ok(landed.then(|| Self::made((folder, onboard), vehicle, system, (watches, tell))))
     }
 
     fn made(
         (folder, onboard): (&Path, Option<&Path>),
         vehicle: &Path,
         system: Option<SystemId>,
-        tell: &mut impl FnMut(Word),
+        (watches, tell): (&dyn Progress, &mut impl FnMut(Word)),
     ) -> Self {
-        let notes = Notes::default();
+        let notes = Notes::new(watches);
         let radio = folder.join(fly::TLOG);
         let FlightLogs { logs, why } = FlightLogs::of(&radio, system, onboard);
         why.into_iter().for_each(|why| tell(Word::Message(why)));
@@ -101,6 +101,14 @@ impl Analysis {
         parts.extend(self.explained.iter().map(explanation_answer));
         parts.extend(self.report().map(|path| format!("report: {}", text::path(&path))));
         parts.join("\n\n")
+    }
+
+    /// The answer alone, or why there is none.
+    pub fn answer(&self) -> String {
+        match &self.explained {
+            Ok(study) => explanation_answer(study),
+            Err(why) => format!("not explained: {why}"),
+        }
     }
 
     /// What is to be known about the data, line by line.
@@ -171,6 +179,7 @@ impl Written<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mavid::study::Silent;
     use std::fs;
 
     /// Nothing can be written where a folder stands: as little as on a full disk.
@@ -184,7 +193,8 @@ mod tests {
         fs::copy(fixtures.join("p04_identify_10_22s.tlog"), folder.join(fly::TLOG)).unwrap();
         let vehicle = fixtures.join("p04_vehicle.toml");
         let mut told = Vec::new();
-        let analysis = Analysis::of((&folder, true, None), &vehicle, None, &mut |line| told.push(line));
+        let analysis =
+            Analysis::of((&folder, true, None), &vehicle, None, (&Silent, &mut |line| told.push(line)));
         let analysis = analysis.unwrap().unwrap();
         let [parameters, explanation] = analysis.unwritten.clone().map(Option::unwrap);
         assert_eq!(told, [&parameters, &explanation].map(|why| Word::Error(why.clone())));

@@ -6,7 +6,9 @@ use mavid::config::trajectory_to_toml;
 use mavid::report::{
     ExplanationDocument, explained_model, explanation_html, explanation_markdown, explanation_text,
 };
-use mavid::study::{ExplainRequest, ExplainStudy, InputFile, draft_text, explain, stored_trajectory};
+use mavid::study::{
+    ExplainRequest, ExplainStudy, InputFile, Progress, draft_text, explain, stored_trajectory,
+};
 use mavid::text;
 
 use super::progress::Spinner;
@@ -26,7 +28,7 @@ pub const WRITTEN: [&str; 3] = [MODEL, REPORT, DOCUMENT];
 
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Outcome, CommandError> {
-    let study = make(stderr, args)?;
+    let study = make(&Spinner::new(stderr), args)?;
     if json {
         output::json(&ExplanationDocument::new(&study))?;
     } else if args.format == PageFormat::Md {
@@ -38,8 +40,8 @@ pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Out
     Ok(outcome(&study))
 }
 
-/// Explains, and writes what is asked for.
-pub fn make(stderr: &StandardError, args: &ExplainArgs) -> Result<ExplainStudy, CommandError> {
+/// Explains, and writes what is asked for. How far it is is told to `progress`.
+pub fn make(progress: &dyn Progress, args: &ExplainArgs) -> Result<ExplainStudy, CommandError> {
     let request = ExplainRequest {
         logs: args.logs.clone(),
         vehicle: args.given.given(),
@@ -51,7 +53,7 @@ pub fn make(stderr: &StandardError, args: &ExplainArgs) -> Result<ExplainStudy, 
     };
     request.check()?;
     check_targets(args)?;
-    let study = explain(&request, &Spinner::new(stderr))?;
+    let study = explain(&request, progress)?;
     if let Some(path) = &args.next {
         write_next(&study, path)?;
     }

@@ -1,6 +1,6 @@
 //! `mavid export MODEL --to FORMAT`: the model for another simulator.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use mavid::autopilot::Autopilot;
 use mavid::config::effects_of;
@@ -17,6 +17,9 @@ struct Document {
     schema: u32,
     file: Option<String>,
     text: String,
+    /// a program in Python that does what the file cannot hold
+    #[serde(skip_serializing_if = "Option::is_none")]
+    callback: Option<String>,
     /// of the aircraft's autopilot; none for a simulator
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parameters: Vec<ParameterLine>,
@@ -59,14 +62,30 @@ impl From<ExportFormat> for Target {
     }
 }
 
+/// The program's file beside that of the model: `model.xml` has `model_effects.py`.
+fn callback_of(path: &Path) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push("_effects.py");
+    path.with_file_name(name)
+}
+
 /// Runs the verb.
 pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
-    let Made { text, left_out, parameters, origin, warnings } = make(args)?;
+    let Made { text, left_out, callback, parameters, origin, warnings } = make(args)?;
     output::warnings(&origin, &warnings);
     left_out.iter().for_each(|note| output::message(&format!("note: {note}")));
+    match (&args.out, &callback) {
+        (Some(path), Some(_)) => {
+            output::message(&format!("wrote {}, which makes the effects", text::path(&callback_of(path))));
+        }
+        (None, Some(_)) if !json => {
+            output::message("--out FILE writes the program that makes the effects beside the file");
+        }
+        _ => {}
+    }
     if json {
         let file = args.out.as_ref().map(|path| text::path(&path));
-        output::json(&Document { schema: 1, file, text, parameters, left_out })?;
+        output::json(&Document { schema: 1, file, text, callback, parameters, left_out })?;
     } else if args.out.is_none() {
         output::text(text.trim_end())?;
     }
@@ -79,6 +98,8 @@ pub struct Made {
     text: String,
     /// what of the model is not in it
     left_out: Vec<String>,
+    /// a program that does what the file cannot hold
+    callback: Option<String>,
     /// of the aircraft's autopilot; none for a simulator
     parameters: Vec<ParameterLine>,
     /// what messages call the model
@@ -93,23 +114,26 @@ pub fn make(args: &ExportArgs) -> Result<Made, CommandError> {
     let refuse =
         |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&origin)));
     let active = effects_of(&loaded.model.effects, &text::path(&origin), &loaded.vehicle)?;
-    let (text, left_out, parameters) = match Target::from(args.to) {
+    let identified = loaded.model.identified.as_ref();
+    let (text, left_out, parameters, callback) = match Target::from(args.to) {
         Target::Simulator(format) => {
-            let Exported { text, left_out } =
-                export(&loaded.vehicle, &active, format).map_err(|error| refuse(&error))?;
-            (text, left_out, Vec::new())
+            let Exported { text, left_out, callback } =
+                export(&loaded.vehicle, &active, identified, format).map_err(|error| refuse(&error))?;
+            (text, left_out, Vec::new(), callback)
         }
         Target::Aircraft(autopilot) => {
-            let identified = loaded.model.identified.as_ref();
             let AircraftParameters { parameters, left_out, text } =
                 aircraft_parameters(&loaded.vehicle, &active, identified, autopilot)
                     .map_err(|error| refuse(&error))?;
-            (text, left_out, parameters.into_iter().map(ParameterLine::from).collect())
+            (text, left_out, parameters.into_iter().map(ParameterLine::from).collect(), None)
         }
     };
     if let Some(path) = &args.out {
         output::file(path, &text)?;
+        if let Some(callback) = &callback {
+            output::file(&callback_of(path), callback)?;
+        }
     }
     let warnings = loaded.warnings;
-    Ok(Made { text, left_out, parameters, origin, warnings })
+    Ok(Made { text, left_out, callback, parameters, origin, warnings })
 }

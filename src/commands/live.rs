@@ -10,6 +10,9 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use ratatui::crossterm::cursor::Show;
+use ratatui::crossterm::execute;
+use ratatui::crossterm::terminal::{self, LeaveAlternateScreen};
 use tokio::sync::watch;
 
 use super::last_word::{PATIENCE, last_word, within};
@@ -146,8 +149,20 @@ pub fn run(
                 GRACE.as_secs()
             ),
         };
-        last_word(move || output::error(&text));
+        last_word(move || {
+            leave_view();
+            output::error(&text);
+        });
         return Err(CommandError::Reported(FAILED));
+    }
+}
+
+/// A view that is shown gives the terminal back as it was.
+fn leave_view() {
+    if terminal::is_raw_mode_enabled().unwrap_or(false) {
+        let raw = terminal::disable_raw_mode();
+        let screen = execute!(std::io::stderr(), LeaveAlternateScreen, Show);
+        drop(raw.and(screen));
     }
 }
 

@@ -120,21 +120,39 @@ impl Drop for Steps<'_> {
     }
 }
 
-/// Notes alone, for later: the terminal may take nothing, and the work does not wait for it.
-#[derive(Debug, Default)]
-pub struct Notes(Mutex<Vec<Word>>);
+/// Keeps notes for later: the terminal may take nothing, and the work does not wait for it. How far the work is goes to whoever
+/// watches.
+pub struct Notes<'a> {
+    words: Mutex<Vec<Word>>,
+    watches: &'a dyn Progress,
+}
 
-impl Notes {
+impl<'a> Notes<'a> {
+    /// With no note yet.
+    pub fn new(watches: &'a dyn Progress) -> Self {
+        Self { words: Mutex::default(), watches }
+    }
+
     /// What there is to say.
     pub fn words(self) -> Vec<Word> {
-        self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
+        self.words.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Progress for Notes {
-    fn stage(&self, _: Stage) {}
+impl Progress for Notes<'_> {
+    fn stage(&self, stage: Stage) {
+        self.watches.stage(stage);
+    }
+
+    fn steps(&self, count: u64) {
+        self.watches.steps(count);
+    }
+
+    fn step(&self) {
+        self.watches.step();
+    }
 
     fn note(&self, note: &Note) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(note.into());
+        self.words.lock().unwrap_or_else(PoisonError::into_inner).push(note.into());
     }
 }

@@ -5,6 +5,7 @@ use super::source::{Exported, Source};
 use super::{ardupilot, mjcf, px4, rotorpy, sdf};
 use crate::physics::ActiveEffect;
 use crate::vehicle::Vehicle;
+use toml::Table;
 
 /// A simulator's file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,12 +22,18 @@ pub enum Format {
     Rotorpy,
 }
 
-/// The model in a simulator's form.
+/// The model in a simulator's form; `identified` is the table of that name in its file, and says what it costs to leave an effect
+/// out.
 ///
 /// # Errors
 /// [`ExportError`] where the simulator cannot take such a vehicle.
-pub fn export(vehicle: &Vehicle, effects: &[ActiveEffect], format: Format) -> Result<Exported, ExportError> {
-    let source = Source::new(vehicle, effects)?;
+pub fn export(
+    vehicle: &Vehicle,
+    effects: &[ActiveEffect],
+    identified: Option<&Table>,
+    format: Format,
+) -> Result<Exported, ExportError> {
+    let source = Source::new(vehicle, effects, identified)?;
     match format {
         Format::Px4Sih => px4::write(source),
         Format::ArdupilotSitl => ardupilot::write(source),

@@ -6,8 +6,9 @@
 //!
 //! An actuator at a site measures the velocity of that site along its gear, so that one with no gain and the bias
 //! `0 0 -d` is a drag in body axes. A drag at all hubs is one at their mean, and a damping of the rotation by how far
-//! they are from it.
+//! they are from it. What no actuator makes is a callback's ([`super::callback`]).
 
+use super::callback::{HeldDrag, callback};
 use super::drag::{RotorDrag, damping, mean};
 use super::error::ExportError;
 use super::notes::xml_comments;
@@ -25,6 +26,11 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     thrusts(&mut source, &mut sites, &mut actuators);
     let resistance = Resistance::of(&mut source);
     resistance.write(&mut sites, &mut actuators);
+    let factors = source.rotor_factors();
+    let drag = HeldDrag { force: resistance.drag, place_m: resistance.place_m };
+    if let Some(callback) = callback(&mut source, &drag, &factors) {
+        source.call_back(callback);
+    }
     let body = &source.vehicle.body;
     let j = &body.inertia_kg_m2;
     let inertial = format!(
@@ -100,7 +106,7 @@ impl Resistance {
         let own = Vector3::from(["bx", "by", "bz"].map(|axis| source.take("angular_damping", axis)));
         drag.tell_no_growth(source);
         if drag.force.norm() > 0.0 && source.has("steady_wind") {
-            source.note("MuJoCo's wind does not reach this drag, which an actuator makes");
+            source.note("MuJoCo's wind does not reach this drag, which an actuator makes: the callback adds its share");
         }
         // the share of the whole that acts at the hubs
         let share = if drag.force.norm() > 0.0 { drag.at_hubs.norm() / drag.force.norm() } else { 1.0 };

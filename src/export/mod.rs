@@ -7,6 +7,8 @@
 mod aircraft;
 mod ardupilot;
 mod axes;
+mod callback;
+mod cost;
 mod drag;
 mod error;
 mod format;

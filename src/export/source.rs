@@ -1,26 +1,50 @@
 //! The model as the writers read it, and the file that they make of it.
 
+use super::cost::Costs;
 use super::error::ExportError;
-use crate::physics::{ActiveEffect, Airframe};
+use crate::physics::{ActiveEffect, Airframe, Parameter};
 use crate::vehicle::{ThrustLaw, Vehicle};
 use nalgebra::Vector3;
+use toml::Table;
 
 /// Lag that is nearly none, s, for formats that need one.
 pub(super) const FAST_S: f64 = 0.001;
+/// The parameter that says which rotor, by its index in the vehicle's file.
+const ROTOR: &str = "rotor";
 
 /// The model as the writers read it; what they do not take is told at the end.
 pub(super) struct Source<'a> {
     pub(super) vehicle: &'a Vehicle,
     pub(super) airframe: Airframe,
     effects: &'a [ActiveEffect],
+    costs: Costs<'a>,
     taken: Vec<&'static str>,
     left_out: Vec<String>,
+    callback: Option<Callback>,
 }
 
 impl<'a> Source<'a> {
-    pub(super) fn new(vehicle: &'a Vehicle, effects: &'a [ActiveEffect]) -> Result<Self, ExportError> {
+    pub(super) fn new(
+        vehicle: &'a Vehicle,
+        effects: &'a [ActiveEffect],
+        identified: Option<&'a Table>,
+    ) -> Result<Self, ExportError> {
         let airframe = Airframe::new(vehicle)?;
-        Ok(Self { vehicle, airframe, effects, taken: Vec::new(), left_out: Vec::new() })
+        let costs = Costs::of(identified);
+        Ok(Self {
+            vehicle,
+            airframe,
+            effects,
+            costs,
+            taken: Vec::new(),
+            left_out: Vec::new(),
+            callback: None,
+        })
+    }
+
+    /// Gives effects that the file cannot hold to a program beside it.
+    pub(super) fn call_back(&mut self, callback: Callback) {
+        self.callback = Some(callback);
     }
 
     /// An effect's parameter, 0 where the model does not have the effect; it counts as carried over.
@@ -134,23 +158,47 @@ impl<'a> Source<'a> {
         Ok((self.airframe.hover_thrust_n / coefficient).sqrt())
     }
 
-    /// Done: what was not taken is told.
+    /// Done: what was not taken is told, with what it costs.
     pub(super) fn finish(mut self, write: impl FnOnce(&[String]) -> String) -> Exported {
         for active in self.effects {
             let id = active.effect().id();
-            if !self.taken.contains(&id) {
-                let values: Vec<String> = active
-                    .effect()
-                    .parameters()
-                    .iter()
-                    .zip(active.parameters())
-                    .map(|(p, value)| format!("{} = {value} {}", p.name, p.unit))
-                    .collect();
-                self.left_out.push(format!("{id} cannot be represented here: {}", values.join(", ")));
+            if self.taken.contains(&id) {
+                continue;
             }
+            let lost = format!("{id} cannot be represented here: {}", self.values(active).join(", "));
+            let instead = match &self.callback {
+                Some(callback) if callback.ids.contains(&id) => callback.whither.to_owned(),
+                _ => self.costs.words(id),
+            };
+            self.left_out.push(format!("{lost}; {instead}"));
         }
-        Exported { text: write(&self.left_out), left_out: self.left_out }
+        let callback = self.callback.map(|callback| callback.text);
+        Exported { text: write(&self.left_out), left_out: self.left_out, callback }
     }
+
+    /// The parameters of an effect in words; a rotor by its place and the autopilot's number.
+    fn values(&self, active: &ActiveEffect) -> Vec<String> {
+        let rotor = |value: f64| {
+            let mut rotors = self.vehicle.rotors.iter().enumerate();
+            rotors.find(|(index, _)| (*index as f64 - value).abs() < 0.5)
+        };
+        let word = |(parameter, value): (&Parameter, &f64)| match (parameter.name, rotor(*value)) {
+            (ROTOR, Some((index, rotor))) => format!("{ROTOR} {}, motor {}", rotor.name, index + 1),
+            (name, _) if parameter.unit == "-" => format!("{name} = {value}"),
+            (name, _) => format!("{name} = {value} {}", parameter.unit),
+        };
+        active.effect().parameters().iter().zip(active.parameters()).map(word).collect()
+    }
+}
+
+/// A program that does in a simulator what its file cannot hold.
+pub(super) struct Callback {
+    /// of the effects
+    pub(super) ids: Vec<&'static str>,
+    /// words for where they are
+    pub(super) whither: &'static str,
+    /// the program
+    pub(super) text: String,
 }
 
 /// A file, and what of the model is not in it.
@@ -160,4 +208,6 @@ pub struct Exported {
     pub text: String,
     /// sentence by sentence; they stand in the file as comments too
     pub left_out: Vec<String>,
+    /// a program in Python that does what the file cannot hold, where there is one
+    pub callback: Option<String>,
 }

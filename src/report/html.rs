@@ -52,17 +52,22 @@ pub(super) fn figure(chart: &Markup, caption: &str) -> Markup {
     html! { figure { (chart) @if !caption.is_empty() { figcaption { (caption) } } } (BREAK) }
 }
 
-/// A table; nothing without rows. A heading that ends in `|` is above numbers.
+/// A table; nothing without rows. A heading that ends in `|` is above numbers. On a narrow screen each value stands after the
+/// words of its column.
 pub(super) fn table(caption: &str, heads: &[&str], rows: &[Vec<Cell>]) -> Markup {
+    let head_of = |column: usize| {
+        let head = heads.get(column).copied().unwrap_or_default();
+        head.strip_suffix('|').unwrap_or(head)
+    };
     html! {
         @if !rows.is_empty() {
             p.cap { (caption) }
-            div.wide tabindex="0" role="region" aria-label=(caption) { table {
+            div.wide.stack tabindex="0" role="region" aria-label=(caption) { table {
                 thead { tr { @for head in heads {
                     @if let Some(head) = head.strip_suffix('|') { th.n { (head) } } @else { th { (head) } }
                 } } }
                 tbody { (BREAK) @for row in rows {
-                    tr { @for cell in row { (cell_markup(cell)) } } (BREAK)
+                    tr { @for (column, cell) in row.iter().enumerate() { (cell_markup(cell, head_of(column))) } } (BREAK)
                 } }
             } }
             (BREAK)
@@ -70,10 +75,10 @@ pub(super) fn table(caption: &str, heads: &[&str], rows: &[Vec<Cell>]) -> Markup
     }
 }
 
-fn cell_markup(cell: &Cell) -> Markup {
+fn cell_markup(cell: &Cell, head: &str) -> Markup {
     match cell {
-        Cell::Text(words) => html! { td { (words) } },
-        Cell::Number(words) => html! { td.n { (words) } },
+        Cell::Text(words) => html! { td data-head=(head) { (words) } },
+        Cell::Number(words) => html! { td.n data-head=(head) { (words) } },
     }
 }
 
@@ -105,7 +110,8 @@ mod tests {
         let content = html! { (table(words, &[words], &[vec![text(words), number(words)]])) (note(words)) };
         let file = page(words, words, &[words.to_owned()], &section(words, &content));
         assert!(!file.contains("<b>") && !file.contains('\u{1b}'), "{file}");
-        assert_eq!(file.matches("&lt;b&gt;\\u{1b}[31m&amp;").count(), 11, "{file}");
+        // the title twice, the answer, a tag, the heading, the caption twice, the head, its cell, both cells, the note
+        assert_eq!(file.matches("&lt;b&gt;\\u{1b}[31m&amp;").count(), 12, "{file}");
         assert!(file.starts_with("<!DOCTYPE html>\n<html lang=\"en\">") && file.ends_with("</html>\n"));
         assert_eq!(table("c", &["h"], &[]).into_string(), "");
     }

@@ -46,7 +46,8 @@ pub(super) fn vehicle_drawing(
                 @let mark = mark(place);
                 @let colour = mark.as_ref().map_or("currentColor", |mark| mark.colour);
                 @let is_filled = mark.as_ref().is_some_and(|mark| mark.is_filled);
-                line x1=(middle) y1=(middle) x2=(round(x)) y2=(round(y)) stroke="currentColor" stroke-width="5" stroke-opacity="0.35" {}
+                @let (hub_x, hub_y) = edge((middle, middle), (x, y));
+                line x1=(middle) y1=(middle) x2=(round(hub_x)) y2=(round(hub_y)) stroke="currentColor" stroke-width="5" stroke-opacity="0.35" {}
                 circle cx=(round(x)) cy=(round(y)) r=(ROTOR) fill=(if is_filled { colour } else { "none" })
                     fill-opacity="0.35" stroke=(colour) stroke-width=(if mark.is_some() { "4" } else { "2" }) {}
                 text x=(round(x)) y=(round(y - 2.0)) text-anchor="middle" font-weight="bold" { (place + 1) " " (sense(rotor.spin)) }
@@ -60,6 +61,13 @@ pub(super) fn vehicle_drawing(
             text x=(middle) y=(middle - 68.0) text-anchor="middle" { "forward" }
         }
     }
+}
+
+/// Where an arm meets the circle of its rotor: it does not run through the words in it.
+fn edge((from_x, from_y): (f64, f64), (x, y): (f64, f64)) -> (f64, f64) {
+    let (along_x, along_y) = (x - from_x, y - from_y);
+    let share = (1.0 - ROTOR / along_x.hypot(along_y).max(ROTOR)).max(0.0);
+    (from_x + share * along_x, from_y + share * along_y)
 }
 
 fn sense(spin: Spin) -> &'static str {
@@ -81,6 +89,8 @@ mod tests {
         let rotor = |name: &str| Rotor { name: name.to_owned(), position_m: Vector3::x(), spin: Spin::Cw };
         assert_eq!(motor_words(&rotor("rear_left"), 1), "rear left, motor 2");
         assert_eq!(motor_words(&rotor("rotor_2"), 1), "motor 2");
+        assert_eq!(edge((160.0, 160.0), (260.0, 160.0)), (226.0, 160.0));
+        assert_eq!(edge((160.0, 160.0), (170.0, 160.0)), (160.0, 160.0));
         let mark = |place| {
             (place == 0).then_some(Mark { colour: MEANT, is_filled: true, words: Some("80 %".into()) })
         };

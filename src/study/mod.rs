@@ -39,7 +39,7 @@ pub use error::StudyError;
 pub use explain::{
     AlongFlights, AxisFit, AxisResidual, AxisShare, BodyParameter, Estimate, ExplainRequest, ExplainStudy,
     Field, Figures, FlownPath, Followed, Given, Harmonics, Heat, LeftAlongTime, Located, Predicted,
-    QUANTITIES, RecordedAndSimulated, Refuted, StateShare, Tried, TriedAs, ValidationData, explain,
+    QUANTITIES, RecordedAndSimulated, Refuted, StateShare, Tried, TriedAs, ValidationData, Worth, explain,
     for_readers, stored_trajectory,
 };
 pub use flights::{ReadSettings, unread};

@@ -667,8 +667,14 @@ fn a_host_that_stalls_in_the_takeoff_says_so() {
         let mut flying = Flying::of(kind);
         flying.until(60.0, "take off", |flying| flying.phase() == "take off");
         flying.wait(0.5);
+        assert_eq!(flying.flight.status(flying.now).stall_s, None);
         stall(&mut flying, 1000);
+        flying.wait(0.5);
+        // while it matters it is told how long it was
+        let stall_s = flying.flight.status(flying.now).stall_s.unwrap();
+        assert!((0.9..1.2).contains(&stall_s), "{stall_s}");
         let outcome = flying.finish();
+        assert_eq!(flying.flight.status(flying.now).stall_s, None);
         assert!(matches!(outcome.cause, Some(Cause::Stalled(_))), "{kind:?}: {}", flying.story());
         assert!(flying.cause().to_string().contains("stalled for"), "{}", flying.cause());
         assert_eq!(outcome.ending, Ending::Landed);

@@ -1,13 +1,20 @@
 //! The terminal view on a made-up screen.
 
 use mavid::fly::finding::Level;
-use mavid::fly::view::{Attitude, Battery, LinkView, ParameterRow, Phase, Trace, ViewModel, render};
-use ratatui::Terminal;
+use mavid::fly::view::{
+    Attitude, Battery, LandedView, LinkView, ParameterRow, Phase, PlainLog, StageView, Trace, ViewModel,
+    render, render_landed,
+};
 use ratatui::backend::TestBackend;
+use ratatui::{Frame, Terminal};
 
 fn drawn(model: &ViewModel, columns: u16, rows: u16) -> String {
+    screen(columns, rows, |frame| render(frame, model))
+}
+
+fn screen(columns: u16, rows: u16, draw: impl FnOnce(&mut Frame<'_>)) -> String {
     let mut terminal = Terminal::new(TestBackend::new(columns, rows)).unwrap();
-    terminal.draw(|frame| render(frame, model)).unwrap();
+    terminal.draw(draw).unwrap();
     let buffer = terminal.backend().buffer().clone();
     let row = |y: u16| (0..columns).map(|x| buffer[(x, y)].symbol()).collect::<String>();
     (0..rows).map(row).collect::<Vec<_>>().join("\n")
@@ -88,6 +95,62 @@ fn a_tall_screen_has_an_artificial_horizon_the_path_and_the_share_of_the_limit()
     // a small screen keeps what matters more
     let small = drawn(&model, 80, 24);
     assert!(!small.contains("Horizon") && small.contains("h hold"), "{small}");
+}
+
+#[test]
+fn after_the_landing_the_view_shows_the_analysis_and_then_the_answer() {
+    let drawn = |view: &LandedView, columns, rows| screen(columns, rows, |frame| render_landed(frame, view));
+    let stage = |name: &str, elapsed_s, steps| StageView { name: name.into(), elapsed_s, steps };
+    let mut view = LandedView {
+        title: "mavid-run".into(),
+        flown: vec!["landed".into(), "4 periods, 0.016 m rms off the reference".into()],
+        stages: vec![
+            stage("reading the logs", 0.4, None),
+            stage("designing the next flight", 3.0, Some((3, 12))),
+        ],
+        notes: vec!["no velocity is recorded".into()],
+        ..LandedView::default()
+    };
+    let working = drawn(&view, 80, 24);
+    for wanted in [
+        "mavid-run  after the landing",
+        "not yet: the flight is analysed",
+        "4 periods",
+        "reading the logs, 0 s",
+        "designing the next flight ██████░",
+        "3 of 12, 9 s left",
+        "no velocity is recorded",
+        "Ctrl-C ends the analysis",
+    ] {
+        assert!(working.contains(wanted), "no `{wanted}` in\n{working}");
+    }
+    view.answer = Some(
+        "Rotor rear_left is weak: its thrust and torque are 10.1 +- 0.2 % less than the others'.".into(),
+    );
+    view.stays = true;
+    let done = drawn(&view, 80, 24);
+    for wanted in ["Rotor rear_left is weak", "others'.", "Enter goes on"] {
+        assert!(done.contains(wanted), "no `{wanted}` in\n{done}");
+    }
+    assert!(!done.contains("not yet"), "{done}");
+    // the answer is above all else, and is whole on a low terminal too
+    assert!(done.find("rear_left").unwrap() < done.find("4 periods").unwrap());
+    assert!(drawn(&view, 80, 8).contains("others'."));
+    for (columns, rows) in [(1, 1), (10, 3), (300, 100)] {
+        assert_eq!(drawn(&view, columns, rows).lines().count(), usize::from(rows));
+    }
+}
+
+#[test]
+fn a_computer_that_stalls_is_told_before_all_else() {
+    let mut model = model();
+    model.stall_s = Some(0.42);
+    for columns in [80, 120] {
+        let screen = drawn(&model, columns, 24);
+        assert!(screen.starts_with("THIS COMPUTER STALLED 0.4 s  x500, PX4"), "{screen}");
+    }
+    let said = PlainLog::default().lines(&model);
+    assert!(said.iter().any(|line| line.contains("this computer stalled 0.4 s")), "{said:?}");
 }
 
 #[test]

@@ -134,7 +134,7 @@ fn no_output_of_a_command_obeys_others() {
 fn exported_files_hold_a_name_and_nothing_of_it_acts() {
     let vehicle = parse_vehicle(&evil_vehicle(), "evil.toml").unwrap().vehicle;
     for format in [Format::Px4Sih, Format::ArdupilotSitl, Format::Sdf, Format::Mjcf, Format::Rotorpy] {
-        let text = export(&vehicle, &[], format).unwrap().text;
+        let text = export(&vehicle, &[], None, format).unwrap().text;
         assert_harmless(&format!("{format:?}"), text.as_bytes());
         assert!(!text.contains("<script>") || !text.starts_with('<'), "{text}");
         let name = text.lines().find(|line| line.contains("all is well"));

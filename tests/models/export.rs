@@ -29,7 +29,7 @@ fn parameter(text: &str, name: &str) -> f64 {
 fn px4_has_its_frame_and_the_thrust_of_full_command() {
     let vehicle = vehicle();
     let effects = [effect("linear_drag", &[0.3, 0.3, 0.3]), effect("thrust_tilt", &[0.02, 0.0])];
-    let exported = export(&vehicle, &effects, Format::Px4Sih).unwrap();
+    let exported = export(&vehicle, &effects, None, Format::Px4Sih).unwrap();
     let value = |name| parameter(&exported.text, name);
     assert!((value("SIH_MASS") - vehicle.body.mass_kg).abs() < 1e-6);
     // y and z turn about: xy changes sign, yz does not
@@ -68,7 +68,7 @@ fn ardupilots_frame_has_the_models_forces_by_its_own_laws() {
         effect("quadratic_drag", &[0.02, 0.02, 0.02, 1.0]),
         effect("angular_damping", &[0.01, 0.01, 0.01]),
     ];
-    let exported = export(&vehicle, &effects, Format::ArdupilotSitl).unwrap();
+    let exported = export(&vehicle, &effects, None, Format::ArdupilotSitl).unwrap();
     let file = frame(&exported.text);
     let number = |key: &str| file[key].as_f64().unwrap();
     let weight = vehicle.body.mass_kg * vehicle.gravity_m_s2;
@@ -106,7 +106,7 @@ fn ardupilots_frame_has_the_models_forces_by_its_own_laws() {
     assert!((400.0_f64.to_radians() / number("refRotRate") / rates.mean() - 1.0).abs() < 1e-9);
     assert!(exported.left_out.iter().any(|note| note.contains("products of inertia")));
     assert!(exported.left_out.iter().any(|note| note.contains("1150 us")), "{:?}", exported.left_out);
-    let plain = export(&vehicle, &[], Format::ArdupilotSitl).unwrap();
+    let plain = export(&vehicle, &[], None, Format::ArdupilotSitl).unwrap();
     let plain = frame(&plain.text);
     for key in ["refRotRate", "mdrag_coef", "refAngle"] {
         assert!(plain[key].as_f64().unwrap().abs() < 1e-9, "{key}: {}", plain[key]);
@@ -151,7 +151,7 @@ fn gazebo_and_mujoco_are_well_formed_and_hold_the_values() {
         effect("com_offset", &[0.01, -0.02, 0.0]),
         effect("angular_damping", &[0.01, 0.01, 0.01]),
     ];
-    let sdf = export(&vehicle, &effects, Format::Sdf).unwrap();
+    let sdf = export(&vehicle, &effects, None, Format::Sdf).unwrap();
     well_formed(&sdf.text);
     let coefficient = vehicle.propulsion.thrust_coefficient.unwrap();
     let hover = (vehicle.body.mass_kg * vehicle.gravity_m_s2 / 4.0 / coefficient).sqrt();
@@ -165,7 +165,7 @@ fn gazebo_and_mujoco_are_well_formed_and_hold_the_values() {
     let moment: f64 = between(&sdf.text, "<ixx>", "<").parse().unwrap();
     let hubs = 4.0 * 1e-3 * (0.174_f64.powi(2) + 0.06_f64.powi(2));
     assert!((moment + hubs - vehicle.body.inertia_kg_m2[(0, 0)]).abs() < 1e-5, "{moment}");
-    let mjcf = export(&vehicle, &effects, Format::Mjcf).unwrap();
+    let mjcf = export(&vehicle, &effects, None, Format::Mjcf).unwrap();
     well_formed(&mjcf.text);
     assert!(mjcf.text.contains("dyntype=\"filterexact\" dynprm=\"0.03\""));
     let inertia: Vec<f64> =
@@ -185,16 +185,16 @@ fn a_weak_rotor_is_weak_in_gazebo_and_mujoco_and_left_out_elsewhere() {
     let vehicle = vehicle();
     let effects = [effect("weak_rotor", &[2.0, 0.9])];
     let coefficient = vehicle.propulsion.thrust_coefficient.unwrap();
-    let sdf = export(&vehicle, &effects, Format::Sdf).unwrap();
+    let sdf = export(&vehicle, &effects, None, Format::Sdf).unwrap();
     let constants: Vec<f64> = sdf
         .text
         .split("<motorConstant>")
         .skip(1)
         .map(|rest| rest.split('<').next().unwrap().parse::<f64>().unwrap() / coefficient)
         .collect();
-    let mjcf = export(&vehicle, &effects, Format::Mjcf).unwrap();
+    let mjcf = export(&vehicle, &effects, None, Format::Mjcf).unwrap();
     assert!(mjcf.text.contains("is its control times the force of its gear"), "{}", mjcf.text);
-    assert!(!export(&vehicle, &[], Format::Mjcf).unwrap().text.contains("weak rotor"));
+    assert!(!export(&vehicle, &[], None, Format::Mjcf).unwrap().text.contains("weak rotor"));
     let gears: Vec<f64> = mjcf
         .text
         .split("gear=\"0 0 ")
@@ -207,9 +207,18 @@ fn a_weak_rotor_is_weak_in_gazebo_and_mujoco_and_left_out_elsewhere() {
             assert!((factor - wanted).abs() < 1e-9, "{factors:?}");
         }
     }
+    let identified = toml::from_str(
+        "[prediction]\nwindow_s = [0.1, 0.5]\nattitude_rad = [0.001, 0.008]\n\
+         [prediction.without.weak_rotor]\nattitude_rad = [0.014, 0.33]\n",
+    )
+    .unwrap();
     for format in [Format::Px4Sih, Format::ArdupilotSitl, Format::Rotorpy] {
-        let left_out = export(&vehicle, &effects, format).unwrap().left_out;
-        assert!(left_out.iter().any(|note| note.starts_with("weak_rotor")), "{format:?}: {left_out:?}");
+        let left_out = export(&vehicle, &effects, Some(&identified), format).unwrap().left_out;
+        // the motor by the autopilot's number, and what it costs by the model's own figures
+        let expected = "weak_rotor cannot be represented here: rotor front_left, motor 3, factor = 0.9; without it the \
+                        prediction error of the attitude grows from 0.0010 to 0.014 rad over 0.1 s, from 0.0080 to 0.33 rad \
+                        over 0.5 s";
+        assert!(left_out.iter().any(|note| note == expected), "{format:?}: {left_out:?}");
     }
 }
 
@@ -218,7 +227,7 @@ fn rotorpy_gets_back_what_it_is_made_of() {
     let mut vehicle = vehicle();
     vehicle.propulsion.time_constant_down_s = None;
     let effects = [effect("linear_drag", &[0.3, 0.3, 0.2]), effect("inflow", &[0.1])];
-    let exported = export(&vehicle, &effects, Format::Rotorpy).unwrap();
+    let exported = export(&vehicle, &effects, None, Format::Rotorpy).unwrap();
     let value = |key: &str| -> f64 { between(&exported.text, &format!("'{key}': "), ",").parse().unwrap() };
     let hover = (vehicle.body.mass_kg * vehicle.gravity_m_s2 / 4.0 / value("k_eta")).sqrt();
     assert!((value("k_d") * 4.0 * hover - 0.3).abs() < 1e-9);
@@ -231,12 +240,30 @@ fn rotorpy_gets_back_what_it_is_made_of() {
 fn what_a_simulator_cannot_be_is_said() {
     let mut vehicle = vehicle();
     vehicle.rotors.pop();
-    let error = export(&vehicle, &[], Format::Px4Sih).unwrap_err();
+    let error = export(&vehicle, &[], None, Format::Px4Sih).unwrap_err();
     assert!(error.to_string().contains("3 rotors"), "{error}");
     vehicle.propulsion.thrust_coefficient = None;
     vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 10.0, expo: 0.5 };
-    let error = export(&vehicle, &[], Format::Rotorpy).unwrap_err();
+    let error = export(&vehicle, &[], None, Format::Rotorpy).unwrap_err();
     assert!(error.to_string().contains("thrust_coefficient"), "{error}");
+}
+
+#[test]
+fn what_mujocos_file_cannot_hold_is_in_its_callback_where_that_can_make_it() {
+    let vehicle = vehicle();
+    let effects = [effect("quadratic_drag", &[0.05, 0.06, 0.07]), effect("slung_load", &[0.2, 1.0])];
+    let exported = export(&vehicle, &effects, None, Format::Mjcf).unwrap();
+    let callback = exported.callback.unwrap();
+    for wanted in ["QUADRATIC = np.array([0.05, 0.06, 0.07])", "mujoco.set_mjcb_passive(passive)"] {
+        assert!(callback.contains(wanted), "{callback}");
+    }
+    let told = |id: &str, words: &str| {
+        exported.left_out.iter().any(|note| note.starts_with(&format!("{id} cannot")) && note.contains(words))
+    };
+    assert!(told("quadratic_drag", "the callback in Python"), "{:?}", exported.left_out);
+    assert!(told("slung_load", "mavid explain` writes it"), "{:?}", exported.left_out);
+    assert_eq!(export(&vehicle, &effects[1..], None, Format::Mjcf).unwrap().callback, None);
+    assert_eq!(export(&vehicle, &effects, None, Format::Sdf).unwrap().callback, None);
 }
 
 /// What the table says of each effect and simulator is what the exporters do.
@@ -251,7 +278,7 @@ fn the_table_says_of_every_effect_which_simulators_can_hold_it() {
         let values: Vec<f64> = effect.parameters().iter().map(|p| near(p.bounds.at(&size))).collect();
         let active = [ActiveEffect::new(*effect, &values).unwrap()];
         for format in [Format::Px4Sih, Format::ArdupilotSitl, Format::Sdf, Format::Mjcf, Format::Rotorpy] {
-            let exported = export(&vehicle(), &active, format).unwrap();
+            let exported = export(&vehicle(), &active, None, format).unwrap();
             let has_place = !exported
                 .left_out
                 .iter()

@@ -59,6 +59,8 @@ struct Peer {
     with_speed: f64,
     /// with values, beside the drag
     effects: &'static [(&'static str, &'static [(&'static str, f64)])],
+    /// of its flight
+    periods: u32,
     /// greatest distance after [`WINDOW`] periods from one state, m and rad
     apart: (f64, f64),
 }
@@ -110,7 +112,7 @@ impl Case {
         let (body, propulsion) = (&self.vehicle.body, &self.vehicle.propulsion);
         let trajectory = RandomTrajectory::default().draw(7).unwrap();
         let reference = Reference { trajectory, hover_s: 2.0, ramp_s: 2.0 };
-        let wanted: Vec<Vec<f64>> = (0..PERIODS)
+        let wanted: Vec<Vec<f64>> = (0..peer.periods)
             .map(|period| {
                 let at = reference.at(f64::from(period) * PERIOD_S);
                 let vectors = [at.position_m, at.velocity_m_s, at.acceleration_m_s2];
@@ -123,7 +125,7 @@ impl Case {
             rotors.iter().map(|rotor| (rotor.position_m - body.center_of_mass_m).into()).collect();
         let signs: Vec<f64> = rotors.iter().map(|rotor| rotor.spin.yaw_sign()).collect();
         let given = json!({
-            "format": peer.format, "text": exported["text"], "period_s": PERIOD_S, "reference": wanted,
+            "format": peer.format, "text": exported["text"], "callback": exported["callback"], "period_s": PERIOD_S, "reference": wanted,
             "thrust_coefficient": propulsion.thrust_coefficient, "noise": [0.02, 0.02], "seed": 5,
             "believed": {
                 "mass": body.mass_kg, "gravity": self.vehicle.gravity_m_s2, "inertia": body.inertia_kg_m2.as_slice(),
@@ -263,6 +265,35 @@ fn comes_back(peer: &Peer) {
     }
 }
 
+/// What `MuJoCo`'s file cannot hold is in the callback beside it: with both it moves as the model does.
+#[test]
+fn mujoco_with_the_callback_flies_as_the_model() {
+    let peer = Peer {
+        name: "mujoco-callback",
+        format: "mjcf",
+        needed: Needed::Mujoco,
+        with_speed: 0.0,
+        effects: &[
+            ("quadratic_drag", &[("cx", 0.05), ("cy", 0.08), ("cz", 0.1), ("by_face", 0.4)]),
+            ("steady_wind", &[("north", 1.5), ("west", -1.0), ("up", 0.2)]),
+            ("thrust_tilt", &[("x", 0.01), ("y", -0.02)]),
+            ("translational_lift", &[("kh", 0.03)]),
+            ("blade_flapping", &[("k", 0.004)]),
+            ("ground_effect", &[("rho", 3.0), ("ca", 0.1), ("cb", 1.0), ("levelling", 0.6)]),
+        ],
+        periods: 5 * u32::try_from(WINDOW).unwrap(),
+        apart: (1e-5, 1e-5),
+    };
+    let case = Case::new(&peer);
+    let rows = match case.fly(&peer) {
+        Ok(rows) => rows,
+        Err(why) => return support::skip(peer.needed, &why),
+    };
+    let (away_m, turned_rad) = apart(&case, &rows);
+    println!("{}: after 2 s at most {away_m:.2e} m and {turned_rad:.2e} rad apart", peer.name);
+    assert!(away_m < peer.apart.0 && turned_rad < peer.apart.1, "{away_m} m, {turned_rad} rad");
+}
+
 #[test]
 fn rotorpy_flies_as_the_model_and_gives_it_back() {
     comes_back(&Peer {
@@ -271,6 +302,7 @@ fn rotorpy_flies_as_the_model_and_gives_it_back() {
         needed: Needed::Peers,
         with_speed: 1.0,
         effects: &[("motor_lag", &[("time_constant", 0.03)])],
+        periods: PERIODS,
         apart: (1e-5, 1e-5),
     });
 }
@@ -283,6 +315,7 @@ fn mujoco_flies_as_the_model_and_gives_it_back() {
         needed: Needed::Mujoco,
         with_speed: 0.0,
         effects: &[("angular_damping", &[("bx", 0.02), ("by", 0.02), ("bz", 0.02)])],
+        periods: PERIODS,
         apart: (1e-5, 1e-5),
     });
 }
@@ -296,6 +329,7 @@ fn mujoco_gives_a_model_back_that_it_holds_about_hover_only() {
         needed: Needed::Mujoco,
         with_speed: 1.0,
         effects: &[("motor_lag", &[("time_constant", 0.03)])],
+        periods: PERIODS,
         apart: (0.15, 0.1),
     });
 }

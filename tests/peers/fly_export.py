@@ -1,6 +1,6 @@
 """Flies a model as `mavid export` wrote it in the simulator that it was written for.
 
-On standard input, as JSON: `format` ("rotorpy" or "mjcf"), `text` (the exported file), `believed` (mass, gravity,
+On standard input, as JSON: `format` ("rotorpy" or "mjcf"), `text` (the exported file), `callback` (the program beside it, or null), `believed` (mass, gravity,
 inertia and hubs from the centre of mass as the controller has them, reaction torque over thrust, spins), `period_s`
 of the controller, `reference` (position, velocity, acceleration, yaw, yaw rate a period), `thrust_coefficient`,
 `noise` (standard deviations of the velocity in m/s and the rates in rad/s that the controller sees) and `seed`.
@@ -70,6 +70,10 @@ class MuJoCo:
 
         self.mujoco = mujoco
         self.model = mujoco.MjModel.from_xml_string(given["text"])
+        if given.get("callback"):
+            names = {}
+            exec(given["callback"], names)  # the file is Python, written by the program under test
+            names["install"](self.model)
         self.data = mujoco.MjData(self.model)
         self.rotors = len(given["believed"]["hubs"])
         self.body_id = self.model.body("vehicle").id

@@ -2,6 +2,7 @@
 //! `--vehicle` drafts the vehicle from its own parameters.
 
 mod document;
+mod landed;
 mod one_flight;
 mod ride;
 mod typed;
@@ -10,6 +11,8 @@ mod verb;
 mod watch;
 mod words;
 
-pub use one_flight::{FlightRun, Manner, one_flight};
+pub use landed::Landed;
+pub use one_flight::{FlightRun, LOG, Manner, one_flight};
 pub use ride::{TRACKING_MOST_M, is_attended, within};
 pub use verb::{outcome, run};
+pub use words::lines;

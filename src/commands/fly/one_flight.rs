@@ -8,7 +8,7 @@ use mavid::fly::view::ViewModel;
 use mavid::fly::{Ending, Record};
 use mavid::wire::{Nonce, SystemId};
 
-use super::ride::{asks_for_the_word, is_attended, ride};
+use super::ride::{asks_for_the_word, is_drawn, ride};
 use super::watch::{View, Watch, fly_it, watch};
 use super::words::words;
 use crate::cli::FlyArgs;
@@ -19,7 +19,7 @@ use crate::commands::standard_error::StandardError;
 use crate::commands::words::{Word, Words};
 
 /// Messages and log lines while the view is shown, in the folder of the flight.
-const LOG: &str = "log.txt";
+pub const LOG: &str = "log.txt";
 
 /// Who watches a flight in place of the view or the lines.
 type Watches = Box<dyn FnOnce(&Receiver<ViewModel>) + Send>;
@@ -55,7 +55,7 @@ pub fn one_flight(
     args: &FlyArgs,
     manner: Manner,
 ) -> Result<FlightRun, CommandError> {
-    let drawn = !args.plain && is_attended();
+    let drawn = is_drawn(args);
     if stderr.is_quiet() && !drawn && asks_for_the_word(args) {
         let expected =
             "--quiet: expected --yes with --arm and --plain: with --quiet nothing asks for the word";

@@ -114,6 +114,11 @@ pub fn is_attended() -> bool {
     std::io::stdin().is_terminal() && std::io::stderr().is_terminal()
 }
 
+/// Somebody sees a view, and not lines.
+pub fn is_drawn(args: &FlyArgs) -> bool {
+    !args.plain && is_attended()
+}
+
 /// The flight waits for somebody to type the word for arming.
 pub fn asks_for_the_word(args: &FlyArgs) -> bool {
     args.arm && !args.yes && is_attended()

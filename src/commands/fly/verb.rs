@@ -3,11 +3,16 @@
 use std::io::IsTerminal;
 
 use mavid::fly::{Ending, Record};
+use mavid::study::{Progress, Silent};
+use mavid::text;
 
 use super::document::Document;
-use super::one_flight::{FlightRun, Manner, one_flight};
+use super::landed::Landed;
+use super::one_flight::{FlightRun, LOG, Manner, one_flight};
+use super::ride::{asks_for_the_word, is_drawn};
 use super::vehicle::file_of;
 use super::watch::View;
+use super::words::lines;
 use crate::cli::FlyArgs;
 use crate::commands::after_flight::Analysis;
 use crate::commands::last_word::{PATIENCE, within};
@@ -26,11 +31,20 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
     let mut notes = Vec::new();
     let flown = (&*args.out, landed, onboard.as_deref());
+    let (mut view, mut landed_view) = (view, None);
     let analysis = if args.record_only {
         None
     } else {
-        Analysis::of(flown, &file_of(args), record.system, &mut |note| notes.push(note))?
+        // what was said of the flight is on the terminal already
+        if landed && view == View::Ended && said.are_heard() && is_drawn(args) {
+            landed_view = Landed::open(stderr, args.out.join(LOG), (text::path(&args.out), lines(&record)));
+        }
+        let watches: &dyn Progress = landed_view.as_ref().map_or(&Silent, |view| view);
+        Analysis::of(flown, &file_of(args), record.system, (watches, &mut |note| notes.push(note)))?
     };
+    if let (Some(shown), Some(analysis)) = (landed_view, &analysis) {
+        view = shown.answered(analysis.answer(), asks_for_the_word(args));
+    }
     said.say(notes);
     let heard = view == View::Ended && said.are_heard();
     let told = if json {

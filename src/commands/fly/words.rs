@@ -3,6 +3,14 @@
 use crate::commands::words::Word;
 use mavid::fly::{self, Ending, Outcome as FlightOutcome, Record};
 
+/// The same as text alone.
+pub fn lines(record: &Record) -> Vec<String> {
+    let text = |word: Word| match word {
+        Word::Message(text) | Word::Warning(text) | Word::Error(text) => text,
+    };
+    words(record).into_iter().map(text).collect()
+}
+
 /// How it went, line by line.
 pub fn words(record: &Record) -> Vec<Word> {
     let FlightOutcome { cause, ending, flown, losses } = &record.outcome;

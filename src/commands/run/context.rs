@@ -6,6 +6,7 @@ use super::ask::Ask;
 use super::folder::Folder;
 use super::step::Step;
 use crate::cli::RunArgs;
+use crate::commands::fly::is_attended;
 use crate::commands::live::Work;
 use crate::commands::output;
 use crate::commands::standard_error::StandardError;
@@ -44,16 +45,43 @@ impl<'a> Context<'a> {
         Self { args, recipe, folder, ask, stderr, work, steps: RefCell::default() }
     }
 
-    /// Says a step before it is done, and remembers it.
+    /// Nothing is to be decided and nothing real is flown: all that stands before the answer is short.
+    pub fn is_brief(&self) -> bool {
+        self.args.yes && self.args.sitl
+    }
+
+    /// A person watches the flight in a view.
+    pub fn is_drawn(&self) -> bool {
+        !self.args.plain && !self.is_brief() && !self.stderr.is_quiet() && is_attended()
+    }
+
+    /// Says a step before it is done, and remembers it: in the folder too, so that it is known after a run that was ended.
     pub fn tell(&self, step: &Step) {
-        step.tell();
-        self.steps.borrow_mut().push(step.line());
+        let line = step.line();
+        if self.is_brief() {
+            tracing::info!(command = %line, "step");
+        } else {
+            step.tell();
+        }
+        if let Err(error) = self.folder.remember(&line) {
+            output::warning(&error.to_string());
+        }
+        self.steps.borrow_mut().push(line);
+    }
+
+    /// Says the steps that a short run has kept to itself: it failed.
+    pub fn tell_kept(&self) {
+        if self.is_brief() {
+            self.steps.borrow().iter().for_each(|line| output::message(&format!("$ {line}")));
+        }
     }
 
     /// The heading of a stage.
     pub fn stage(&self, text: &str) {
         self.work.waits();
-        output::message("");
+        if !self.is_brief() {
+            output::message("");
+        }
         output::message(text);
     }
 

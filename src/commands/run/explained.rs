@@ -2,13 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use mavid::fly::Record;
 use mavid::report::{explanation_answer, next_flight_words};
-use mavid::study::{ExplainStudy, FlightLogs};
+use mavid::study::{ExplainStudy, FlightLogs, Progress};
 use mavid::text;
 
 use super::context::Context;
 use super::folder::Recorded;
 use super::step::Step;
+use crate::commands::fly::{self, LOG, Landed};
+use crate::commands::progress::Spinner;
 use crate::commands::words::Word;
 use crate::commands::{CommandError, explain, output};
 
@@ -30,11 +33,16 @@ pub struct Explained {
     pub logs: Vec<PathBuf>,
 }
 
-/// Explains all flights together, and writes the one report and the one model into the root of the folder.
+/// Explains all flights together, and writes the one report and the one model into the root of the folder. After a flight that
+/// was watched the view shows it.
 ///
 /// # Errors
 /// The flights say nothing.
-pub fn explained(context: &Context<'_>, flights: &[Recorded]) -> Result<Explained, CommandError> {
+pub fn explained(
+    context: &Context<'_>,
+    flights: &[Recorded],
+    landed: Option<&Record>,
+) -> Result<Explained, CommandError> {
     let mut logs = Vec::new();
     for flight in flights {
         let both = FlightLogs::of(&flight.radio, None, flight.onboard.as_deref());
@@ -50,7 +58,21 @@ pub fn explained(context: &Context<'_>, flights: &[Recorded]) -> Result<Explaine
     if !context.recipe.is_demo {
         step = step.option("--next", folder.next()).option("--limits", folder.limits());
     }
-    Ok(Explained { study: made(context, &step)?, logs })
+    context.tell(&step);
+    let shown = landed.filter(|_| context.is_drawn()).and_then(|record| {
+        let title = text::path(context.folder.path());
+        Landed::open(context.stderr, folder.of(LOG), (title, fly::lines(record)))
+    });
+    let study = match shown {
+        Some(shown) => {
+            let study = made(context, &step, &shown)?;
+            shown.answered(answer(&study), context.ask.is_person());
+            study
+        }
+        None => made(context, &step, &Spinner::new(context.stderr))?,
+    };
+    remark(&study);
+    Ok(Explained { study, logs })
 }
 
 /// Explains one flight into a folder of its own.
@@ -60,20 +82,25 @@ pub fn explained(context: &Context<'_>, flights: &[Recorded]) -> Result<Explaine
 pub fn alone(context: &Context<'_>, log: &Path, out: &Path) -> Result<ExplainStudy, CommandError> {
     let step =
         Step::of(&["explain"]).word(log).option("--vehicle", context.folder.vehicle()).option("--out", out);
-    made(context, &step)
+    context.tell(&step);
+    let study = made(context, &step, &Spinner::new(context.stderr))?;
+    remark(&study);
+    Ok(study)
 }
 
-fn made(context: &Context<'_>, step: &Step) -> Result<ExplainStudy, CommandError> {
-    context.tell(step);
-    let study = explain::make(context.stderr, &step.explain()?).map_err(|error| match error {
+fn made(context: &Context<'_>, step: &Step, progress: &dyn Progress) -> Result<ExplainStudy, CommandError> {
+    explain::make(progress, &step.explain()?).map_err(|error| match error {
         CommandError::Input(why) => CommandError::Input(format!(
             "{why}; to leave a flight out, move its folder out of {} and run the same command again",
             text::path(context.folder.path())
         )),
         other => other,
-    })?;
-    explain::remarks(&study).iter().filter(|word| matches!(word, Word::Warning(_))).for_each(Word::say);
-    Ok(study)
+    })
+}
+
+/// What is doubtful about the data.
+fn remark(study: &ExplainStudy) {
+    explain::remarks(study).iter().filter(|word| matches!(word, Word::Warning(_))).for_each(Word::say);
 }
 
 /// The answer, and what a further flight would bring, in lines of the terminal.

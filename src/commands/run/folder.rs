@@ -1,6 +1,7 @@
 //! What a run has made so far: it is told by the files that are there.
 
-use std::fs;
+use std::fs::{self, OpenOptions};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use mavid::fly::{EVENTS, TLOG};
@@ -9,6 +10,8 @@ use serde::Deserialize;
 
 use crate::commands::{CommandError, leftover, output};
 
+/// Every step as it is typed, in the order in which they were done.
+pub const COMMANDS: &str = "commands.txt";
 /// Endings of the logs that a vehicle writes itself.
 const ONBOARD: [&str; 2] = ["ulg", "bin"];
 /// The phase of a flight from which on there is something to explain.
@@ -46,6 +49,18 @@ impl Folder {
     /// A file or a folder in it.
     pub fn of(&self, name: &str) -> PathBuf {
         self.0.join(name)
+    }
+
+    /// Adds a step to those that made what is in the folder.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn remember(&self, step: &str) -> Result<(), CommandError> {
+        let path = self.of(COMMANDS);
+        let opened = OpenOptions::new().create(true).append(true).open(&path);
+        opened
+            .and_then(|mut file| writeln!(file, "{step}"))
+            .map_err(|error| CommandError::Failure(format!("cannot write {}: {error}", text::path(&path))))
     }
 
     /// The vehicle's file.
@@ -143,6 +158,8 @@ mod tests {
     fn a_flight_that_is_recorded_counts_and_what_never_flew_does_not() {
         let folder = made("state");
         assert_eq!(folder.flights(), []);
+        ["mavid plan v.toml", "mavid fly"].iter().for_each(|step| folder.remember(step).unwrap());
+        assert_eq!(fs::read_to_string(folder.of(COMMANDS)).unwrap(), "mavid plan v.toml\nmavid fly\n");
         fs::create_dir_all(folder.of("flight1")).unwrap();
         assert_eq!(folder.new_flight(), folder.of("flight1"), "an empty folder blocks nothing");
         flown(&folder.of("flight1"), &["connect", "check", "over"]);

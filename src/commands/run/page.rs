@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::concealed::Compared;
 use super::context::Context;
+use super::folder::COMMANDS;
 
 /// Everything that a run has made.
 pub struct Made<'a> {
@@ -78,6 +79,11 @@ pub fn places(context: &Context<'_>, made: &Made<'_>) -> String {
     if !made.exports.is_empty() {
         lines.push(format!("simulators  {} ({} files)", place("export"), made.exports.len()));
     }
+    let steps = context.steps().len();
+    lines.push(format!(
+        "commands    {} ({steps} steps, each of which can be repeated alone)",
+        place(COMMANDS)
+    ));
     let flights = if made.flights == 1 { "1 flight".to_owned() } else { format!("{} flights", made.flights) };
     lines.push(format!("{flights}, {:.0} s", made.took_s));
     lines.join("\n")

@@ -15,12 +15,15 @@ const READY: u64 = 20;
 const FLOWN: u64 = 85;
 const LANDED: u64 = 99;
 
+/// Phases that get a line where nothing can be drawn: few, because they stand before the answer.
+const TOLD: [&str; 3] = ["take off", "trajectory", "land"];
+
 /// The display.
 #[derive(Debug, Clone)]
 pub struct Progress(Option<ProgressBar>);
 
 impl Progress {
-    /// An empty bar, or a line for each phase.
+    /// An empty bar, or a line for each of the longest phases.
     pub fn new(stderr: &StandardError, drawn: bool) -> Self {
         Self(drawn.then(|| {
             let bar = stderr.bar(ProgressBar::new(100));
@@ -41,7 +44,9 @@ impl Progress {
                 bar.set_position(hundredths(&model).max(bar.position()));
                 bar.set_message(text);
             } else if model.state != last {
-                output::message(&format!("[{:5.1} s] {text}", model.elapsed_s));
+                if TOLD.contains(&model.state.as_str()) {
+                    output::message(&format!("[{:5.1} s] {text}", model.elapsed_s));
+                }
                 last = model.state;
             }
         }

@@ -26,15 +26,17 @@ const LEAST_SIDE_M: f64 = 0.3;
 /// # Errors
 /// What was expected.
 pub fn sides(numbers: &[f64]) -> Result<[f64; 3], String> {
-    match numbers {
-        [x, y, z] if numbers.iter().all(|side| (SIDES_M.0..=SIDES_M.1).contains(side)) => Ok([*x, *y, *z]),
-        _ => Err(format!(
-            "length, width and height as X,Y,Z, each of {} to {} m, such as 4,4,3, got {}",
-            SIDES_M.0,
-            SIDES_M.1,
-            came(numbers)
-        )),
-    }
+    sides_of(numbers).ok_or_else(|| format!("{}, got {}", expected(), came(numbers)))
+}
+
+fn sides_of(numbers: &[f64]) -> Option<[f64; 3]> {
+    let [x, y, z] = *numbers else { return None };
+    numbers.iter().all(|side| (SIDES_M.0..=SIDES_M.1).contains(side)).then_some([x, y, z])
+}
+
+fn expected() -> String {
+    let (least, most) = SIDES_M;
+    format!("length, width and height as X,Y,Z, each of {least} to {most} m, such as 4,4,3")
 }
 
 /// Numbers as they are typed.
@@ -45,24 +47,24 @@ fn came(numbers: &[f64]) -> String {
     numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
 }
 
+/// As it is typed; whoever asks says what came.
 fn typed(text: &str) -> Result<[f64; 3], String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|side| side.trim().parse().ok()).collect();
-    sides(&numbers.unwrap_or_default())
+    sides_of(&numbers.unwrap_or_default()).ok_or_else(expected)
 }
 
 /// The limits inside a room for this vehicle, which stands in its middle.
 ///
 /// # Errors
-/// The room is too small: what it needs.
+/// The room is too small: what was expected.
 pub fn limits_in([x_m, y_m, z_m]: [f64; 3], vehicle: &Vehicle) -> Result<Limits, String> {
     let (reach, floor_m) = (Reach::of(vehicle), floor_m(vehicle));
     let (side_m, height_m) = (2.0 * (reach.side_m + LEAST_SIDE_M), floor_m + LEAST_HEIGHT_M + reach.up_m);
     if x_m < side_m || y_m < side_m || z_m < height_m {
         return Err(format!(
             "a room of at least {side_m:.1},{side_m:.1},{height_m:.1} m for this vehicle (its rotors reach {:.2} m to each \
-             side, and its lowest flight is at {floor_m:.2} m), got {}",
-            reach.side_m,
-            came(&[x_m, y_m, z_m])
+             side, and its lowest flight is at {floor_m:.2} m)",
+            reach.side_m
         ));
     }
     let lowest = (z_m - reach.up_m - 2.0 * LEAST_HEIGHT_M).clamp(floor_m, LOW_M.max(floor_m));
@@ -177,6 +179,8 @@ mod tests {
         assert!(limits_in([4.0, 4.0, 0.6], &vehicle).is_err());
         assert!(sides(&[4.0, 4.0]).is_err() && sides(&[4.0, -4.0, 3.0]).is_err());
         assert_eq!(typed("4, 5,3"), Ok([4.0, 5.0, 3.0]));
-        assert!(typed("large").is_err());
+        // whoever asks says what came
+        assert!(!typed("large").unwrap_err().contains("got") && !said.contains("got"), "{said}");
+        assert!(sides(&[4.0]).unwrap_err().ends_with(", got 4"));
     }
 }

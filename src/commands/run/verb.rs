@@ -47,7 +47,7 @@ pub fn story(
     let ask = Ask::new(args.yes)?;
     let folder = Folder::at(args.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER)))?;
     let context = Context::new((args, recipe), (folder, ask), (stderr, work));
-    let flown = all_flights(&context)?;
+    let flown = all_flights(&context).inspect_err(|_| context.tell_kept())?;
     let FlownFlights { explained: Explained { study, logs }, record, flights } = &flown;
     context.stage("Model and report");
     finish::rigid_body(&context, logs);
@@ -131,7 +131,7 @@ fn all_flights(context: &Context<'_>) -> Result<FlownFlights, CommandError> {
     }
     loop {
         context.stage(if flights.len() == 1 { "Explanation" } else { "Explanation of all flights together" });
-        let study = &done.insert(explained(context, &flights)?).study;
+        let study = &done.insert(explained(context, &flights, record.as_ref())?).study;
         let goes_on = record.as_ref().is_none_or(|record: &Record| record.outcome.is_whole());
         let Some(target) = target.as_ref().filter(|_| goes_on && flights.len() < context.flights_max())
         else {

@@ -19,6 +19,7 @@ mod ready;
 mod settings;
 mod split;
 mod weak;
+mod without;
 
 pub use bootstrap::{AtEnd, Compared, Interval};
 pub use closed_loop::ClosedLoop;
@@ -31,3 +32,4 @@ pub use other_vehicle::{Agreement, Difference, OtherVehicle, differing};
 pub use rate_law::RateLaw;
 pub use settings::{Explained, HeldOut, HoldoutSettings};
 pub use split::{Split, split_last_periods};
+pub use without::{WindowError, Without, without_each};

@@ -101,7 +101,7 @@ fn models_of(ready: &Ready) -> Result<Models, PhysicsError> {
 }
 
 /// A base's model with its latency as effects, and with a law of its rates.
-fn predicting(base: &Base, rate_law: Option<RateLaw>) -> Result<Model, PhysicsError> {
+pub(super) fn predicting(base: &Base, rate_law: Option<RateLaw>) -> Result<Model, PhysicsError> {
     let model = model_of(base)?;
     let Some(law) = rate_law else { return Ok(model) };
     model.with(ActiveEffect::new(&EmpiricalRates, &law.values(&model.body.inertia_kg_m2))?)
@@ -122,7 +122,7 @@ pub(super) fn rate_law(ready: &[Ready]) -> Result<Option<RateLaw>, HoldoutError>
 }
 
 /// Playback over windows of this length, s. Grids are seldom faster than 4 ms: one step an instant.
-fn playback_of(window_s: f64) -> PlaybackSettings {
+pub(super) fn playback_of(window_s: f64) -> PlaybackSettings {
     PlaybackSettings { window_s, stride_s: STRIDE_S, step_s: 0.004, ..PlaybackSettings::default() }
 }
 

@@ -37,7 +37,7 @@ pub fn aircraft_parameters(
         got: "another autopilot".to_owned(),
     })?;
     let determined = Determined::of(identified);
-    let mut source = Source::new(vehicle, effects)?;
+    let mut source = Source::new(vehicle, effects, identified)?;
     let mut parameters = thrust(&mut source, &determined, table);
     parameters.extend(drag(&mut source, &determined, table));
     parameters.extend(geometry(&mut source, &determined, table));

@@ -5,6 +5,7 @@ use std::time::Duration;
 use super::action::Action;
 use super::phase::Phase;
 use super::state::Flight;
+use super::status::STALL_SHOWN;
 use crate::autopilot::Mode;
 use crate::fly::commander::{Manner, Permission};
 use crate::fly::outcome::{Cause, Level};
@@ -49,6 +50,7 @@ impl Flight {
             return;
         }
         self.known.doubt(now, Doubted::Stall(gap));
+        self.note_stall(now, gap);
         if gap >= SHORT {
             self.watch.awake = now;
             if self.phase.is_ours() && self.phase.is_airborne() {
@@ -75,11 +77,22 @@ impl Flight {
         self.guide.held_back = held_back;
     }
 
+    /// Remembers a stall for the display; a longer one stays while it is shown.
+    fn note_stall(&mut self, now: Duration, gap: Duration) {
+        let is_shown = |(ended, longer): &(Duration, Duration)| {
+            now.saturating_sub(*ended) < STALL_SHOWN && *longer > gap
+        };
+        if !self.stall.as_ref().is_some_and(is_shown) {
+            self.stall = Some((now, gap));
+        }
+    }
+
     pub(super) fn stalled(&mut self, now: Duration, gap: Duration) {
         if gap >= SHORT {
             self.watch.awake = now;
         }
         tracing::warn!(gap_s = gap.as_secs_f64(), "setpoints stalled");
+        self.note_stall(now, gap);
         self.known.doubt(now, Doubted::Stall(gap));
         self.end(now, Cause::Stalled(stall(gap)));
     }

@@ -40,6 +40,8 @@ pub struct Flight {
     pub(super) unread: bool,
     /// time of the last step
     pub(super) stepped: Option<Duration>,
+    /// the last stall of this program or its computer: when it ended, and how long it was
+    pub(super) stall: Option<(Duration, Duration)>,
     pub(super) phase: Phase,
     /// when the phase was entered
     pub(super) entered: Duration,
@@ -97,6 +99,7 @@ impl Flight {
             suspected: None,
             unread: false,
             stepped: None,
+            stall: None,
             phase: Phase::Connect,
             entered: Duration::ZERO,
             found: None,

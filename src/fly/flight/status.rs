@@ -7,6 +7,9 @@ use super::state::Flight;
 use crate::fly::health::BatteryLevel;
 use crate::fly::safety::Lead;
 
+/// A stall is shown for so long.
+pub(super) const STALL_SHOWN: Duration = Duration::from_secs(5);
+
 /// Status for a display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Status {
@@ -28,6 +31,8 @@ pub struct Status {
     pub tracking_m: f64,
     /// time since the vehicle was heard, s
     pub link_age_s: Option<f64>,
+    /// how long this program or its computer stood still, s; `None` if it did not lately
+    pub stall_s: Option<f64>,
     /// low or worse by the autopilot's own judgement
     pub battery_is_low: bool,
     /// percent
@@ -70,6 +75,10 @@ impl Flight {
             period: (self.flown.periods, self.sortie.course.repeats()),
             tracking_m: self.watch.tracking.latest_m(),
             link_age_s: telemetry.map(|telemetry| now.saturating_sub(telemetry.heard).as_secs_f64()),
+            stall_s: self
+                .stall
+                .filter(|(ended, _)| now.saturating_sub(*ended) < STALL_SHOWN)
+                .map(|(_, gap)| gap.as_secs_f64()),
             battery_is_low: self.battery_level() > BatteryLevel::Good,
             battery_percent: telemetry.and_then(|telemetry| telemetry.battery?.value.1),
             battery_v: telemetry.and_then(|telemetry| telemetry.battery_v),

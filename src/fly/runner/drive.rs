@@ -285,6 +285,7 @@ impl Drive {
             (false, false) if status.phase == "over" => Phase::Done,
             (false, false) => Phase::Preparing,
         };
+        model.stall_s = status.stall_s;
         model.state = status.phase.to_owned();
         model.mode = status.mode.unwrap_or_default();
         model.armed = status.armed;

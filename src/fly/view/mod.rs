@@ -1,9 +1,11 @@
 //! The flight as a person watches it: a terminal view, or plain lines.
 //!
-//! [`ViewModel`] is filled by whoever runs the flight; [`render`] draws it and decides nothing.
+//! [`ViewModel`] is filled by whoever runs the flight, and [`LandedView`] by whoever analyses it; [`render`] and
+//! [`render_landed`] draw them and decide nothing.
 
 mod instruments;
 mod keys;
+mod landed;
 mod model;
 mod plain;
 mod render;
@@ -12,6 +14,7 @@ mod spark;
 
 pub use instruments::{bar, horizon, path_map};
 pub use keys::{KILL_WORD, KeyCommand, Keys};
+pub use landed::{LandedView, StageView, render_landed};
 pub use model::{
     Attitude, Battery, EventLine, HISTORY, LinkView, ParameterRow, Phase, Trace, Tracking, ViewModel,
 };

@@ -140,6 +140,8 @@ pub struct ViewModel {
     pub page_from: usize,
     /// the word for arming is waited for
     pub awaits_word: bool,
+    /// how long this program or its computer stood still, s; `None` if it did not lately
+    pub stall_s: Option<f64>,
     /// s since the connection
     pub elapsed_s: f64,
     /// s of the trajectory flown, and of all of it

@@ -76,6 +76,7 @@ fn event_line(event: &EventLine) -> String {
 
 fn state_line(model: &ViewModel) -> String {
     let mut parts = vec![model.state.clone()];
+    parts.extend(model.stall_s.map(|stall_s| format!("this computer stalled {stall_s:.1} s")));
     parts.extend((!model.mode.is_empty()).then(|| model.mode.clone()));
     parts.extend(model.progress_s.map(|(done_s, all_s)| format!("{done_s:.0} of {all_s:.0} s")));
     parts.extend(model.tracking.error_m.map(|error_m| format!("error {error_m:.2} m")));

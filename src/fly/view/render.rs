@@ -85,6 +85,11 @@ fn boxed(frame: &mut Frame<'_>, title: &str, lines: Vec<Line<'_>>, area: Rect) {
     frame.render_widget(Paragraph::new(lines).block(Block::bordered().title(title.to_owned())), area);
 }
 
+/// Words before all else, while it matters.
+fn stall_words(stall_s: f64) -> String {
+    format!("THIS COMPUTER STALLED {stall_s:.1} s  ")
+}
+
 fn header(model: &ViewModel) -> Line<'_> {
     let color = match model.phase {
         Phase::Preparing => Color::Cyan,
@@ -95,7 +100,9 @@ fn header(model: &ViewModel) -> Line<'_> {
     let progress = model
         .progress_s
         .map_or_else(String::new, |(done_s, all_s)| format!("  {done_s:.0} of {all_s:.0} s flown"));
+    let stall = model.stall_s.map_or_else(String::new, stall_words);
     Line::from(vec![
+        Span::styled(stall, Style::new().fg(Color::Red).add_modifier(Modifier::BOLD)),
         Span::styled(model.title.as_str(), Style::new().add_modifier(Modifier::BOLD)),
         Span::raw("  "),
         Span::styled(model.state.as_str(), Style::new().fg(color).add_modifier(Modifier::BOLD)),

@@ -1,5 +1,6 @@
 //! The terminal: taken over, drawn on, and given back whatever happens.
 
+use super::landed::{LandedView, render_landed};
 use super::model::ViewModel;
 use super::render::render;
 use ratatui::Terminal;
@@ -62,6 +63,14 @@ impl<W: Write + 'static> Screen<W> {
     /// What the terminal reports.
     pub fn draw(&mut self, model: &ViewModel) -> io::Result<()> {
         self.terminal.draw(|frame| render(frame, model)).map(|_| ())
+    }
+
+    /// Draws what follows the landing.
+    ///
+    /// # Errors
+    /// What the terminal reports.
+    pub fn draw_landed(&mut self, view: &LandedView) -> io::Result<()> {
+        self.terminal.draw(|frame| render_landed(frame, view)).map(|_| ())
     }
 }
 

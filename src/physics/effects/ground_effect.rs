@@ -27,15 +27,17 @@ const PARAMETERS: &[Parameter] = &[
 
 const FINER: &[Parameter] = &[Parameter { name: "levelling", unit: "-", bounds: Bounds::of(0.0, 1.0) }];
 
-/// Lower than this no rotor turns over the ground; it also keeps the first form from its pole.
-const LEAST_RADII: f64 = 0.75;
+impl GroundEffect {
+    /// Lower than this, in rotor radii, no rotor turns over the ground; it also keeps the first form from its pole.
+    pub const LEAST_RADII: f64 = 0.75;
+}
 
 /// Height over the ground that counts for a hub, in rotor radii.
 fn height_in_radii(at: &Condition, arm: &Vector3<f64>, parameters: &[f64]) -> f64 {
     let radius_m = at.airframe.propulsion.rotor_radius_m.unwrap_or(f64::INFINITY);
     let levelling = parameters.get(PARAMETERS.len()).copied().unwrap_or(1.0);
     let over_center_m = at.height_of(arm) - at.state.position_m.z;
-    ((at.state.position_m.z + levelling * over_center_m) / radius_m).max(LEAST_RADII)
+    ((at.state.position_m.z + levelling * over_center_m) / radius_m).max(GroundEffect::LEAST_RADII)
 }
 
 /// Factor on thrust.

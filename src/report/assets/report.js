@@ -10,7 +10,8 @@
 
   function ink() { return getComputedStyle(document.body).color; }
   function hue(index) { return index >= HUES.length ? ink() : (night.matches ? DARK : HUES)[index]; }
-  function faint(colour) { return colour + '33'; }
+  // a colour of the page's words is rgb(...), the others are of six digits
+  function faint(colour) { return colour[0] === '#' ? colour + '33' : colour.replace('rgb(', 'rgba(').replace(')', ', 0.2)'); }
   function rough(value) { return value == null ? '–' : String(+value.toPrecision(4)); }
   function read(box) { return JSON.parse(box.querySelector('script').textContent); }
 
@@ -175,7 +176,7 @@
       var part = document.createElement('span'), mark = document.createElement('i');
       mark.style.background = colour;
       part.appendChild(mark);
-      part.appendChild(document.createTextNode('from ' + rough(of.full * index / of.ramp.length)));
+      part.appendChild(document.createTextNode('from ' + (+(of.full * index / of.ramp.length).toPrecision(2))));
       legend.appendChild(part);
     });
     legend.appendChild(document.createTextNode(of.unit));
@@ -189,29 +190,29 @@
     }
     var low = [0, 1, 2].map(function (k) { return Math.min.apply(null, of.position_m.map(function (at) { return at[k]; })); });
     var high = [0, 1, 2].map(function (k) { return Math.max.apply(null, of.position_m.map(function (at) { return at[k]; })); });
-    var middle = [0, 1, 2].map(function (k) { return (low[k] + high[k]) / 2; });
-
+  
     function draw() {
       var wide = Math.max(100, place.clientWidth), tall = Math.min(380, Math.max(240, wide * 0.6)), dots = window.devicePixelRatio || 1;
       canvas.width = wide * dots;
       canvas.height = tall * dots;
       canvas.style.height = tall + 'px';
-      var pen = canvas.getContext('2d'), most = [0.05, 0.05];
-      function about(at) { return seen([at[0] - middle[0], at[1] - middle[1], at[2] - middle[2]]); }
+      var pen = canvas.getContext('2d'), least = [Infinity, Infinity], most = [-Infinity, -Infinity];
       of.position_m.concat([low, [high[0], low[1], low[2]], [low[0], high[1], low[2]]]).forEach(function (at) {
-        var xy = about(at);
-        most = [Math.max(most[0], Math.abs(xy[0])), Math.max(most[1], Math.abs(xy[1]))];
+        seen(at).forEach(function (value, k) {
+          least[k] = Math.min(least[k], value);
+          most[k] = Math.max(most[k], value);
+        });
       });
-      var scale = zoom * Math.min((wide / 2 - 30) / most[0], (tall / 2 - 20) / most[1]);
+      var scale = zoom * Math.min((wide - 60) / Math.max(most[0] - least[0], 0.1), (tall - 60) / Math.max(most[1] - least[1], 0.1));
       pen.scale(dots, dots);
       function put(at) {
-        var xy = about(at);
-        return [wide / 2 + scale * xy[0], tall / 2 + scale * xy[1]];
+        var xy = seen(at);
+        return [wide / 2 + scale * (xy[0] - (least[0] + most[0]) / 2), tall / 2 + scale * (xy[1] - (least[1] + most[1]) / 2)];
       }
       pen.font = '12px system-ui, sans-serif';
-      pen.fillStyle = pen.strokeStyle = ink();
+      pen.strokeStyle = ink();
       pen.globalAlpha = 0.5;
-      [0, 1, 2].forEach(function (k) {
+      var ends = [0, 1, 2].map(function (k) {
         var end = low.slice();
         end[k] = high[k];
         var a = put(low), b = put(end);
@@ -219,8 +220,7 @@
         pen.moveTo(a[0], a[1]);
         pen.lineTo(b[0], b[1]);
         pen.stroke();
-        var words = of.axes[k] + ' ' + (+(high[k] - low[k]).toPrecision(2)) + ' m', room = wide - pen.measureText(words).width - 4;
-        pen.fillText(words, Math.min(Math.max(b[0] + 4, 4), room), Math.min(Math.max(b[1] + (k === 2 ? -4 : 14), 12), tall - 4));
+        return [a, b];
       });
       pen.globalAlpha = 1;
       pen.lineWidth = 2.4;
@@ -233,6 +233,20 @@
         pen.lineTo(flat[i + 1][0], flat[i + 1][1]);
         pen.stroke();
       }
+      // words last, on a halo of the page's colour: no line runs through them
+      ends.forEach(function (axis, k) {
+        var a = axis[0], b = axis[1], words = of.axes[k] + ' ' + (+(high[k] - low[k]).toPrecision(2)) + ' m';
+        var long = pen.measureText(words).width, x = k === 2 ? a[0] - long / 2 : b[0] + (b[0] < a[0] ? -long / 2 : 4), y = k === 2 ? a[1] + 14 : b[1] + 14;
+        x = Math.min(Math.max(x, 4), wide - long - 4);
+        y = Math.min(Math.max(y, 12), tall - 4);
+        pen.lineWidth = 4;
+        pen.lineJoin = 'round';
+        pen.strokeStyle = getComputedStyle(document.body).backgroundColor;
+        pen.strokeText(words, x, y);
+        pen.fillStyle = ink();
+        pen.fillText(words, x, y);
+      });
+      pen.lineWidth = 2.4;
       if (marked != null) {
         pen.strokeStyle = ink();
         pen.beginPath();

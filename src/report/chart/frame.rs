@@ -2,15 +2,20 @@
 
 use maud::{Markup, html};
 
-/// Dots.
 /// Largest number of points of a line: a chart is about 440 dots wide.
 pub const POINTS: usize = 900;
+/// Dots.
 pub(super) const WIDTH: f64 = 640.0;
 
 /// An element for a page with a title for those who cannot see it.
 pub(super) fn framed(height: f64, title: &str, drawing: &Markup) -> Markup {
+    framed_as("chart", (WIDTH, height), title, drawing)
+}
+
+/// The same of another width, with the class by which the page's style knows its kind.
+pub(super) fn framed_as(kind: &str, (width, height): (f64, f64), title: &str, drawing: &Markup) -> Markup {
     html! {
-        svg viewBox={ "0 0 " (WIDTH) " " (height.round()) } role="img" fill="currentColor" {
+        svg class=(kind) viewBox={ "0 0 " (width) " " (height.round()) } role="img" fill="currentColor" {
             title { (title) }
             (drawing)
         }

@@ -1,7 +1,7 @@
 //! Rows of cells over time; larger values are darker.
 
 use super::axis::Axis;
-use super::frame::{WIDTH, framed, tenths};
+use super::frame::{framed_as, tenths};
 use maud::{Markup, html};
 
 /// A heat map along an abscissa.
@@ -19,8 +19,10 @@ pub struct Strip {
     pub full: f64,
 }
 
-const LEFT: f64 = 130.0;
-const RIGHT: f64 = 20.0;
+/// Dots: so narrow that its words are legible on a phone.
+const WIDTH: f64 = 400.0;
+const LEFT: f64 = 104.0;
+const RIGHT: f64 = 14.0;
 const TOP: f64 = 26.0;
 const ROW: f64 = 16.0;
 /// Cells fainter than this are not drawn.
@@ -31,7 +33,7 @@ impl Strip {
     #[must_use]
     pub fn inline(&self) -> Markup {
         let height = TOP + ROW * self.rows.len() as f64 + 40.0;
-        framed(height, &self.title, &self.drawing())
+        framed_as("strip", (WIDTH, height), &self.title, &self.drawing())
     }
 
     fn drawing(&self) -> Markup {

@@ -3,6 +3,7 @@
 use super::along::along_section;
 use super::answer::answer;
 use super::hold_out::{hold_out, hold_out_details};
+use super::motor::motor;
 use super::pictures;
 use super::text::{after, scale, unseen};
 use crate::diagnose::holdout::RateLaw;
@@ -11,7 +12,6 @@ use crate::report::html::{self, Cell, folded, note, number, paragraph, section, 
 use crate::report::number::{chance, significant, spoken, with_error};
 use crate::report::page::page;
 use crate::report::quality::data_quality;
-use crate::report::vehicle_drawing::motor_words;
 use crate::study::{ExplainStudy, TriedAs};
 use crate::vehicle::AXIS_NAMES;
 use maud::{Markup, html};
@@ -107,12 +107,6 @@ fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
             )))
         }
     }
-}
-
-/// The words for a motor, where a parameter says which.
-fn motor(study: &ExplainStudy, effect: &Named, parameter: &str) -> Option<String> {
-    let place = study.motor_of(effect).filter(|_| study.motor_parameter(effect) == Some(parameter))?;
-    Some(motor_words(&study.vehicle().rotors[place], place))
 }
 
 fn traces(study: &ExplainStudy) -> Markup {
@@ -264,24 +258,19 @@ fn next_flight(study: &ExplainStudy) -> Markup {
 }
 
 fn limits(study: &ExplainStudy) -> Markup {
-    let rows: Vec<Vec<Cell>> = study
-        .explanation
-        .limits
-        .iter()
-        .filter(|limit| limit.is_possible())
-        .map(|limit| {
-            vec![
-                text(called(limit.id)),
-                text(limit.id),
-                text(limit.parameter),
-                number(significant(limit.limit, 2)),
-                text(spoken(limit.unit)),
-            ]
+    let possible: Vec<_> = study.explanation.limits.iter().filter(|limit| limit.is_possible()).collect();
+    let rows: Vec<Vec<Cell>> = possible
+        .chunk_by(|one, next| one.id == next.id && one.unit == next.unit)
+        .filter_map(|of| {
+            let first = of.first()?;
+            let each = of.iter().map(|limit| format!("{} {}", limit.parameter, significant(limit.limit, 2)));
+            let from = format!("{} {}", each.collect::<Vec<_>>().join(", "), spoken(first.unit));
+            Some(vec![text(called(first.id)), text(first.id), text(from.trim_end())])
         })
         .collect();
     let content = table(
         "The smallest size of each effect that this flight would have shown",
-        &["effect", "identifier", "parameter", "from|", "unit"],
+        &["effect", "identifier", "from"],
         &rows,
     );
     let content = html! {

@@ -1,10 +1,10 @@
 //! A summary in Markdown, to paste into a forum or an issue: no paths, no positions.
 
 use super::answer::answer;
+use super::motor::motor;
 use super::text::after;
 use crate::diagnose::called;
 use crate::report::number::{percent, significant, spoken, with_error};
-use crate::report::vehicle_drawing::motor_words;
 use crate::study::{ExplainStudy, Predicted, QUANTITIES};
 use std::fmt::Write;
 
@@ -72,12 +72,10 @@ fn named(page: &mut String, study: &ExplainStudy) {
     let mut rows = Vec::new();
     for effect in &study.effects {
         for p in &effect.parameters {
-            let which = study.motor_of(effect).filter(|_| study.motor_parameter(effect) == Some(p.name));
-            let value = which.map_or_else(
-                || with_error(p.value, p.std),
-                |place| motor_words(&study.vehicle().rotors[place], place),
-            );
-            let unit = if which.is_some() { String::new() } else { spoken(p.unit).to_string() };
+            let (value, unit) = match motor(study, effect, p.name) {
+                Some(motor) => (motor, String::new()),
+                None => (with_error(p.value, p.std), spoken(p.unit).to_string()),
+            };
             rows.push(vec![called(effect.id).to_owned(), p.name.to_owned(), value, unit]);
         }
     }

@@ -9,6 +9,7 @@ mod html;
 mod json;
 mod markdown;
 mod model;
+mod motor;
 mod pictures;
 mod prospect;
 mod text;

@@ -3,10 +3,11 @@
 use super::answer::answer;
 use crate::config::{ConfigError, vehicle_to_toml};
 use crate::diagnose::NO_LATENCY;
+use crate::diagnose::holdout::{WINDOWS_S, Without};
 use crate::estimate::{Finding, ThrustScale};
 use crate::report::model_parts::{self, correlation_lines, effect_tables, files};
-use crate::study::{ExplainStudy, ValidationData};
-use crate::text::toml_string;
+use crate::study::{ExplainStudy, ValidationData, Worth};
+use crate::text::{significant, toml_string};
 use std::fmt::Write;
 
 /// The model file: every command that takes a vehicle takes it.
@@ -56,6 +57,32 @@ fn identified(text: &mut String, study: &ExplainStudy) {
         }
         let others: Vec<&str> = effect.confusable_with.iter().map(|other| other.id).collect();
         let _ = writeln!(text, "confusable_with = {others:?}");
+    }
+    if let Some(worth) = &study.worth {
+        prediction(text, worth);
+    }
+}
+
+/// Errors of prediction with the whole model, and without each effect: what `mavid export` tells of those that it leaves out.
+fn prediction(text: &mut String, worth: &Worth) {
+    const KEYS: [&str; 4] = ["position_m", "velocity_m_s", "attitude_rad", "rates_rad_s"];
+    let numbers =
+        |numbers: &[f64]| numbers.iter().map(|number| significant(*number, 3)).collect::<Vec<_>>().join(", ");
+    for Without { id, errors } in &worth.each {
+        let _ = match id {
+            None => writeln!(
+                text,
+                "\n[identified.prediction]\non = \"{}\"\nwindow_s = {WINDOWS_S:?}",
+                if worth.on_explained { "explained" } else { "not_used" }
+            ),
+            Some(id) => writeln!(text, "\n[identified.prediction.without.{id}]"),
+        };
+        for (quantity, key) in KEYS.iter().enumerate() {
+            let each: Option<Vec<f64>> = errors.iter().map(|errors| errors[quantity]).collect();
+            if let Some(each) = each.filter(|each| each.iter().all(|error| error.is_finite())) {
+                let _ = writeln!(text, "{key} = [{}]", numbers(&each));
+            }
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::along::along_lines;
 use super::answer::answer;
+use super::motor::motor;
 use crate::diagnose::{NO_LATENCY, Named, Verdict, called, clause};
 use crate::estimate::{Finding, ThrustScale};
 use crate::report::number::{chance, percent, significant, spoken, with_error};
@@ -55,7 +56,11 @@ fn effect_lines(page: &mut String, study: &ExplainStudy, effect: &Named) {
     let mark = if study.verdict() == Verdict::Unexplained { " (closest, not named)" } else { "" };
     let _ = writeln!(page, "\n  {}{mark}: {}", effect.id, clause(effect, study.vehicle()));
     for p in &effect.parameters {
-        let _ = writeln!(page, "    {:<16}{:>22}  {}", p.name, with_error(p.value, p.std), p.unit);
+        let (value, unit) = match motor(study, effect, p.name) {
+            Some(motor) => (motor, ""),
+            None => (with_error(p.value, p.std), p.unit),
+        };
+        let _ = writeln!(page, "    {:<16}{value:>22}  {unit}", p.name);
     }
     let strength = &effect.strength;
     let _ = writeln!(

@@ -132,7 +132,7 @@ impl ExplainStudy {
     }
 
     /// What predicts.
-    fn explained(&self) -> Explained<'_> {
+    pub(super) fn explained(&self) -> Explained<'_> {
         let (explanation, empirical) = (&self.explanation, self.empirical.as_ref());
         Explained { explanation, empirical, rate_law: self.rate_law }
     }
@@ -193,6 +193,7 @@ impl ExplainStudy {
         let settings = HoldoutSettings { same_flight, ..HoldoutSettings::default() };
         let shown = on_holdout(self.explained(), flights, &self.given.vehicle, &settings)?;
         self.take_prediction(shown, shown_on);
+        self.measure_worth(flights, false, &settings);
         Ok(())
     }
 

@@ -18,6 +18,8 @@ mod request;
 mod result;
 mod run;
 mod validation_data;
+mod worth;
+mod worth_measured;
 
 pub use along_flights::AlongFlights;
 pub use evidence::{Tried, TriedAs};
@@ -33,5 +35,6 @@ pub(super) use result::BY_CONTROL;
 pub use result::{AxisFit, BodyParameter, Estimate, ExplainStudy, Given};
 pub use run::explain;
 pub use validation_data::ValidationData;
+pub use worth::Worth;
 
 pub(super) use request::check_transient;

@@ -6,6 +6,7 @@ use super::located::Located;
 use super::predicted::Predicted;
 use super::readers::for_readers;
 use super::validation_data::ValidationData;
+use super::worth::Worth;
 use crate::diagnose::experiment::{NextError, NextFlight};
 use crate::diagnose::holdout::{Difference, HoldoutFit, RateLaw};
 use crate::diagnose::signatures::latency_kind;
@@ -64,6 +65,8 @@ pub struct ExplainStudy {
     pub holdout: Option<Predicted>,
     /// everything that was shown on them
     pub shown: Option<HoldoutFit>,
+    /// what each effect of the model is worth in prediction, where it has any
+    pub worth: Option<Worth>,
     /// a term without a mechanism, where none serves
     pub empirical: Option<Empirical>,
     /// a law of the rates for open-loop predictions, where the torques predict worse than no change
@@ -147,6 +150,7 @@ impl ExplainStudy {
             identify: None,
             holdout: None,
             shown: None,
+            worth: None,
             empirical: None,
             rate_law: None,
             shown_on: ValidationData::Nothing { reason: "no hold-out".to_owned() },

@@ -8,6 +8,7 @@ use super::validation_data::ValidationData;
 use crate::config::effects_of;
 use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
+use crate::diagnose::holdout::HoldoutSettings;
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{ExplainSettings, Explanation, Trace, Verdict};
 use crate::estimate::{
@@ -167,6 +168,9 @@ impl Task<'_> {
             study.evaluate_left_out(flights);
         } else {
             study.evaluate_held_out(held, back, shown_on);
+        }
+        if study.worth.is_none() {
+            study.measure_worth(&flights.held_out(), true, &HoldoutSettings::default());
         }
         study
     }
