@@ -9,7 +9,7 @@ use mavid::signals::{ClockOffset, clock_offset};
 use mavid::simulate::{
     Disturbance, FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight,
 };
-use mavid::study::{ExplainRequest, IdentifyRequest, Silent, VehicleGiven, explain, identify};
+use mavid::study::{ExplainRequest, Silent, VehicleGiven, explain};
 use nalgebra::Vector3;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -171,19 +171,11 @@ fn logs_of_two_autopilots_are_refused_at_once() {
 }
 
 #[test]
-fn logs_of_different_formats_go_together_with_a_drafted_vehicle() {
+fn commands_in_another_unit_are_read_beside_those_from_which_the_vehicle_is_drafted() {
     let Some(shared) = support::shared() else { return };
     let log = |name: &str| shared.join("onboard/sitl").join(name);
     let given = Given { mass_kg: 1.0, size_m: Some(0.4), frame: None };
-    // commands in 0..1 beside pulses
-    let request = IdentifyRequest {
-        vehicle: VehicleGiven::Weighed(given),
-        logs: vec![log("px04.ulg"), log("px05.tlog")],
-        ..IdentifyRequest::default()
-    };
-    let found = identify(&request, &Silent).unwrap();
-    assert_eq!(found.flights.len(), 2);
-    // the other log of a flight shows nothing of it
+    // pulses beside commands in 0..1: both are conditioned, and then the other log of a flight shows nothing of it
     let request = ExplainRequest {
         vehicle: VehicleGiven::Weighed(given),
         logs: vec![log("px04.ulg")],
