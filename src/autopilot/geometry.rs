@@ -86,6 +86,19 @@ pub enum LayoutError {
     /// none of them is known
     #[error("expected {0} among the parameters, got none of them")]
     Missing(String),
+    /// releases that state the frame without the number of motors
+    #[error(
+        "expected {class} among the parameters, got {former} = {frame} of an older release, which does not state how many motors \
+         there are"
+    )]
+    Former {
+        /// the parameter that states it since
+        class: String,
+        /// the older one
+        former: String,
+        /// what it is
+        frame: f64,
+    },
     /// a frame that is not known here
     #[error("expected a frame whose motors are known, got {0}")]
     Unknown(String),
@@ -130,7 +143,16 @@ impl Geometry {
                 let (class, stated_by) = match (parameter(name), motors) {
                     (Some(class), _) => (class, *name),
                     (None, Some(motors)) => (class_of(motors).map_or(-1.0, f64::from), *former),
-                    (None, None) => return Err(LayoutError::Missing((*name).to_owned())),
+                    (None, None) => {
+                        return Err(match parameter(former) {
+                            Some(frame) => LayoutError::Former {
+                                class: (*name).to_owned(),
+                                former: (*former).to_owned(),
+                                frame,
+                            },
+                            None => LayoutError::Missing((*name).to_owned()),
+                        });
+                    }
                 };
                 let Some(kind_number) = parameter(kind).or_else(|| parameter(former)) else {
                     return Err(LayoutError::Missing(format!("{kind} or {former}")));

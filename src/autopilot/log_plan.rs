@@ -1,6 +1,6 @@
 //! What an autopilot will log by its parameters, and what should be changed of them.
 
-use super::logging::{LogNeed, LogSetting, OldLogging, bits};
+use super::logging::{LogNeed, LogRate, LogSetting, LogSpeed, OldLogging, bits};
 use super::stack::Stack;
 
 /// A parameter that has to be another for an identification.
@@ -68,13 +68,39 @@ impl Stack {
             plan.logs.push(format!("nothing: no log is written to a file ({})", off.join(", ")));
             return plan;
         }
-        for rate in self.log_settings.rates {
-            if let Some(found) = value(rate.parameter) {
-                let is_set = bits(found) >> rate.bit & 1 == 1;
-                plan.logs.push(if is_set { rate.with } else { rate.without }.to_owned());
-            }
-        }
+        let rates = self.log_settings.rates.iter();
+        plan.logs.extend(rates.filter_map(|rate| self.logged(rate, &value)));
         plan
+    }
+
+    /// What is logged by a parameter, and how often, in a sentence without its end; `None` where the parameter is not known.
+    fn logged(&self, rate: &LogRate, value: &impl Fn(&str) -> Option<f64>) -> Option<String> {
+        let found = bits(value(rate.parameter)?);
+        let Some((_, what, speed)) = rate.with.iter().find(|(bit, ..)| found >> bit & 1 == 1) else {
+            return Some(rate.without.to_owned());
+        };
+        let hz = match speed {
+            LogSpeed::AsSaid => return Some((*what).to_owned()),
+            LogSpeed::Loop => self.log_settings.loop_rate.and_then(value),
+            LogSpeed::Hz(hz) => Some(*hz),
+        };
+        let limit = self.log_settings.limit.and_then(|name| Some((name, value(name)?)));
+        let limited = limit.filter(|(_, most_hz)| *most_hz > 0.0 && hz.is_none_or(|hz| *most_hz < hz));
+        Some(match (limited, hz) {
+            (Some((name, most_hz)), _) => format!("{what} at {most_hz} Hz, the limit of {name}"),
+            (None, Some(hz)) if *speed == LogSpeed::Loop => {
+                format!("{what} at the rate of the main loop, {hz} Hz")
+            }
+            (None, Some(hz)) => format!("{what} at {hz} Hz"),
+            (None, None) => format!("{what} at the rate of the main loop"),
+        })
+    }
+
+    /// Parameters that tell what is logged and how often.
+    #[must_use]
+    pub fn log_parameters(&self) -> Vec<&'static str> {
+        let settings = self.log_settings.settings.iter().map(|setting| setting.parameter);
+        settings.chain(self.log_settings.loop_rate).collect()
     }
 
     /// What to set so that its own log holds what an identification needs, as the end of a sentence that begins with what to do: by
@@ -180,6 +206,42 @@ mod tests {
         let names: Vec<_> = plan.changes.iter().map(|change| (change.parameter, change.needed)).collect();
         assert_eq!(names, [("LOG_BITMASK", 438_271.0), ("LOG_FILE_RATEMAX", 0.0)]);
         assert_eq!(plan.logs.len(), 3);
+    }
+
+    #[test]
+    fn rates_are_by_the_bits_the_main_loop_and_the_limit() {
+        let logs = |bitmask: f64, loop_hz: Option<f64>, most_hz: f64| {
+            ARDUPILOT.log_plan(|name| match name {
+                "LOG_BITMASK" => Some(bitmask),
+                "SCHED_LOOP_RATE" => loop_hz,
+                "LOG_FILE_RATEMAX" => Some(most_hz),
+                _ => None,
+            })
+        };
+        let nothing = logs(0.0, Some(400.0), 0.0);
+        assert_eq!(
+            nothing.logs,
+            [
+                "neither attitude nor the outputs of the rate controller",
+                "neither gyroscope nor accelerometer",
+                "no outputs to the motors"
+            ]
+        );
+        assert_eq!(
+            logs(176_126.0, Some(400.0), 10.0).logs[1],
+            "gyroscope and accelerometer at 10 Hz, the limit of LOG_FILE_RATEMAX"
+        );
+        assert_eq!(logs(176_126.0, Some(400.0), 50.0).logs[1], "gyroscope and accelerometer at 25 Hz");
+        let fast = |loop_hz, most_hz| logs(438_271.0, loop_hz, most_hz).logs[1].clone();
+        assert_eq!(
+            fast(Some(300.0), 0.0),
+            "gyroscope and accelerometer at the rate of the main loop, 300 Hz"
+        );
+        assert_eq!(fast(None, 0.0), "gyroscope and accelerometer at the rate of the main loop");
+        assert_eq!(
+            fast(Some(300.0), 100.0),
+            "gyroscope and accelerometer at 100 Hz, the limit of LOG_FILE_RATEMAX"
+        );
     }
 
     #[test]

@@ -61,16 +61,25 @@ pub struct LogSetting {
     pub bits: &'static [(u32, &'static str)],
 }
 
-/// What of a log depends on a bit of a parameter: what is logged with it, and without it.
+/// How often something is logged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LogSpeed {
+    /// its words say it
+    AsSaid,
+    /// each period of the main loop
+    Loop,
+    /// Hz
+    Hz(f64),
+}
+
+/// What of a log depends on bits of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LogRate {
     /// the parameter
     pub parameter: &'static str,
-    /// its bit
-    pub bit: u32,
-    /// what is logged if it is set
-    pub with: &'static str,
-    /// what is logged if not
+    /// a bit, what is logged if it is set, and how often: the first one that is set counts
+    pub with: &'static [(u32, &'static str, LogSpeed)],
+    /// what is said where none of them is set
     pub without: &'static str,
 }
 
@@ -98,6 +107,10 @@ pub struct Logging {
     pub old: Option<OldLogging>,
     /// what is logged at which rate
     pub rates: &'static [LogRate],
+    /// the parameter with the rate of the main loop, Hz
+    pub loop_rate: Option<&'static str>,
+    /// the parameter with the largest rate of a message, Hz; 0 does not limit
+    pub limit: Option<&'static str>,
 }
 
 /// PX4.
@@ -136,12 +149,18 @@ pub(super) const PX4: Logging = Logging {
     ],
     of_all: "SDLOG_UTC_OFFSET",
     old: None,
+    // a profile of 0 is taken for the default (src/modules/logger/logger.cpp)
     rates: &[LogRate {
         parameter: "SDLOG_PROFILE",
-        bit: 3,
-        with: "motor commands, torque setpoints, gyroscope and accelerometer at their full rate",
+        with: &[(
+            3,
+            "motor commands, torque setpoints, gyroscope and accelerometer at their full rate",
+            LogSpeed::AsSaid,
+        )],
         without: "motor commands at 10 Hz, torque setpoints at 50 Hz, gyroscope and accelerometer at about 200 Hz",
     }],
+    loop_rate: None,
+    limit: None,
 };
 
 /// ArduPilot.
@@ -186,24 +205,30 @@ pub(super) const ARDUPILOT: Logging = Logging {
         update_to: "ArduPilot to Copter 3.5 or later",
         brings: "whose LOG_BITMASK has bits for the outputs and the fast inertial unit",
     }),
+    // ArduCopter/Copter.cpp: the fast bits go before those of 10 and 25 Hz
     rates: &[
         LogRate {
             parameter: "LOG_BITMASK",
-            bit: 0,
-            with: "attitude and the outputs of the rate controller at the rate of the main loop",
-            without: "attitude and the outputs of the rate controller at 10 Hz",
+            with: &[
+                (0, "attitude and the outputs of the rate controller", LogSpeed::Loop),
+                (1, "attitude and the outputs of the rate controller", LogSpeed::Hz(10.0)),
+            ],
+            without: "neither attitude nor the outputs of the rate controller",
         },
         LogRate {
             parameter: "LOG_BITMASK",
-            bit: 18,
-            with: "gyroscope and accelerometer at the rate of the main loop",
-            without: "gyroscope and accelerometer at 25 Hz",
+            with: &[
+                (18, "gyroscope and accelerometer", LogSpeed::Loop),
+                (7, "gyroscope and accelerometer", LogSpeed::Hz(25.0)),
+            ],
+            without: "neither gyroscope nor accelerometer",
         },
         LogRate {
             parameter: "LOG_BITMASK",
-            bit: 10,
-            with: "outputs to the motors at 10 Hz",
+            with: &[(10, "outputs to the motors", LogSpeed::Hz(10.0))],
             without: "no outputs to the motors",
         },
     ],
+    loop_rate: Some("SCHED_LOOP_RATE"),
+    limit: Some("LOG_FILE_RATEMAX"),
 };

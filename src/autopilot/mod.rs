@@ -34,7 +34,7 @@ pub use limits::{Bounded, Braking};
 pub use list::STACKS;
 pub use log_bytes::{DATAFLASH_MARKER, ULOG_DEEPEST, ULOG_FLAG_BYTES, ULOG_HEAD_BYTES, ULOG_MAGIC};
 pub use log_plan::{LogAwaited, LogChange, LogPlan};
-pub use logging::{LogNeed, LogOff, LogRate, LogSetting, Logging, OldLogging};
+pub use logging::{LogNeed, LogOff, LogRate, LogSetting, LogSpeed, Logging, OldLogging};
 pub use modes::{FlightMode, FlownBy, Mode, Numbering, Wishes};
 pub use outputs::{MOST_OUTPUTS, Numbered, NumberedGroup, Outputs, PulseRange};
 pub use parameters::{Parameter, ParameterTable, ParameterType, Purpose, Renamed, Unit};

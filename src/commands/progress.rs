@@ -1,7 +1,7 @@
 //! What a study tells while it works: its notes, and at a terminal how far it is.
 
 use std::sync::{Mutex, OnceLock, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use mavid::note::Note;
@@ -25,6 +25,39 @@ fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
 pub fn bytes_bar(of: u64) -> ProgressBar {
     let template = "{bar:30} {bytes} of {total_bytes}, {bytes_per_sec}, {eta} left";
     styled(ProgressBar::new(of), template)
+}
+
+/// Between two lines about a download.
+const LINES: Duration = Duration::from_secs(10);
+
+/// How far a download is, in a line now and then: for a log, or where no bar can be drawn.
+#[derive(Debug)]
+pub struct DownloadLines {
+    /// when it began, and bytes that were there
+    began: Option<(Instant, u64)>,
+    told: Instant,
+}
+
+impl DownloadLines {
+    /// Of a download that begins now.
+    pub fn new(now: Instant) -> Self {
+        Self { began: None, told: now }
+    }
+
+    /// The line, where it is time for one: so many bytes of all of them are there.
+    pub fn due(&mut self, now: Instant, bytes: u64, of: u64) -> Option<String> {
+        let (began, first) = *self.began.get_or_insert((now, bytes));
+        if now.duration_since(self.told) < LINES {
+            return None;
+        }
+        self.told = now;
+        let [there, all] = [bytes, of].map(|bytes| bytes as f64 / 1e6);
+        let bytes_s = bytes.saturating_sub(first) as f64 / now.duration_since(began).as_secs_f64();
+        let left_s = of.saturating_sub(bytes) as f64 / bytes_s;
+        let left =
+            if left_s.is_finite() { format!("about {left_s:.0} s left") } else { "nothing comes".to_owned() };
+        Some(format!("{there:.2} of {all:.2} MB, {:.1} kB/s, {left}", bytes_s / 1e3))
+    }
 }
 
 /// A line that says what is done now and for how long, or with counted steps how long it will take.
@@ -154,5 +187,25 @@ impl Progress for Notes<'_> {
 
     fn note(&self, note: &Note) {
         self.words.lock().unwrap_or_else(PoisonError::into_inner).push(note.into());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_download_is_told_each_ten_seconds() {
+        let start = Instant::now();
+        let mut lines = DownloadLines::new(start);
+        let mut at = |seconds, bytes| lines.due(start + Duration::from_secs(seconds), bytes, 2_000_000);
+        // half a megabyte of an earlier download
+        assert_eq!((at(0, 500_000), at(9, 900_000)), (None, None));
+        assert_eq!(at(10, 1_000_000).unwrap(), "1.00 of 2.00 MB, 50.0 kB/s, about 20 s left");
+        assert_eq!(at(19, 1_400_000), None);
+        assert!(at(20, 1_500_000).is_some());
+        let mut none = DownloadLines::new(start);
+        none.due(start, 0, 9);
+        assert!(none.due(start + LINES, 0, 9).unwrap().ends_with("nothing comes"));
     }
 }

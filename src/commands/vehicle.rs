@@ -8,6 +8,7 @@ use mavid::link::Address;
 use mavid::report::vehicle_text;
 use mavid::study::{draft_from_log, draft_from_parameters, draft_text, vehicle_summary, with_thrust_stand};
 use mavid::text;
+use mavid::vehicle::{Guess, Guessed};
 
 use super::log::{Answered, parameters_of_vehicle};
 use super::{CommandError, Outcome, output};
@@ -66,7 +67,18 @@ fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
         draft = with_thrust_stand(draft, table)?;
     }
     write(args, &draft)?;
+    guessed(&draft, args).iter().for_each(|guessed| output::message(guessed));
     check(json, &args.out)
+}
+
+/// What of a draft nobody measured, and where it stands; `None` where nothing is guessed.
+fn guessed(draft: &Draft, args: &InitArgs) -> Option<String> {
+    let one = |guess: &Guess| format!("{} +- {:.0} %", guess.of.words(), 100.0 * guess.relative);
+    let all: Vec<String> = draft.vehicle.guesses.iter().map(one).collect();
+    let size = draft.vehicle.guesses.iter().any(|guess| guess.of == Guessed::Arms);
+    let size = if size { "; --size states the length of the arms" } else { "" };
+    (!all.is_empty())
+        .then(|| format!("guessed, not measured: {} (see {}){size}", all.join(", "), text::path(&args.out)))
 }
 
 /// Writes the draft, and says what contradicts it.

@@ -6,4 +6,4 @@ mod stated;
 mod vehicle;
 
 pub use stated::parameters_of;
-pub use vehicle::{Draft, DraftError, Given, draft};
+pub use vehicle::{Draft, DraftError, Given, actuator_of, draft};

@@ -81,6 +81,13 @@ const EXPO_LINEAR: f64 = 0.3;
 /// judgement: many leave the default.
 const BY_HOVER_SHARE: f64 = 0.25;
 
+/// What the commands of a recording mean, as a first description of its vehicle would have it.
+#[must_use]
+pub fn actuator_of(recording: &Recording) -> Actuator {
+    let outputs = recording.autopilot.stack().map(|stack| &stack.outputs);
+    Noted::default().command(recording, outputs).0
+}
+
 /// A first description of the vehicle that a recording is of. Without streams, as from a vehicle's parameters alone, the
 /// full thrust rests on the autopilot's hover parameter. `name` is the vehicle's, for reports.
 ///

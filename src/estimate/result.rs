@@ -45,6 +45,9 @@ pub enum Finding {
 /// In a reason.
 pub(super) const CURVE_IS_A_GUESS: &str = "the shape of the thrust curve is a guess";
 
+/// Share of a parameter's size from which on what moves it is among the reasons. Only a word of the report depends on it.
+const TELLING: f64 = 0.01;
+
 /// Before what a flight is good for, where it is too short for a search: what else acts is then part of mass and inertia.
 pub const RIGID_BODY_ALONE: &str = "too short to search for effects; for a rigid body alone ";
 
@@ -267,7 +270,7 @@ pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Findin
     }
     let (guessed, by_curve) = (nominal.guessed(index), estimated.moved_by_curve(index));
     if guessed.hypot(by_curve / size) > LARGEST_RELATIVE_STD {
-        let of_curve = (by_curve > 0.0).then(|| {
+        let of_curve = (by_curve >= TELLING * size).then(|| {
             format!("{CURVE_IS_A_GUESS}, one standard error of it moves this by {}", percent(by_curve / size))
         });
         let why: Vec<String> = nominal.guesses(index).into_iter().chain(of_curve).collect();

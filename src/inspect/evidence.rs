@@ -34,6 +34,8 @@ pub(super) struct Evidence<'a> {
     pub unreadable: Option<u64>,
     /// the log's messages carry times
     pub timed: bool,
+    /// its motor outputs carry none
+    pub untimed_outputs: bool,
     /// most of the log are messages that nothing in it defines
     pub undefined: bool,
     /// the log ends before its first message with a time
@@ -138,6 +140,19 @@ impl Evidence<'_> {
         self.steps_back.is_none() && (self.streams.is_empty() || (self.holds_streams() && unflown))
     }
 
+    /// Of a log without actuator outputs that can be used.
+    pub(super) fn no_outputs(&self) -> String {
+        match self.unreadable {
+            Some(count) => {
+                format!("no actuator outputs that can be read: {count} messages of the log cannot")
+            }
+            None if self.untimed_outputs => {
+                "its messages of motor outputs carry no time of the vehicle's".to_owned()
+            }
+            None => "no actuator outputs".to_owned(),
+        }
+    }
+
     /// Why nothing at all can be identified.
     pub(super) fn nothing(&self) -> Option<String> {
         if let Some(kind) = self.kind.filter(|_| self.is_of_other_kind()) {
@@ -162,12 +177,7 @@ impl Evidence<'_> {
             return Some(grounded);
         }
         if self.actuator_hz().is_none() {
-            return Some(match self.unreadable {
-                Some(count) => {
-                    format!("no actuator outputs that can be read: {count} messages of the log cannot")
-                }
-                None => "no actuator outputs".into(),
-            });
+            return Some(self.no_outputs());
         }
         if self.assessment.flight.airborne_s < LEAST_USABLE_S {
             return Some("no flight".into());

@@ -73,7 +73,7 @@ impl Need {
         let has = |quantity| evidence.rate_hz(quantity).is_some();
         let reason = match self {
             Self::Commands(least_hz) => slow("motor commands", evidence.actuator_hz(), least_hz)
-                .or_else(|| evidence.actuator_hz().is_none().then(|| "no actuator outputs".into())),
+                .or_else(|| evidence.actuator_hz().is_none().then(|| lacking(evidence))),
             Self::BodyRates(least_hz) if has(Quantity::AngularRate) => {
                 slow("body rates", evidence.rate_hz(Quantity::AngularRate), least_hz)
             }
@@ -125,6 +125,11 @@ impl Need {
             }
         }
     }
+}
+
+/// Why there are no commands: an unreadable log is told as that elsewhere.
+fn lacking(evidence: &Evidence) -> String {
+    if evidence.untimed_outputs { evidence.no_outputs() } else { "no actuator outputs".to_owned() }
 }
 
 fn slow(what: &str, rate_hz: Option<f64>, least_hz: f64) -> Option<String> {

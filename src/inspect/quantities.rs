@@ -8,6 +8,7 @@ use super::outlook::judged;
 use super::quantity::{ExpectedParameter, QuantitySummary};
 use crate::diagnose::signatures::{DeterminedBy, EFFECT_QUANTITIES, EffectQuantity};
 use crate::diagnose::{Expected, ExpectedError, LEAST_FLIGHT_S, NAME_Z, SignificantAmount};
+use crate::recording::Quantity;
 
 /// A quantity's standard error as a share of its usual size up to which it is told: an effect of usual size is then four
 /// standard errors from nothing, which is what `explain` asks for.
@@ -149,6 +150,13 @@ impl Outcome<'_> {
         QuantitySummary { status, expected, at_most, reason, fly, ..none }
     }
 
+    /// It needs the voltage, which was recorded: a monitor is there.
+    fn has_unused_voltage(&self, asked: &Asked) -> bool {
+        let mut streams = self.evidence.streams.iter();
+        asked.needs().last() == Some(&Need::Voltage)
+            && streams.any(|(key, ..)| key.quantity == Quantity::BatteryVoltage)
+    }
+
     /// The others, by the columns of their effects.
     fn effect(&self, asked: &Asked, none: QuantitySummary) -> QuantitySummary {
         let effects = self.foreseen.map(|foreseen| (&foreseen.effects, foreseen.assumed));
@@ -194,6 +202,13 @@ impl Outcome<'_> {
                     fly: (!is_told).then_some(asked.fly),
                     ..none
                 }
+            }
+            Some(Expected::Lacks { .. }) if self.has_unused_voltage(asked) => {
+                let holds = self.evidence.still(Quantity::BatteryVoltage);
+                let reason = holds.map_or("no battery voltage that can be used".to_owned(), |hold| {
+                    format!("the values of the battery's voltage in this log {hold}")
+                });
+                QuantitySummary { reason: Some(reason), fly: Some(asked.fly), ..none }
             }
             Some(Expected::Lacks { what, why }) => {
                 // what to record is told beside it

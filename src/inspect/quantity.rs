@@ -1,5 +1,6 @@
 //! What one may want to know of a vehicle, as values.
 
+use crate::estimate::POOR;
 use serde::Serialize;
 
 /// What the log will tell of a quantity.
@@ -19,6 +20,15 @@ pub struct QuantitySummary {
     pub fly: Option<&'static str>,
     /// what to have recorded for it
     pub set: Option<String>,
+}
+
+impl QuantitySummary {
+    /// Share of its parameters, 0 to 1, whose standard error is one with which `identify` calls them poor.
+    #[must_use]
+    pub fn poor_share(&self) -> f64 {
+        let poor = self.expected.iter().filter(|one| one.of == "value" && one.std_relative > POOR).count();
+        poor as f64 / self.expected.len().max(1) as f64
+    }
 }
 
 /// How well a parameter will be known.

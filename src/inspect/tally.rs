@@ -193,6 +193,7 @@ impl Pass {
             kind: self.report.kind(),
             unreadable: self.report.unreadable(),
             timed: self.report.is_timed(),
+            untimed_outputs: self.report.has_untimed_outputs(),
             undefined: self.report.lacks_definitions(),
             ends_early: self.report.ends_early(),
             steps_back: self.report.out_of_order(),
@@ -232,6 +233,7 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         kind: report.kind(),
         unreadable: report.unreadable(),
         timed: report.is_timed(),
+        untimed_outputs: report.has_untimed_outputs(),
         undefined: report.lacks_definitions(),
         ends_early: report.ends_early(),
         steps_back: report.out_of_order(),
@@ -255,6 +257,8 @@ struct Found {
     unreadable: Option<u64>,
     /// messages carry times
     timed: bool,
+    /// motor outputs carry none
+    untimed_outputs: bool,
     /// most of its messages are not defined in it
     undefined: bool,
     /// it ends before the first of them
@@ -324,6 +328,10 @@ impl Found {
         mut assessment: Assessment,
         vehicle: Option<&Vehicle>,
     ) -> Inspection {
+        if self.ends_early && self.losses.is_empty() {
+            self.losses
+                .push("all behind its first messages: it was cut off before its first sample".to_owned());
+        }
         let flown_s = self.conclude(&mut tally, &mut assessment);
         let clock = std::mem::take(&mut tally.clock).summary();
         let modes = self.modes_of();
@@ -343,6 +351,7 @@ impl Found {
             steps_back: self.steps_back,
             unreadable: self.unreadable,
             timed: self.timed,
+            untimed_outputs: self.untimed_outputs,
             undefined: self.undefined,
             ends_early: self.ends_early,
             damage: self.damage.as_deref(),

@@ -16,6 +16,10 @@ const AMPLE_S: f64 = 20.0;
 /// Lost share of the flight from which it is mentioned. Only a remark depends on it.
 const NOTABLE_SHARE: f64 = 0.05;
 
+/// What Izz needs beside the data of a log.
+const YAW_NEEDS: &str =
+    " Izz also needs the rotors' torque per thrust: from a vehicle file or a thrust stand.";
+
 /// The verdict and the advice.
 pub(super) fn verdict(
     evidence: &Evidence<'_>,
@@ -41,8 +45,11 @@ pub(super) fn unflown(evidence: &Evidence<'_>) -> Option<Unflown> {
     } else {
         instead_of_nothing(evidence)
     };
-    let lacks_actuators =
-        evidence.holds_streams() && evidence.grounded().is_none() && evidence.actuator_hz().is_none();
+    // outputs that carry no time are there: that says more than what a file expects
+    let lacks_actuators = evidence.holds_streams()
+        && evidence.grounded().is_none()
+        && evidence.actuator_hz().is_none()
+        && !evidence.untimed_outputs;
     Some(Unflown { why: format!("{nothing}. {next}"), lacks_actuators })
 }
 
@@ -121,8 +128,10 @@ fn no_parameter(evidence: &Evidence<'_>, time: &str) -> String {
 fn without_vehicle(good: &[&Outlook], bad: &[&str], time: &str) -> String {
     let names: Vec<&str> = good.iter().map(|outlook| label(outlook.name)).collect();
     let but = if bad.is_empty() { String::new() } else { format!(", but not for {}", bad.join(", ")) };
+    // mass and size, which alone are asked for, do not tell it
+    let yaw = if names.contains(&"Izz") { YAW_NEEDS } else { "" };
     format!(
-        "The log contains the data for identifying {}{but}: {time}. With --vehicle this says how well it will do.",
+        "The log contains the data for identifying {}{but}: {time}. With --vehicle this says how well it will do.{yaw}",
         names.join(", ")
     )
 }
@@ -215,6 +224,8 @@ fn how(evidence: &Evidence<'_>, request: &str) -> String {
 
 /// Streams that are not there, or too slow.
 fn missing(evidence: &Evidence<'_>) -> Vec<String> {
+    // what stands on the ground does not move, and its streams are not to be recorded better
+    let stands = evidence.grounded().is_some();
     let mut advice: Vec<String> = evidence
         .damage
         .map(|damage| format!("Damaged: {damage}; what is missing of the flight may be gone with it."))
@@ -224,10 +235,12 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
         advice.push(refusal.to_string());
     }
     match evidence.actuator_hz() {
+        None if stands && evidence.still(Quantity::ActuatorCommand).is_some() => {}
         None => advice.push(match evidence.still(Quantity::ActuatorCommand) {
             Some(hold) => format!("The actuator outputs of this log {hold}: the motors did not run, and nothing can be identified."),
             None => format!(
-                "No actuator outputs: nothing can be identified. To have them, {}.",
+                "{}: nothing can be identified. To have them, {}.",
+                if evidence.untimed_outputs { "Motor outputs without times" } else { "No actuator outputs" },
                 how(evidence, "request SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS")
             ),
         }),
@@ -240,6 +253,7 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
         Some(_) => {}
     }
     match evidence.rate_hz(Quantity::AngularRate) {
+        None if stands && evidence.still(Quantity::AngularRate).is_some() => {}
         None => advice.push(format!(
             "{}: inertia cannot be identified. To have them, {}.",
             evidence
@@ -258,7 +272,7 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
         }
         Some(_) => {}
     }
-    if !evidence.has_vertical_motion() {
+    if !evidence.has_vertical_motion() && !(stands && evidence.still(Quantity::SpecificForce).is_some()) {
         advice.push(format!(
             "No vertical motion: mass cannot be identified. To have it, {}.",
             how(evidence, "request an IMU message, or attitude, rates and LOCAL_POSITION_NED")

@@ -1,5 +1,6 @@
 //! What a file is that no format reads, so that its owner is told what to do with it.
 
+use crate::autopilot::ULOG_MAGIC;
 use crate::wire::{Check, CrcSeeds, Frame};
 
 /// A kind of file that is not read.
@@ -81,6 +82,10 @@ const BEGUN: Foreign = begins(
 /// Marker, number, number and length of what is defined, and its name but for a letter.
 const BEGUN_BYTES: usize = 8;
 
+/// The same of PX4's log, whose first bytes are longer than what is told of it.
+const BEGINNINGS: &[(&[u8], Foreign)] =
+    &[(&ULOG_MAGIC, begins(b"UL", "the first bytes of a PX4 log (.ulg)", "give the whole log"))];
+
 /// Bytes that are told of what nobody knows.
 const TOLD_BYTES: usize = 8;
 
@@ -88,7 +93,7 @@ const TOLD_BYTES: usize = 8;
 const PARAMETERS: Foreign = begins(b"", "a file of parameters", "give the log of a flight");
 
 /// Lines by which a file of parameters is told.
-const LEAST_PARAMETERS: usize = 3;
+const LEAST_PARAMETERS: usize = 2;
 
 /// Lines of a name in capitals and a number: ArduPilot's.
 fn is_parameters(head: &[u8]) -> bool {
@@ -96,7 +101,8 @@ fn is_parameters(head: &[u8]) -> bool {
     let is_comment = |line: &&str| line.is_empty() || line.starts_with('#');
     let lines: Vec<&str> = text.lines().map(str::trim).filter(|line| !is_comment(line)).collect();
     // the head's end may cut the last
-    let whole = lines.split_last().map_or(&[][..], |(_, whole)| whole);
+    let all = if text.ends_with('\n') { Some(&lines[..]) } else { None };
+    let whole = all.or_else(|| lines.split_last().map(|(_, whole)| whole)).unwrap_or_default();
     whole.len() >= LEAST_PARAMETERS && whole.iter().all(|line| is_parameter(line))
 }
 
@@ -140,6 +146,14 @@ pub(super) fn foreign(head: &[u8]) -> Option<&'static Foreign> {
         let bytes = if kind.signature.is_ascii() && kind.at == 0 { plain } else { head };
         bytes.get(kind.at..).is_some_and(|bytes| bytes.starts_with(kind.signature))
     };
+    if let Some(cut) = BEGINNINGS
+        .iter()
+        .find(|(magic, _)| head.len() < magic.len() && head.len() > 1 && magic.starts_with(head))
+    {
+        return Some(&cut.1);
+    }
+    // a letter alone begins binary data as well
+    let is = |kind: &&Foreign| is(kind) && (kind.signature.len() > 1 || is_plain_text(head));
     let by_lines = || is_parameters(head).then_some(&PARAMETERS);
     KNOWN.iter().find(is).or_else(|| is_vehicle_file(head).then_some(&VEHICLE)).or_else(by_lines)
 }
@@ -156,13 +170,19 @@ pub(super) fn archive(head: &[u8]) -> Option<&'static Foreign> {
 pub(super) fn otherwise(head: &[u8]) -> (String, &'static str) {
     let is_frame =
         |head| Frame::at_start(head).is_some_and(|frame| frame.check(&CrcSeeds::new()) == Check::Right);
-    let is_binary = |byte: &u8| byte.is_ascii_control() && !byte.is_ascii_whitespace();
     if head.is_empty() {
         ("an empty file".to_owned(), "nothing was recorded into it")
     } else if head.iter().all(|byte| *byte == 0) {
         (
             "a file that begins with zeros only".to_owned(),
             "its recording was interrupted before anything was stored",
+        )
+    } else if is_begun_tlog(head) {
+        ("the first bytes of a telemetry log (.tlog)".to_owned(), "give the whole log")
+    } else if let Some(at) = head.windows(ULOG_MAGIC.len()).position(|bytes| bytes == ULOG_MAGIC) {
+        (
+            format!("{at} bytes of something else before a PX4 log (.ulg)"),
+            "give the log without what stands before it",
         )
     } else if is_piece_of_dataflash(head) {
         (
@@ -178,7 +198,7 @@ pub(super) fn otherwise(head: &[u8]) -> (String, &'static str) {
         )
     } else if is_frame(head) {
         ("MAVLink frames without stamps".to_owned(), "record the link with `mavid record`")
-    } else if head.iter().any(is_binary) || !is_text(head) {
+    } else if !is_plain_text(head) {
         let first: Vec<String> = head.iter().take(TOLD_BYTES).map(|byte| format!("{byte:02x}")).collect();
         (format!("binary data that begins with {}", first.join(" ")), "give the log itself")
     } else {
@@ -218,7 +238,59 @@ fn is_piece_of_ulog(head: &[u8]) -> bool {
     (0..head.len()).any(in_a_row)
 }
 
+/// Stamps of a telemetry log: microseconds since 1970 in these years begin so.
+const STAMPS: [&[u8]; 3] = [&[0, 4], &[0, 5], &[0, 6]];
+/// Bytes of a stamp.
+const STAMP_BYTES: usize = 8;
+/// Bytes of the longest record: shorter files may end within their first.
+const LONGEST_RECORD: usize = STAMP_BYTES + 280 + 13;
+
+/// A stamp, or the beginning of one, and no whole frame behind it.
+fn is_begun_tlog(head: &[u8]) -> bool {
+    let begins = STAMPS.iter().any(|stamp| head.starts_with(stamp));
+    let is_frame = head.get(STAMP_BYTES).is_none_or(|marker| matches!(marker, 0xfd | 0xfe));
+    begins && is_frame && head.len() < LONGEST_RECORD
+}
+
+/// Text without signs that steer something.
+fn is_plain_text(head: &[u8]) -> bool {
+    let is_binary = |byte: &u8| byte.is_ascii_control() && !byte.is_ascii_whitespace();
+    is_text(head) && !head.iter().any(is_binary)
+}
+
 /// UTF-8, but for a letter that the head's end cuts.
 fn is_text(head: &[u8]) -> bool {
     std::str::from_utf8(head).map_or_else(|error| error.error_len().is_none(), |_| true)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_cut_within_its_first_bytes_is_told_as_that() {
+        let by_signature = |head: &[u8]| foreign(head).map(|kind| kind.what);
+        assert_eq!(by_signature(b"ULo"), Some("the first bytes of a PX4 log (.ulg)"));
+        let (cut, _) = otherwise(&[0, 6, 0x5e, 1, 2, 3, 4, 5, 0xfd, 9, 0]);
+        assert_eq!(cut, "the first bytes of a telemetry log (.tlog)");
+        assert_eq!(otherwise(&[0, 6, 0x5e, 1, 2]).0, cut);
+        let behind = [&[0_u8; 64][..], &ULOG_MAGIC, &[1; 100]].concat();
+        assert_eq!(otherwise(&behind).0, "64 bytes of something else before a PX4 log (.ulg)");
+    }
+
+    #[test]
+    fn one_letter_before_binary_data_is_neither_a_page_nor_json() {
+        for letter in [b'<', b'{'] {
+            assert!(foreign(&[letter, 0x80, 0x01, 0xff, 0x00]).is_none());
+        }
+        assert_eq!(foreign(b"<html>").map(|kind| kind.what), Some("a web page (HTML)"));
+        assert_eq!(foreign(b"{\"a\": 1}").map(|kind| kind.what), Some("JSON"));
+    }
+
+    #[test]
+    fn two_lines_of_parameters_are_enough() {
+        let what = |text: &str| foreign(text.as_bytes()).map(|kind| kind.what);
+        assert_eq!(what("ACRO_YAW_P,4.5\nFRAME_CLASS,1\n"), Some(PARAMETERS.what));
+        assert_eq!(what("time_s,rotor_1\n0.1,0.5\n"), None);
+    }
 }

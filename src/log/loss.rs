@@ -232,6 +232,8 @@ pub enum Oddity {
     WithoutTime {
         /// how many
         count: u64,
+        /// commands of the motors are among them
+        outputs: bool,
     },
     /// samples of which the log does not say in which unit they are, and releases differ: they are not read
     UnknownUnit {
@@ -266,8 +268,9 @@ impl fmt::Display for Oddity {
             Self::DroppedByVehicle { count } => {
                 write!(f, "the vehicle dropped {count} messages before it could write them")
             }
-            Self::WithoutTime { count } => {
-                write!(f, "{count} samples have no time stamps of the vehicle and are not read")
+            Self::WithoutTime { count, outputs } => {
+                let among = if *outputs { ", motor outputs among them," } else { "" };
+                write!(f, "{count} samples{among} have no time stamps of the vehicle and are not read")
             }
             Self::UnknownUnit { count } => {
                 write!(f, "{count} samples are in a unit that differs between releases and are not read")

@@ -105,6 +105,12 @@ impl ReadReport {
         self.holds_times() || !self.oddities.iter().any(untimed)
     }
 
+    /// Its motor outputs carry no time of the vehicle's, whatever its other messages do: no time, no samples of them.
+    #[must_use]
+    pub fn has_untimed_outputs(&self) -> bool {
+        self.oddities.iter().any(|oddity| matches!(oddity, Oddity::WithoutTime { outputs: true, .. }))
+    }
+
     /// Messages that cannot be read in a log that the vehicle wrote, if they are a tenth of all and more: damage that takes
     /// streams away.
     #[must_use]

@@ -23,9 +23,23 @@ pub enum OnboardError {
         /// who was heard in its place
         heard: String,
     },
-    /// it was armed while its parameters were set
-    #[error("system {0} was armed meanwhile: expected it disarmed while its parameters are set")]
+    /// it is armed where its parameters are to be set
+    #[error(
+        "system {0} is armed: its parameters are set while it is disarmed alone. Land and disarm it, then give the same command \
+         again"
+    )]
     Armed(SystemId),
+    /// it does not say whether it is armed
+    #[error(
+        "system {system}: expected a HEARTBEAT within {within_s} s that says that it is disarmed, none came: nothing is set. Give \
+         the same command again on a better link"
+    )]
+    Silent {
+        /// the vehicle
+        system: SystemId,
+        /// how long it was listened for
+        within_s: u64,
+    },
     /// a signal ended it
     #[error("ended by {0}")]
     Ended(String),

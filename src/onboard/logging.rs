@@ -39,7 +39,7 @@ pub struct PutBack {
 pub async fn look(session: &mut Session, notes: &Notes) -> Result<LoggingState, OnboardError> {
     let names: Vec<&'static str> =
         session.stack.log_settings.settings.iter().map(|setting| setting.parameter).collect();
-    let known = read(session, &names).await?;
+    let known = read(session, &session.stack.log_parameters()).await?;
     if names.iter().all(|name| known.value(name).is_none()) {
         return Err(OnboardError::Unanswered(names));
     }
@@ -121,7 +121,10 @@ pub async fn put_back(session: &mut Session, notes: &Notes) -> Result<PutBack, O
     }
     let values: Vec<(&str, f64)> = wanted.iter().map(|noted| (noted.name.as_str(), noted.found)).collect();
     let mut setting = SetParameters::new(session.vehicle, &known, &values)?;
-    session.talk_disarmed(&mut setting).await?;
+    if !values.is_empty() {
+        session.expect_disarmed().await?;
+        session.talk_disarmed(&mut setting).await?;
+    }
     let names: Vec<&str> = values.iter().map(|(name, _)| *name).collect();
     if needs_restart(session, &names) {
         let now = session.moment().await?;

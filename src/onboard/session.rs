@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::OnboardError;
 use crate::autopilot::Stack;
-use crate::fetch::{Dialogue, Moment, Offer, Survey, Uptime};
+use crate::fetch::{Dialogue, FetchError, Moment, Offer, Survey, Uptime};
 use crate::fly::{Choice, Roster, heartbeat};
 use crate::link::{Address, Link, LinkEvent, LinkOptions, LinkReader, LinkWriter, Received};
 use crate::note::{About, Note};
@@ -19,6 +19,9 @@ use tokio::time::{Instant, MissedTickBehavior, interval};
 const TICK: Duration = Duration::from_millis(5);
 /// Between two words about how long a vehicle is waited for.
 const STILL_WAITING: Duration = Duration::from_secs(6);
+/// A HEARTBEAT comes each second: of so many on a bad link one arrives.
+const SILENT: Duration = Duration::from_secs(10);
+
 /// Whether a conversation goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
@@ -55,7 +58,7 @@ pub struct Session {
     interrupt: Interrupt,
     tell: fn(&Note),
     start: Instant,
-    /// as its last HEARTBEAT_PERIOD says
+    /// as its last HEARTBEAT says
     armed: bool,
     /// nothing more is said to it once it is armed
     only_disarmed: bool,
@@ -191,7 +194,24 @@ impl Session {
         }
     }
 
-    /// Talks until the dialogue is done, and no longer than the vehicle is disarmed.
+    /// Waits for the vehicle to say from now on that it is disarmed: what an earlier HEARTBEAT said may be over.
+    ///
+    /// # Errors
+    /// Those of [`talk`](Self::talk), [`OnboardError::Armed`] and [`OnboardError::Silent`].
+    pub async fn expect_disarmed(&mut self) -> Result<(), OnboardError> {
+        let system = self.vehicle.system;
+        let until = self.start.elapsed() + SILENT;
+        let mut listening = Listening { vehicle: self.vehicle, until, armed: None, is_over: false };
+        self.talk(&mut listening, |_| Ok(Flow::On)).await?;
+        match listening.armed {
+            Some(false) => Ok(()),
+            Some(true) => Err(OnboardError::Armed(system)),
+            None => Err(OnboardError::Silent { system, within_s: SILENT.as_secs() }),
+        }
+    }
+
+    /// Talks until the dialogue is done, and no longer than the vehicle is disarmed, which [`Self::expect_disarmed`] makes sure
+    /// of before.
     ///
     /// # Errors
     /// Those of [`talk`](Self::talk), and [`OnboardError::Armed`].
@@ -205,10 +225,8 @@ impl Session {
     fn take(&mut self, dialogue: &mut impl Dialogue, received: Received) {
         let Received::Frame(received) = received else { return };
         let Some(frame) = Frame::at_start(received.bytes()) else { return };
-        let header = frame.header();
-        let is_own = header.system == self.vehicle.system && header.component == self.vehicle.component;
-        if is_own && header.message_id == HEARTBEAT {
-            self.armed = frame.payload().u8(BASE_MODE_AT) & ARMED != 0;
+        if let Some(armed) = armed_by(self.vehicle, &frame) {
+            self.armed = armed;
         }
         dialogue.take(self.start.elapsed(), &frame);
     }
@@ -238,6 +256,37 @@ impl Session {
     }
 }
 
+/// Whether the vehicle is armed, by a HEARTBEAT of its autopilot; `None` for another frame.
+fn armed_by(vehicle: Vehicle, frame: &Frame<'_>) -> Option<bool> {
+    let header = frame.header();
+    let is_own = header.system == vehicle.system && header.component == vehicle.component;
+    (is_own && header.message_id == HEARTBEAT).then(|| frame.payload().u8(BASE_MODE_AT) & ARMED != 0)
+}
+
+/// Listens for the vehicle's next HEARTBEAT.
+struct Listening {
+    vehicle: Vehicle,
+    until: Duration,
+    /// as it says
+    armed: Option<bool>,
+    is_over: bool,
+}
+
+impl Dialogue for Listening {
+    fn poll(&mut self, now: Duration) -> Result<Option<MavMessage>, FetchError> {
+        self.is_over |= now > self.until;
+        Ok(None)
+    }
+
+    fn take(&mut self, _now: Duration, frame: &Frame<'_>) {
+        self.armed = self.armed.or_else(|| armed_by(self.vehicle, frame));
+    }
+
+    fn is_done(&self) -> bool {
+        self.is_over || self.armed.is_some()
+    }
+}
+
 /// How long a vehicle was waited for, of how long.
 fn waiting(address: &Address, waited: Duration, patience: Duration) -> Note {
     let text = format!("no vehicle yet: waiting {} of {} s", waited.as_secs(), patience.as_secs());
@@ -255,5 +304,49 @@ fn note_absence(address: &Address, event: &LinkEvent, absent: &mut Option<String
         }
         LinkEvent::Connected { .. } | LinkEvent::Restored { .. } => *absent = None,
         _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::autopilot::Autopilot;
+    use crate::wire::{ComponentId, CrcSeeds, checksum};
+
+    /// A HEARTBEAT of a multirotor: component, base mode.
+    fn beat(component: u8, base_mode: u8) -> Vec<u8> {
+        let mut frame = vec![0xFD, 9, 0, 0, 0, 1, component, 0, 0, 0];
+        frame.extend([0, 0, 0, 0, 2, 3, base_mode, 3, 3]);
+        let sum = checksum(&frame[1..], CrcSeeds::new().get(0).unwrap());
+        frame.extend(sum.to_le_bytes());
+        frame
+    }
+
+    /// What was heard of these within 10 s.
+    fn heard(beats: &[Vec<u8>]) -> (Option<bool>, bool) {
+        let vehicle = Vehicle {
+            system: SystemId(1),
+            component: ComponentId(1),
+            autopilot: Autopilot::ArduPilot,
+            kind: None,
+        };
+        let mut listening = Listening { vehicle, until: SILENT, armed: None, is_over: false };
+        for beat in beats {
+            assert_eq!(listening.poll(Duration::from_secs(9)), Ok(None), "nothing is asked");
+            listening.take(Duration::from_secs(9), &Frame::at_start(beat).unwrap());
+        }
+        listening.poll(SILENT + TICK).unwrap();
+        (listening.armed, listening.is_done())
+    }
+
+    #[test]
+    fn parameters_are_set_only_after_the_vehicle_said_that_it_is_disarmed() {
+        assert_eq!(heard(&[beat(1, 81)]), (Some(false), true));
+        assert_eq!(heard(&[beat(1, 209)]), (Some(true), true));
+        // another component's word does not count, and silence is no answer
+        assert_eq!(heard(&[beat(9, 81), beat(1, 209)]), (Some(true), true));
+        assert_eq!(heard(&[beat(9, 81)]), (None, true));
+        let armed = OnboardError::Armed(SystemId(1)).to_string();
+        assert!(armed.contains("Land and disarm it, then give the same command again"), "{armed}");
     }
 }

@@ -17,6 +17,7 @@ pub(super) async fn set(
     changes: &[Noted],
     notes: &Notes,
 ) -> Result<(), OnboardError> {
+    session.expect_disarmed().await?;
     notes.add(changes)?;
     let wanted: Vec<(&str, f64)> = changes.iter().map(|change| (change.name.as_str(), change.set)).collect();
     let mut setting = SetParameters::new(session.vehicle, known, &wanted)?;

@@ -37,7 +37,7 @@ impl StandQuantity {
     pub(super) fn units_words(self) -> &'static str {
         match self {
             Self::Pulse => "us, ms",
-            Self::Throttle => "us, %",
+            Self::Throttle => "us, %, 0..1",
             Self::RotorSpeed => "RPM, rad/s, Hz",
             Self::Thrust => "N, kgf, gf, lbf, ozf",
             Self::Torque => "N m, mN m, kgf cm, ozf in",

@@ -65,16 +65,17 @@ fn rows(expected: String, came: String) -> StandError {
     StandError::Rows { expected, came }
 }
 
+/// What a law over too few states expects.
+fn too_few(what: &str) -> String {
+    format!("rows of at least {LEAST_STEPS} states of the rotor for {what}")
+}
+
 /// The name of the law in sentences.
 const CURVE: &str = "the thrust curve";
 
 /// A table's commands as shares of the vehicle's range. The law is of commands in 0..1: what a stand measures outside of them
 /// would bend it, and is no number here.
-fn commands(table: &StandTable, actuator: Actuator) -> Result<Vec<f64>, StandError> {
-    let range = match actuator {
-        Actuator::Pwm(Some(range)) => range,
-        _ => PULSES,
-    };
+fn commands(table: &StandTable, range: PwmRange) -> Result<Vec<f64>, StandError> {
     let pulse_us = |command: &f64| {
         if table.is_pulse { *command } else { PULSES.min_us + command * (PULSES.max_us - PULSES.min_us) }
     };
@@ -88,6 +89,28 @@ fn commands(table: &StandTable, actuator: Actuator) -> Result<Vec<f64>, StandErr
     }
     let within = |u: f64| if (0.0..=1.0).contains(&u) { u } else { f64::NAN };
     Ok(shares.into_iter().map(within).collect())
+}
+
+/// Pulses of none and of full command.
+fn range_of(actuator: Actuator) -> PwmRange {
+    match actuator {
+        Actuator::Pwm(Some(range)) => range,
+        _ => PULSES,
+    }
+}
+
+/// Rows whose command is a number outside of the vehicle's range, in words; `None` without any.
+fn outside(table: &StandTable, within: &[f64], range: PwmRange) -> Option<String> {
+    let rows = table.command.iter().zip(within).filter(|(command, u)| command.is_finite() && u.is_nan());
+    let count = rows.count();
+    (count > 0).then(|| {
+        format!(
+            "{count} of {} rows have commands outside of the vehicle's, {:.0} to {:.0} us, and are left out",
+            table.command.len(),
+            range.min_us,
+            range.max_us
+        )
+    })
 }
 
 /// Thrust at full command, N, and the exponent of the curve, from the law's linear and quadratic parts.
@@ -140,8 +163,7 @@ impl StandResult {
         wanted: &[f64],
     ) -> Result<Fit, StandError> {
         if steps.len() < LEAST_STEPS {
-            let expected = format!("rows of at least {LEAST_STEPS} states of the rotor for {what}");
-            return Err(rows(expected, steps.len().to_string()));
+            return Err(rows(too_few(what), steps.len().to_string()));
         }
         let fit = Fit::of(columns, wanted).filter(|fit| fit.explained >= LEAST_EXPLAINED);
         let Some(fit) = fit else {
@@ -164,8 +186,14 @@ impl StandResult {
         if !used.any(&table.command) {
             return Ok(());
         }
-        let commands = commands(table, self.propulsion.actuator)?;
+        let range = range_of(self.propulsion.actuator);
+        let commands = commands(table, range)?;
+        let outside = outside(table, &commands, range);
         let steps = used.steps(&[&commands, &table.thrust_n]);
+        if let Some(outside) = outside.as_ref().filter(|_| steps.len() < LEAST_STEPS) {
+            return Err(rows(too_few(CURVE), format!("{}: {outside}", steps.len())));
+        }
+        self.sentences.extend(outside);
         let (u, thrust) = (&steps.means[0], &steps.means[1]);
         let square: Vec<f64> = u.iter().map(|u| u * u).collect();
         let fit = self.law(CURVE, &steps, &[u.clone(), square.clone()], thrust)?;

@@ -86,3 +86,19 @@ fn what_no_rotor_does_is_refused() {
     let fast = rows(|n| format!("{},{}\n", 1e6 * n, n));
     assert!(said(&format!("RPM,Thrust (N)\n{fast}")).contains("rotor speeds up to"));
 }
+
+#[test]
+fn rows_outside_of_the_vehicles_commands_are_told() {
+    let range = PwmRange { min_us: 1150.0, max_us: 1950.0 };
+    let stated = Propulsion { actuator: Actuator::Pwm(Some(range)), ..STATED };
+    let text = "Throttle (%),Thrust (N)\n10,0.4\n20,1.0\n40,3.1\n60,6.2\n80,10.1\n100,15.0\n";
+    let why = measured_propulsion(&parse_table(text).unwrap(), &stated).unwrap_err().to_string();
+    let told = "2 of 6 rows have commands outside of the vehicle's, 1150 to 1950 us, and are left out";
+    assert!(why.contains(&format!("got 4: {told}")), "{why}");
+    let more = text.replace("60,6.2", "50,4.5\n60,6.2");
+    let sentences = measured_propulsion(&parse_table(&more).unwrap(), &stated).unwrap().sentences;
+    assert!(
+        sentences.iter().any(|said| said.starts_with("2 of 7 rows have commands outside")),
+        "{sentences:?}"
+    );
+}

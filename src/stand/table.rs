@@ -32,6 +32,8 @@ pub struct StandTable {
     pub missing: Vec<&'static str>,
     /// rows without a number
     pub rows_left_out: usize,
+    /// the file's thrust is negative, and is taken with the other sign
+    pub is_turned: bool,
 }
 
 /// Reads the table of a file.
@@ -233,18 +235,20 @@ impl Chosen {
                 came: odd.unwrap_or_else(|| "none".to_owned()),
             });
         }
-        upright(&mut table.thrust_n);
+        table.is_turned = upright(&mut table.thrust_n);
         upright(&mut table.torque_nm);
         Ok(table)
     }
 }
 
-/// A stand that pushes the other way measures the same with the other sign.
-fn upright(values: &mut [f64]) {
+/// A stand that pushes the other way measures the same with the other sign. Whether it did.
+fn upright(values: &mut [f64]) -> bool {
     let sum: f64 = values.iter().filter(|value| value.is_finite()).sum();
-    if sum < 0.0 {
+    let is_turned = sum < 0.0;
+    if is_turned {
         values.iter_mut().for_each(|value| *value = -*value);
     }
+    is_turned
 }
 
 #[cfg(test)]
@@ -262,6 +266,7 @@ mod tests {
         assert!((table.thrust_n[0] - 4.903_325).abs() < 1e-9 && table.thrust_n[1].is_nan());
         assert!((table.speed_rad_s[0] - 200.0 * std::f64::consts::PI).abs() < 1e-9);
         assert_eq!((table.rows_left_out, table.missing.len()), (1, 0));
+        assert!(table.is_turned);
     }
 
     #[test]
@@ -269,6 +274,9 @@ mod tests {
         let said = |text: &str| parse_table(text).unwrap_err().to_string();
         assert!(said("a,b\n1,2\n").contains("expected a header with a column of thrust"));
         assert!(said("Thrust,RPM\n1,2\n").contains("a unit of the column of thrust"));
+        assert!(
+            said("command,Thrust (N)\n0.5,2\n").contains("such as us, %, 0..1, got the heading \"command\"")
+        );
         assert!(said("Thrust (N),Torque (N m)\n1,2\n").contains("the command or of the rotor speed"));
         assert!(said("Thrust A (N),Thrust B (N),RPM\n1,2,3\n").contains("one column of thrust"));
         assert!(said("").contains("got \"\""));

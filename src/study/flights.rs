@@ -212,7 +212,7 @@ fn of_log(flights: Vec<LogFlight>, log: &InputFile, logged_by: LoggedBy) -> Vec<
         let about = || About::File(input.path.clone());
         let told: Vec<Note> = off_mixer.iter().map(|off| Note::warning(about(), off.to_string())).collect();
         input.notes.extend(told);
-        Flight { logged_by, recording: flight.recording, input, off_mixer }
+        Flight { logged_by, recording: flight.recording, input, off_mixer, actuator: None }
     };
     flights.into_iter().enumerate().map(named).collect()
 }

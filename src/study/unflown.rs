@@ -1,5 +1,6 @@
 //! A log without a flight is refused with the message of `inspect`, before any other check.
 
+use super::vehicle_given::DRAFTED;
 use super::{ReadSettings, StudyError};
 use crate::inspect::{Unflown, inspect};
 use crate::log::OpenOptions;
@@ -12,7 +13,10 @@ use std::path::{Path, PathBuf};
 pub(super) fn unflown_first(error: StudyError, logs: &[PathBuf], read: &ReadSettings) -> StudyError {
     let says_expected = match &error {
         StudyError::File { .. } => false,
-        StudyError::Flight { source, .. } => matches!(**source, SignalsError::NoActuators { .. }),
+        // a drafted vehicle expects what the log holds
+        StudyError::Flight { source, vehicle, .. } => {
+            vehicle != DRAFTED && matches!(**source, SignalsError::NoActuators { .. })
+        }
         _ => return error,
     };
     let Ok(options) = read.open_options() else { return error };

@@ -126,6 +126,14 @@ impl VehicleGiven {
         }
     }
 
+    /// A drafted vehicle has the actuator of the first log: commands of each log are read in its own unit. What a file states holds
+    /// for all of them.
+    pub(super) fn own_units(&self, logs: &mut [Vec<Flight>]) {
+        if matches!(self, Self::Weighed(_)) {
+            logs.iter_mut().flatten().for_each(Flight::read_in_own_unit);
+        }
+    }
+
     /// The vehicle, drafted from the first flight of the logs where it is not in a file.
     pub(super) fn of_flights(&self, known: Option<Known>, logs: &[Vec<Flight>]) -> Result<Known, StudyError> {
         let first = logs.iter().flatten().next();
@@ -144,7 +152,7 @@ impl VehicleGiven {
 }
 
 /// What messages call a vehicle that is of no file.
-const DRAFTED: &str = "the drafted vehicle";
+pub(super) const DRAFTED: &str = "the drafted vehicle";
 
 fn of_draft(draft: &Draft) -> LoadedVehicle {
     LoadedVehicle {
@@ -212,8 +220,13 @@ pub fn with_thrust_stand(mut draft: Draft, table: &Path) -> Result<Draft, StudyE
         _ => StudyError::File { file: name.clone(), why: error.to_string() },
     };
     let vehicle = &mut draft.vehicle;
-    let stand = read_table(table).and_then(|table| measured_propulsion(&table, &vehicle.propulsion));
-    let stand = stand.map_err(unusable)?;
+    let read = read_table(table).map_err(unusable)?;
+    let stand = measured_propulsion(&read, &vehicle.propulsion).map_err(unusable)?;
+    if read.is_turned {
+        draft.doubts.push(format!(
+            "{name}: its thrust is negative: taken as positive, as of a stand that pushes the other way"
+        ));
+    }
     let weight_n = vehicle.body.mass_kg * vehicle.gravity_m_s2 / vehicle.rotors.len() as f64;
     let hovers = vehicle.propulsion.command_from_thrust(weight_n);
     let by_flight = vehicle.guesses.iter().any(|guess| {

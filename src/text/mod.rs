@@ -10,6 +10,7 @@ mod excerpt;
 mod format;
 mod json;
 mod number;
+mod utc;
 mod wrap;
 
 pub use escape::{clean, clean_lines, is_command};
@@ -18,4 +19,5 @@ pub use format::{line_comment, markup, markup_comment, shell_word, toml_string};
 pub use json::{json_line, json_pretty};
 pub(crate) use number::rounded;
 pub use number::{chance, compact, significant, spoken, with_error};
+pub use utc::utc;
 pub use wrap::wrapped;

@@ -2,12 +2,14 @@
 
 use crate::support;
 
+use mavid::draft::Given;
 use mavid::physics::Wrench;
 use mavid::recording::{Quantity, Recording, StreamKey};
 use mavid::signals::{ClockOffset, clock_offset};
 use mavid::simulate::{
     Disturbance, FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight,
 };
+use mavid::study::{ExplainRequest, Silent, VehicleGiven, explain};
 use nalgebra::Vector3;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -166,4 +168,20 @@ fn logs_of_two_autopilots_are_refused_at_once() {
         let is_told = said.contains("got a log of ArduPilot beside one of PX4");
         assert!(status.code() == Some(2) && is_told, "{verb}: {said}");
     }
+}
+
+#[test]
+fn commands_in_another_unit_are_read_beside_those_from_which_the_vehicle_is_drafted() {
+    let Some(shared) = support::shared() else { return };
+    let log = |name: &str| shared.join("onboard/sitl").join(name);
+    let given = Given { mass_kg: 1.0, size_m: Some(0.4), frame: None };
+    // pulses beside commands in 0..1: both are conditioned, and then the other log of a flight shows nothing of it
+    let request = ExplainRequest {
+        vehicle: VehicleGiven::Weighed(given),
+        logs: vec![log("px04.ulg")],
+        holdout: vec![log("px04.tlog")],
+        ..ExplainRequest::default()
+    };
+    let refusal = explain(&request, &Silent).err().unwrap().to_string();
+    assert!(refusal.contains("is another log of the flight of"), "{refusal}");
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use mavid::config::read_vehicle;
 use mavid::draft::Given;
-use mavid::inspect::{Inspection, inspect};
+use mavid::inspect::{Inspection, Reading, inspect};
 use mavid::log::{Input, OpenOptions};
 use mavid::study::{IdentifyRequest, ReadSettings, Silent, VehicleGiven, identify};
 use mavid::wire::SystemId;
@@ -156,6 +156,32 @@ fn the_truth_about_every_foreign_log() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_drafted_vehicle_expects_no_outputs_and_the_setting_of_the_log_is_named() {
+    let Some(shared) = support::shared() else { return };
+    let request = IdentifyRequest {
+        vehicle: VehicleGiven::Weighed(Given { mass_kg: 1.2, size_m: Some(0.4), frame: None }),
+        logs: vec![shared.join("onboard/logs/copter_402_thin_quad.bin")],
+        ..IdentifyRequest::default()
+    };
+    let refusal = identify(&request, &Silent).err().unwrap().to_string();
+    assert!(refusal.contains("no actuator outputs. Next time set LOG_BITMASK = 411509"), "{refusal}");
+    assert!(!refusal.contains("vehicle file"), "{refusal}");
+}
+
+#[test]
+fn a_pause_between_two_flights_does_not_lower_the_rates_of_topics() {
+    let Some(shared) = support::shared() else { return };
+    let log = shared.join("onboard/logs/copter_364_2019_quad.bin");
+    let found = inspect(&log, &OpenOptions::default(), None, &mut |_| ()).unwrap();
+    let Reading::Onboard(reading) = &found.reading else { panic!("{:?}", found.reading) };
+    for (name, hz) in [("AHR2", 10.0), ("ATT", 10.0), ("IMU", 25.0), ("GPS", 5.0)] {
+        let topic = reading.topics.iter().find(|topic| topic.name == name && topic.instance == 0).unwrap();
+        let rate_hz = topic.rate_hz.unwrap();
+        assert!((rate_hz / hz - 1.0).abs() < 0.05, "{name} at {rate_hz} Hz");
+    }
 }
 
 /// What is told of a log that somebody damaged, made from one that is sound.

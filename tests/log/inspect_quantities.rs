@@ -9,6 +9,7 @@ use mavid::config::read_vehicle;
 use mavid::diagnose::{Expected, ExplainSettings, expected_errors, explain};
 use mavid::inspect::{Inspection, QuantitySummary, inspect};
 use mavid::log::{self, OpenOptions};
+use mavid::report::inspection_text;
 use mavid::signals::{ConditionSettings, ThrustPreference, condition};
 use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight};
 use mavid::vehicle::Vehicle;
@@ -122,4 +123,15 @@ fn the_first_screen_has_a_line_for_each_quantity() {
         let said = line.trim_start().trim_start_matches(name).trim_start();
         assert!(["yes", "partly", "no"].iter().any(|word| said.starts_with(word)), "{line}");
     }
+}
+
+#[test]
+fn without_a_vehicle_yaw_and_poor_errors_are_told_as_with_one() {
+    let Some(shared) = support::shared() else { return };
+    let log = shared.join("onboard/sitl/px06.ulg");
+    let found = inspect(&log, &OpenOptions::default(), None, &mut |_| ()).unwrap();
+    let text = inspection_text("px06.ulg", &found);
+    assert!(found.verdict.contains("Izz also needs the rotors' torque per thrust"), "{}", found.verdict);
+    assert!(text.contains("; Izz only where the rotors' torque per thrust is known"), "{text}");
+    assert!(text.contains("yes, but poorly, to"), "{text}");
 }

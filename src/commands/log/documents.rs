@@ -86,7 +86,11 @@ impl ListDocument {
         for log in &self.logs {
             let id = log.id.map_or_else(|| "-".to_owned(), |id| id.to_string());
             let name = log.name.clone().unwrap_or_default();
-            lines.push(format!("{id:>6}  {:>10.2} MB  {name}", log.bytes as f64 / 1e6).trim_end().to_owned());
+            // a vehicle without a clock says 0
+            let time = log.time_utc_s.filter(|time_s| *time_s > 0);
+            let time = time.map_or_else(String::new, |time_s| text::utc(u64::from(time_s) * 1_000_000));
+            let line = format!("{id:>6}  {:>10.2} MB  {time}  {name}", log.bytes as f64 / 1e6);
+            lines.push(line.trim_end().to_owned());
         }
         if self.left_out > 0 {
             lines.push(format!(
@@ -134,13 +138,16 @@ pub fn page(done: &Download) -> String {
         0 => String::new(),
         bytes => format!(" after {:.2} MB of an earlier download", bytes as f64 / 1e6),
     };
+    let next = match done.bytes {
+        0 => "it is empty: the vehicle wrote nothing into it".to_owned(),
+        _ => format!("next: mavid inspect {}", text::path(&done.path)),
+    };
     format!(
-        "{}: {:.2} MB in {seconds:.1} s by {}, {rate_kb_s:.0} kB/s{resumed}\n{}\nnext: mavid inspect {}",
+        "{}: {:.2} MB in {seconds:.1} s by {}, {rate_kb_s:.0} kB/s{resumed}\n{}\n{next}",
         text::path(&done.path),
         done.bytes as f64 / 1e6,
         done.protocol.words(),
-        checked_words(done.checked),
-        text::path(&done.path)
+        checked_words(done.checked)
     )
 }
 
@@ -173,6 +180,8 @@ mod tests {
             ListDocument { schema, system, autopilot, protocol, logs, left_out: 0 }.page(&link)
         };
         assert!(page(vec![log(7)]).starts_with("system 1, px4: 1 log\n"), "{}", page(vec![log(7)]));
+        let dated = LogLine { time_utc_s: Some(1_700_000_000), ..log(7) };
+        assert!(page(vec![dated]).contains("2.00 MB  2023-11-14 22:13:20 UTC"));
         let two = page(vec![log(7), log(8)]);
         assert!(two.starts_with("system 1, px4: 2 logs, oldest first\n"), "{two}");
         assert!(two.ends_with("next: mavid log fetch --connect udpin:0.0.0.0:14550 --id 8"), "{two}");

@@ -1,7 +1,7 @@
 //! The vehicle's own log of a flight that has just ended.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use mavid::fetch::LogSelection;
 use mavid::onboard::{self, Flow, Progress};
@@ -13,6 +13,7 @@ use super::hint;
 use super::link::open_as;
 use crate::cli::{FlyArgs, VehicleLinkArgs};
 use crate::commands::live::Work;
+use crate::commands::progress::DownloadLines;
 use crate::commands::words::Word;
 use crate::commands::{CommandError, network, output};
 
@@ -78,8 +79,13 @@ fn later(link: &VehicleLinkArgs, folder: &Path) -> String {
 fn judged(progress: &Progress, bytes_s: f64, fetching: Fetching) -> Result<String, String> {
     let left = progress.of.saturating_sub(progress.bytes);
     let left_s = if bytes_s > 0.0 { left as f64 / bytes_s } else { f64::INFINITY };
-    let time = if left_s.is_finite() { format!("about {left_s:.0} s") } else { "no end in sight".to_owned() };
-    let size = format!("{:.1} MB at {:.0} kB/s", progress.of as f64 / 1e6, bytes_s / 1e3);
+    // what came while the speed was measured is not waited for
+    let more = if progress.bytes > 0 { " more" } else { "" };
+    let time =
+        if left_s.is_finite() { format!("about {left_s:.0} s{more}") } else { "no end in sight".to_owned() };
+    let there =
+        if progress.bytes > 0 { format!("{:.1} of ", progress.bytes as f64 / 1e6) } else { String::new() };
+    let size = format!("{there}{:.1} MB at {:.0} kB/s", progress.of as f64 / 1e6, bytes_s / 1e3);
     if fetching == Fetching::IfFast && left_s > AT_MOST.as_secs_f64() {
         return Err(format!(
             "the vehicle's own log would take too long ({size}: {time}): it is not fetched without --fetch-log"
@@ -102,8 +108,11 @@ async fn fetched(
     match logs.last() {
         None => tell(Word::Message("the vehicle wrote no log of its own".to_owned())),
         Some(log) => {
-            let mut told = false;
+            let (mut told, mut lines) = (false, DownloadLines::new(Instant::now()));
             let mut watch = |progress: Progress| {
+                if let Some(line) = lines.due(Instant::now(), progress.bytes, progress.of) {
+                    tell(Word::Message(format!("the vehicle's own log: {line}")));
+                }
                 if let Some(chosen) = &progress.chosen {
                     tell(Word::Message(format!("the vehicle's own log: {chosen}")));
                 }
@@ -149,6 +158,9 @@ mod tests {
         assert!(judged(&progress, 1e5, Fetching::Always).is_ok());
         let fast = judged(&progress, 2e5, Fetching::IfFast).unwrap();
         assert_eq!(fast, "fetching the vehicle's own log, 7.0 MB at 200 kB/s: about 35 s");
+        let begun = Progress { bytes: 600_000, of: 1_600_000, ..progress.clone() };
+        let rest = judged(&begun, 2e5, Fetching::IfFast).unwrap();
+        assert_eq!(rest, "fetching the vehicle's own log, 0.6 of 1.6 MB at 200 kB/s: about 5 s more");
         let never = judged(&progress, 0.0, Fetching::IfFast).unwrap_err();
         assert!(never.contains("no end in sight"), "{never}");
     }

@@ -3,7 +3,7 @@
 use mavid::onboard;
 
 use super::link::open;
-use super::prepare::changes_page;
+use super::prepare::{changes_page, restart_now, suffices};
 use super::state;
 use crate::cli::VehicleLinkArgs;
 use crate::commands::CommandError;
@@ -18,6 +18,12 @@ pub struct LoggingNeeds {
     pub changes: String,
     /// it counts only after a restart of the autopilot
     pub restarts: bool,
+    /// what was set and waits for a restart of the autopilot, in a sentence
+    pub awaited: Option<String>,
+    /// that what it logs suffices, as far as the vehicle tells
+    pub suffices: Option<String>,
+    /// parameters of logging that did not answer
+    pub unknown: Vec<&'static str>,
 }
 
 /// Asks the vehicle how it logs. Nothing on it is changed.
@@ -34,6 +40,9 @@ pub fn logging_needs(link: &VehicleLinkArgs) -> Result<LoggingNeeds, CommandErro
         Ok(LoggingNeeds {
             changes: changes_page(&state.plan.changes),
             restarts: onboard::needs_restart(&session, &names),
+            awaited: (!state.awaited.is_empty()).then(|| restart_now(&state.awaited)),
+            suffices: suffices(&session, &state),
+            unknown: state.plan.unknown,
             logs: state.plan.logs,
         })
     })

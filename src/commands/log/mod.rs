@@ -14,7 +14,7 @@ pub use before::{before_flight, link_of, put_back};
 pub use flown::{Fetching, after_flight};
 pub use hint::link_options;
 pub use link::{Answered, open, parameters_of_vehicle};
-pub use logging_needs::logging_needs;
+pub use logging_needs::{LoggingNeeds, logging_needs};
 pub use prepare::{agreed, all_put_back, put_back_page};
 pub use state::notes_of_loaded;
 pub use verb::run;

@@ -133,7 +133,7 @@ fn set_page(link: &VehicleLinkArgs, place: &str, restart: bool) -> String {
 }
 
 fn says(session: &Session, prepared: &LoggingState) -> String {
-    let LoggingState { plan, awaited, unsure, noted, .. } = prepared;
+    let LoggingState { plan, awaited, .. } = prepared;
     let (changes, unknown) = (&plan.changes, &plan.unknown);
     let until = if awaited.is_empty() { "" } else { " until the autopilot is restarted" };
     let mut lines =
@@ -145,19 +145,7 @@ fn says(session: &Session, prepared: &LoggingState) -> String {
     if !awaited.is_empty() {
         lines.push(restart_now(awaited));
     }
-    let from_start = session.stack.log_rates_from_start();
-    if changes.is_empty() && unknown.is_empty() && awaited.is_empty() {
-        lines.push(match from_start {
-            Some(name) if !unsure.is_empty() => format!(
-                "that is enough for an identification if the autopilot was restarted since {name} was set. The \
-                 autopilot's uptime does not show whether it was restarted."
-            ),
-            Some(name) if !noted.iter().any(|noted| noted.name == name) => format!(
-                "that is enough for an identification, if {name} was not changed since the autopilot's last start"
-            ),
-            _ => "that is enough for an identification".to_owned(),
-        });
-    }
+    lines.extend(suffices(session, prepared));
     for change in changes {
         let LogChange { parameter, found, needed, restarts } = change;
         let restart = if *restarts { ", after a restart of the autopilot" } else { "" };
@@ -169,6 +157,24 @@ fn says(session: &Session, prepared: &LoggingState) -> String {
         ));
     }
     lines.join("\n")
+}
+
+/// What is said where nothing is to be changed and all is known: that it suffices, as far as the vehicle tells.
+pub fn suffices(session: &Session, prepared: &LoggingState) -> Option<String> {
+    let LoggingState { plan, awaited, unsure, noted, .. } = prepared;
+    if !(plan.changes.is_empty() && plan.unknown.is_empty() && awaited.is_empty()) {
+        return None;
+    }
+    Some(match session.stack.log_rates_from_start() {
+        Some(name) if !unsure.is_empty() => format!(
+            "that is enough for an identification if the autopilot was restarted since {name} was set. The \
+             autopilot's uptime does not show whether it was restarted."
+        ),
+        Some(name) if !noted.iter().any(|noted| noted.name == name) => format!(
+            "that is enough for an identification, if {name} was not changed since the autopilot's last start"
+        ),
+        _ => "that is enough for an identification".to_owned(),
+    })
 }
 
 /// What waits for a restart.

@@ -1,5 +1,7 @@
 //! The runs of `mavid log list` and `mavid log fetch`.
 
+use std::time::Instant;
+
 use mavid::fetch::{LogSelection, Offer, RemoteLog};
 use mavid::onboard::{self, Flow, Progress, Session};
 
@@ -7,7 +9,7 @@ use super::documents::{FetchDocument, ListDocument, page};
 use super::link::open;
 use super::{prepare, state};
 use crate::cli::{LogArgs, LogFetchArgs, LogListArgs, LogVerb, VehicleLinkArgs};
-use crate::commands::progress::bytes_bar;
+use crate::commands::progress::{DownloadLines, bytes_bar};
 use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, live, network, output};
 
@@ -52,7 +54,11 @@ async fn fetch(json: bool, stderr: &StandardError, args: &LogFetchArgs) -> Resul
     output::folder(&args.out)?;
     let log = chosen(&logs, args.id)?;
     let bar = stderr.bar(bytes_bar(log.size));
+    // where no bar can be drawn
+    let mut lines = (!stderr.can_draw()).then(|| DownloadLines::new(Instant::now()));
     let mut watch = |progress: Progress| {
+        let line = lines.as_mut().and_then(|lines| lines.due(Instant::now(), progress.bytes, progress.of));
+        line.iter().for_each(|line| output::message(line));
         bar.set_length(progress.of);
         bar.set_position(progress.bytes);
         if let Some(chosen) = progress.chosen {

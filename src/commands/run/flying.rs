@@ -11,6 +11,8 @@ use super::progress::Progress;
 use super::step::Step;
 use super::target::Target;
 use crate::commands::fly::{self, FlightRun, Manner};
+use crate::commands::log::LoggingNeeds;
+use crate::commands::words::Word;
 use crate::commands::{CommandError, log, output};
 
 /// A flight that is over, and its logs.
@@ -48,9 +50,8 @@ pub fn may_set_logging(context: &Context<'_>, target: &Target) -> Result<bool, C
         }
         Ok(needs) => needs,
     };
-    needs.logs.iter().for_each(|line| output::message(&format!("it logs {line}")));
+    told(&needs).iter().for_each(Word::say);
     if needs.changes.is_empty() {
-        output::message("that is enough for an identification");
         return Ok(false);
     }
     let restart = if needs.restarts { " (this needs a restart of the autopilot)" } else { "" };
@@ -60,6 +61,17 @@ pub fn may_set_logging(context: &Context<'_>, target: &Target) -> Result<bool, C
     }
     let question = format!("For a better log: set {change}, and put it back after the flight?");
     context.ask.agreed(&question, false)
+}
+
+/// What the vehicle logs, and whether that suffices.
+fn told(needs: &LoggingNeeds) -> Vec<Word> {
+    let until = if needs.awaited.is_some() { ", until the autopilot is restarted" } else { "" };
+    let logs = needs.logs.iter().map(|line| Word::Message(format!("it logs {line}{until}")));
+    let unknown = (!needs.unknown.is_empty())
+        .then(|| Word::Message(format!("not known: {} did not answer", needs.unknown.join(", "))));
+    let awaited = needs.awaited.clone().map(Word::Warning);
+    let enough = needs.suffices.clone().map(Word::Message);
+    logs.chain(unknown).chain(awaited).chain(enough).collect()
 }
 
 /// The step of a flight along a trajectory, into a folder.
@@ -123,5 +135,24 @@ pub fn fly(context: &Context<'_>, target: &Target, step: &Step) -> Result<Flight
             why(),
             text::path(&args.out)
         ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_waits_for_a_restart_is_not_called_enough() {
+        let needs = LoggingNeeds {
+            logs: vec!["motor commands at 10 Hz".to_owned()],
+            awaited: Some("the autopilot was not restarted".to_owned()),
+            ..LoggingNeeds::default()
+        };
+        let waits = Word::Warning("the autopilot was not restarted".to_owned());
+        let until = "it logs motor commands at 10 Hz, until the autopilot is restarted";
+        assert_eq!(told(&needs), [Word::Message(until.to_owned()), waits]);
+        let enough = LoggingNeeds { awaited: None, suffices: Some("enough".to_owned()), ..needs };
+        assert_eq!(told(&enough)[1], Word::Message("enough".to_owned()));
     }
 }

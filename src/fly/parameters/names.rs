@@ -23,7 +23,7 @@ pub fn requested_parameters(autopilot: Autopilot, rotors: usize) -> Vec<Requeste
     let one = |purpose| move |name| RequestedParameter { names: vec![name], purpose };
     let outputs = outputs.map(one(Purpose::Thrust));
     let switches = switches(stack).into_iter().map(one(Purpose::Failsafe));
-    let logging = stack.log_settings.settings.iter().map(|setting| setting.parameter.to_owned());
+    let logging = stack.log_parameters().into_iter().map(str::to_owned);
     named.chain(outputs).chain(switches).chain(logging.map(one(Purpose::Logging))).collect()
 }
 

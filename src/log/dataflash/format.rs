@@ -111,7 +111,10 @@ fn report(format: &'static str, walked: Walked, damage: &DataflashDamage) -> Rea
     let Walked { identity, tally, clock, dropped, .. } = walked;
     let oddities = [
         (dropped, Oddity::DroppedByVehicle { count: dropped }),
-        (tally.without_time, Oddity::WithoutTime { count: tally.without_time }),
+        (
+            tally.without_time,
+            Oddity::WithoutTime { count: tally.without_time, outputs: tally.outputs_without_time },
+        ),
         (tally.unknown_unit, Oddity::UnknownUnit { count: tally.unknown_unit }),
         (
             clock.ran_back,

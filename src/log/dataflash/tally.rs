@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::known::is_known;
 use super::message::Message;
 use super::routes::Routes;
-use crate::log::onboard::Topic;
+use crate::log::onboard::{Topic, is_pause};
 
 /// How many messages of which name there are.
 #[derive(Debug, Default)]
@@ -14,6 +14,8 @@ pub(super) struct Tally {
     counts: Vec<Count>,
     /// samples that are left out because their messages carry no time
     pub without_time: u64,
+    /// commands of the motors are among them
+    pub outputs_without_time: bool,
     /// samples that are left out because the log does not say in which unit they are
     pub unknown_unit: u64,
 }
@@ -22,6 +24,8 @@ pub(super) struct Tally {
 struct Count {
     count: u64,
     span_s: Option<(f64, f64)>,
+    pauses: u64,
+    paused_s: f64,
     is_used: bool,
 }
 
@@ -46,19 +50,24 @@ impl Tally {
             at
         });
         let count = &mut self.counts[at];
-        count.count += 1;
         if let Some(stamp_s) = stamp_s {
             let (from_s, to_s) = count.span_s.unwrap_or((stamp_s, stamp_s));
+            let step_s = stamp_s - to_s;
+            if is_pause(step_s, to_s - from_s - count.paused_s, count.count) {
+                count.pauses += 1;
+                count.paused_s += step_s;
+            }
             count.span_s = Some((from_s.min(stamp_s), to_s.max(stamp_s)));
         }
+        count.count += 1;
     }
 
     /// By name.
     pub(super) fn topics(self) -> Vec<Topic> {
         let topic = |((name, instance), at): ((String, u8), usize)| {
-            let Count { count, span_s, is_used } = self.counts[at];
+            let Count { count, span_s, pauses, paused_s, is_used } = self.counts[at];
             let is_known = is_used || is_known(&name);
-            Topic { name, instance, count, span_s, is_used, is_known }
+            Topic { name, instance, count, span_s, pauses, paused_s, is_used, is_known }
         };
         self.names.into_iter().map(topic).collect()
     }

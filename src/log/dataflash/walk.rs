@@ -216,6 +216,7 @@ impl Walk<'_, '_> {
         // when a sample was taken is not to be guessed
         let Some(own_s) = own_s else {
             self.walked.tally.without_time += 1;
+            self.walked.tally.outputs_without_time |= topic.quantity == Quantity::ActuatorCommand;
             return;
         };
         if times.is_none() {

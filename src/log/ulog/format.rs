@@ -111,6 +111,8 @@ fn topics(report: &UlogReport) -> Vec<Topic> {
         instance: topic.instance,
         count: topic.count,
         span_s: topic.stamps_us.map(|(first, last)| (seconds(first), seconds(last))),
+        pauses: topic.paused_us.0,
+        paused_s: seconds(topic.paused_us.1),
         is_used: is_read(&topic.topic),
         is_known: is_read(&topic.topic),
     };

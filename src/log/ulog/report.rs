@@ -2,6 +2,8 @@
 
 use super::schema::Subscription;
 use crate::log::loss::{Loss, Oddity};
+use crate::log::onboard::is_pause;
+use crate::units::seconds_from_us;
 use std::sync::Arc;
 
 /// Topics of one log that are told apart; PX4 has about 250.
@@ -53,6 +55,22 @@ pub struct TopicCount {
     pub count: u64,
     /// stamps of the first and the last, microseconds; `None` without a stamp
     pub stamps_us: Option<(u64, u64)>,
+    /// pauses between these, as between two flights, and how long they are together, microseconds
+    pub paused_us: (u64, u64),
+}
+
+/// Shorter steps are no pauses, microseconds: most need not be looked at closer.
+const LEAST_PAUSE_US: u64 = 3_000_000;
+
+impl TopicCount {
+    /// Nothing came for as long, after the messages of `before_us`.
+    fn note_step(&mut self, step_us: u64, before_us: u64) {
+        let (pauses, paused_us) = self.paused_us;
+        let running_us = before_us.saturating_sub(paused_us);
+        if is_pause(seconds_from_us(step_us as f64), seconds_from_us(running_us as f64), self.count) {
+            self.paused_us = (pauses + 1, paused_us + step_us);
+        }
+    }
 }
 
 impl UlogReport {
@@ -93,7 +111,7 @@ impl UlogReport {
         let same = |known: &TopicCount| known.topic == taken.topic && known.instance == taken.instance;
         let index = self.topics.iter().position(same).or_else(|| {
             let (topic, instance) = (Arc::clone(&taken.topic), taken.instance);
-            self.topics.push(TopicCount { topic, instance, count: 0, stamps_us: None });
+            self.topics.push(TopicCount { topic, instance, count: 0, stamps_us: None, paused_us: (0, 0) });
             Some(self.topics.len() - 1).filter(|index| *index < MOST_TOPICS)
         });
         self.topics.truncate(MOST_TOPICS);
@@ -108,11 +126,15 @@ impl UlogReport {
     pub(super) fn note_data(&mut self, id: u16, stamp_us: Option<u64>) {
         let index = self.by_id.get(usize::from(id)).copied().flatten();
         let Some(topic) = index.and_then(|index| self.topics.get_mut(index)) else { return };
-        topic.count += 1;
         if let Some(stamp_us) = stamp_us {
-            let first_us = topic.stamps_us.map_or(stamp_us, |(first_us, _)| first_us);
+            let (first_us, last_us) = topic.stamps_us.unwrap_or((stamp_us, stamp_us));
+            let step_us = stamp_us.saturating_sub(last_us);
+            if step_us > LEAST_PAUSE_US {
+                topic.note_step(step_us, last_us.saturating_sub(first_us));
+            }
             topic.stamps_us = Some((first_us, stamp_us));
         }
+        topic.count += 1;
     }
 
     pub(super) fn note_orphan(&mut self, offset: u64) {

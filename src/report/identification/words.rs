@@ -45,7 +45,12 @@ pub(super) fn verdict(study: &IdentifyStudy, result: &MethodResult) -> String {
         return format!("{alone}good for {all}");
     }
     let part = |word: &str, names: String| (!names.is_empty()).then(|| format!("{word} {names}"));
-    let parts = [part("good for", good.join(", ")), part("poor for", poor.join(", "))];
+    // products of inertia alone are not what is looked for: then what is poor comes first
+    let only_products = good.iter().all(|name| matches!(*name, "ixy" | "ixz" | "iyz"));
+    let mut parts = [part("good for", good.join(", ")), part("poor for", poor.join(", "))];
+    if only_products {
+        parts.reverse();
+    }
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     match part("not for", no.join(", ")) {
         _ if parts.is_empty() => "determines none of the parameters".into(),

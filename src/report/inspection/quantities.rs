@@ -3,6 +3,9 @@
 use crate::inspect::{ExpectedParameter, Inspection, QuantitySummary};
 use crate::text::significant;
 
+/// Of a vehicle of which neither mass nor file is given.
+const YAW_NEEDS: &str = "; Izz only where the rotors' torque per thrust is known";
+
 /// The lines: name, and what is said of it. What is the same as in the line above is not said again.
 pub(super) fn lines(inspection: &Inspection) -> Vec<(String, String)> {
     let mut above: Option<&QuantitySummary> = None;
@@ -11,7 +14,11 @@ pub(super) fn lines(inspection: &Inspection) -> Vec<(String, String)> {
         return vec![("nothing".to_owned(), reason.to_owned())];
     }
     for quantity in &inspection.quantities {
-        lines.push((quantity.name.replace('_', " "), said(quantity, above)));
+        let mut line = said(quantity, above);
+        if inspection.quantities_relative && quantity.expected.iter().any(|one| one.parameter == "izz") {
+            line.push_str(YAW_NEEDS);
+        }
+        lines.push((quantity.name.replace('_', " "), line));
         above = Some(quantity);
     }
     if inspection.quantities_relative {
@@ -41,6 +48,8 @@ fn said(quantity: &QuantitySummary, above: Option<&QuantitySummary>) -> String {
     };
     let mut line = match quantity.status {
         "yes" if expected.starts_with("the ") => format!("yes, {expected}{better}"),
+        "yes" if quantity.poor_share() >= 1.0 => format!("yes, but poorly, to {expected}{better}"),
+        "yes" if quantity.poor_share() > 0.0 => format!("yes, in part poorly, to {expected}{better}"),
         "yes" => format!("yes, to {expected}{better}"),
         "possible" if is_as_above(|_, _| true) => "yes, likewise".to_owned(),
         "possible" => "yes, by its streams and motion; --vehicle adds the accuracy".to_owned(),

@@ -37,8 +37,10 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let known = given.of_file()?;
     progress.stage(Stage::Reading);
     let paths: Vec<_> = request.before.iter().chain(&request.after).cloned().collect();
-    let before = load_all(&request.before, &request.read, &EXPLAINED)?;
-    let after = load_all(&request.after, &request.read, &EXPLAINED)?;
+    let mut before = load_all(&request.before, &request.read, &EXPLAINED)?;
+    let mut after = load_all(&request.after, &request.read, &EXPLAINED)?;
+    given.own_units(&mut before);
+    given.own_units(&mut after);
     let or_unflown = |error| unflown_first(error, &paths, &request.read);
     let known = given.of_flights(known, &before).map_err(or_unflown)?;
     let mut notes = known.notes();

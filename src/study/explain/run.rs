@@ -47,7 +47,8 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     // a file that cannot be used is told before the work
     let next_limits = request.next_limits.as_deref().map(read_limits).transpose()?;
     progress.stage(Stage::Reading);
-    let logs = load_all(&request.logs, &request.read, &EXPLAINED)?;
+    let mut logs = load_all(&request.logs, &request.read, &EXPLAINED)?;
+    request.vehicle.own_units(&mut logs);
     refuse_other_builds(logs.iter().flatten())?;
     let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
     let known = request.vehicle.of_flights(known, &logs).map_err(or_unflown)?;
@@ -57,7 +58,8 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
         name: "holdout",
         why: format!("expected a flight of {}: {why}", vehicle.name),
     };
-    let held = load_all(&request.holdout, &request.read, &EXPLAINED).map_err(of_holdout)?;
+    let mut held = load_all(&request.holdout, &request.read, &EXPLAINED).map_err(of_holdout)?;
+    request.vehicle.own_units(&mut held);
     refuse_twins(logs.iter().chain(&held))?;
     refuse_other_builds(logs.iter().chain(&held).flatten())?;
     refuse_off_mixer(logs.iter().chain(&held))?;

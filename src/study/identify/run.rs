@@ -25,7 +25,8 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     let wanted = request.requested_effects()?;
     let known = request.vehicle.of_file()?;
     progress.stage(Stage::Reading);
-    let logs = load_all(&request.logs, &request.read, &IDENTIFIED)?;
+    let mut logs = load_all(&request.logs, &request.read, &IDENTIFIED)?;
+    request.vehicle.own_units(&mut logs);
     refuse_twins(logs.iter())?;
     refuse_other_builds(logs.iter().flatten())?;
     let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
