@@ -47,6 +47,7 @@
 //! | [`simulate`], [`physics`] | flights that never happened; the equations of motion and of the effects |
 //! | [`sitl`] | a simulated vehicle that speaks MAVLink |
 //! | [`fleet`], [`table`] | a log as rows of tables, and many vehicles along their flights |
+//! | [`store`] | files in object stores |
 //! | [`convert`] | the streams of a log for programs that plot |
 //! | [`study`], [`report`], [`export`] | a whole piece of work as one function, its report, and its model for other simulators |
 //!
@@ -166,6 +167,7 @@ pub mod simulate;
 pub mod sitl;
 pub mod stand;
 pub mod stats;
+pub mod store;
 pub mod study;
 pub mod table;
 pub mod text;
