@@ -49,6 +49,7 @@
 //! | [`fleet`], [`table`] | a log as rows of tables, and many vehicles along their flights |
 //! | [`store`] | files in object stores |
 //! | [`convert`] | the streams of a log for programs that plot |
+//! | [`screen`] | the bytes of one log, and what is notable in it, within bounds |
 //! | [`study`], [`report`], [`export`] | a whole piece of work as one function, its report, and its model for other simulators |
 //!
 //! The stages from a trajectory to an exported model, on a simulated flight in which drag is concealed:
@@ -162,6 +163,7 @@ pub mod redact;
 pub mod regression;
 pub mod replay;
 pub mod report;
+pub mod screen;
 pub mod signals;
 pub mod simulate;
 pub mod sitl;

@@ -17,6 +17,7 @@ mod lifts;
 mod noise;
 mod off_mixer;
 mod one_flight;
+mod part;
 mod plausible;
 mod rebuilt;
 mod reference;

@@ -170,6 +170,8 @@ const LAYERS: &[(&str, &[&str])] = &[
             "study",
         ],
     ),
+    // one log within bounds: no files, no threads
+    ("screen", &["text", "autopilot", "vehicle", "recording", "log", "signals", "trim", "draft", "diagnose"]),
     // streams for programs that plot
     ("convert", &["text", "table", "recording", "diagnose", "study", "fleet"]),
     // config: a model file is a vehicle file. Of the stages it names what a study holds, and fits nothing
