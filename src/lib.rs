@@ -47,7 +47,9 @@
 //! | [`simulate`], [`physics`] | flights that never happened; the equations of motion and of the effects |
 //! | [`sitl`] | a simulated vehicle that speaks MAVLink |
 //! | [`fleet`], [`table`] | a log as rows of tables, and many vehicles along their flights |
+//! | [`store`] | files in object stores |
 //! | [`convert`] | the streams of a log for programs that plot |
+//! | [`screen`] | the bytes of one log, and what is notable in it, within bounds |
 //! | [`study`], [`report`], [`export`] | a whole piece of work as one function, its report, and its model for other simulators |
 //!
 //! The stages from a trajectory to an exported model, on a simulated flight in which drag is concealed:
@@ -161,11 +163,13 @@ pub mod redact;
 pub mod regression;
 pub mod replay;
 pub mod report;
+pub mod screen;
 pub mod signals;
 pub mod simulate;
 pub mod sitl;
 pub mod stand;
 pub mod stats;
+pub mod store;
 pub mod study;
 pub mod table;
 pub mod text;

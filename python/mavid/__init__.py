@@ -10,6 +10,7 @@
 Units are SI; the keys of a document are those of the book's chapter "JSON outputs".
 """
 
+from ._fleet import rows, schema, texts
 from ._program import MavidError, program, run
 from ._results import Stream, effects, explain, identify, inspect, parameters, streams
 
@@ -22,6 +23,9 @@ __all__ = [
     "inspect",
     "parameters",
     "program",
+    "rows",
     "run",
+    "schema",
     "streams",
+    "texts",
 ]

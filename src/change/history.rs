@@ -15,11 +15,19 @@ pub struct Step<T> {
     pub as_before: Vec<usize>,
 }
 
+/// Flights of a part of a row in which a change that goes back is searched: there are as many places for it as pairs of flights.
+const MOST_THERE_AND_BACK: usize = 60;
+
 /// The steps of a row of flights, in order: the strongest divides the row, and its parts are searched as the whole was. `judge` gives
-/// what changed between two groups and how strong that is; `None` where nothing did.
-pub fn steps<T>(flights: usize, judge: &impl Fn(&Groups) -> Option<(f64, T)>) -> Vec<Step<T>> {
+/// what changed between two groups and how strong that is; `None` where nothing did. In a part that no step divides, flights in
+/// its middle may differ from those on both sides: there are many more places for that, so it needs a strength of `there_and_back`.
+pub fn steps<T>(
+    flights: usize,
+    judge: &impl Fn(&Groups) -> Option<(f64, T)>,
+    there_and_back: f64,
+) -> Vec<Step<T>> {
     let mut found = Vec::new();
-    search(0, flights, judge, &mut found);
+    search(0, flights, (judge, there_and_back), &mut found);
     found.sort_by_key(|step: &Step<T>| step.from);
     found
 }
@@ -43,7 +51,7 @@ pub fn find_returns<T>(flights: usize, steps: &mut [Step<T>], is_same: &impl Fn(
 fn search<T>(
     first: usize,
     end: usize,
-    judge: &impl Fn(&Groups) -> Option<(f64, T)>,
+    (judge, there_and_back): (&impl Fn(&Groups) -> Option<(f64, T)>, f64),
     found: &mut Vec<Step<T>>,
 ) {
     let judged = (first + 1..end).filter_map(|from| {
@@ -51,11 +59,43 @@ fn search<T>(
         let (strength, change) = judge(&groups)?;
         Some((strength, Step { from, groups, change, as_before: Vec::new() }))
     });
-    let Some((_, step)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) else { return };
-    let from = step.from;
-    found.push(step);
-    search(first, from, judge, found);
-    search(from, end, judge, found);
+    if let Some((_, step)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        let from = step.from;
+        found.push(step);
+        search(first, from, (judge, there_and_back), found);
+        search(from, end, (judge, there_and_back), found);
+    } else if let Some((from, to)) = middle(first, end, (judge, there_and_back)) {
+        let others = || (first..from).chain(to..end).collect::<Vec<_>>();
+        // beside its neighbours where they show it, otherwise beside all others
+        let step = |from: usize, groups: Groups, wide: Groups| {
+            let (groups, (_, change)) = judge(&groups)
+                .map(|judged| (groups, judged))
+                .or_else(|| Some((wide.clone(), judge(&wide)?)))?;
+            Some(Step { from, groups, change, as_before: Vec::new() })
+        };
+        let own = || (from..to).collect::<Vec<_>>();
+        let there = Groups { before: (first..from).collect(), after: own() };
+        let back = Groups { before: own(), after: (to..end).collect() };
+        found.extend(step(from, there, Groups { before: others(), after: own() }));
+        found.extend(step(to, back, Groups { before: own(), after: others() }));
+    }
+}
+
+/// From and to of the flights within a part of a row that differ the most from those on both sides of them, if they do so enough.
+fn middle<T>(
+    first: usize,
+    end: usize,
+    (judge, least): (&impl Fn(&Groups) -> Option<(f64, T)>, f64),
+) -> Option<(usize, usize)> {
+    if end - first > MOST_THERE_AND_BACK {
+        return None;
+    }
+    let inside = (first + 1..end).flat_map(|from| (from + 1..end).map(move |to| (from, to)));
+    let judged = inside.filter_map(|(from, to)| {
+        let groups = Groups { before: (first..from).chain(to..end).collect(), after: (from..to).collect() };
+        judge(&groups).map(|(strength, _)| (strength, (from, to))).filter(|(strength, _)| *strength >= least)
+    });
+    judged.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
 }
 
 #[cfg(test)]
@@ -77,25 +117,45 @@ mod tests {
     fn a_row_with_two_steps_is_divided_where_they_are() {
         let row = [1.0, 1.1, 0.9, 3.0, 3.1, 2.0, 2.1, 1.9];
         let judge = difference(&row);
-        let mut found = steps(row.len(), &judge);
+        let mut found = steps(row.len(), &judge, f64::INFINITY);
         assert!(found.iter().all(|step| step.as_before.is_empty()));
         let places: Vec<usize> = found.iter().map(|step| step.from).collect();
         assert_eq!(places, [3, 5]);
         assert!(found[0].change > 0.0 && found[1].change < 0.0);
         find_returns(row.len(), &mut found, &|groups, _| judge(groups).is_none());
         assert!(found.iter().all(|step| step.as_before.is_empty()), "2 is not 1");
-        assert!(steps(3, &judge).is_empty());
-        assert!(steps(0, &judge).is_empty());
+        assert!(steps(3, &judge, 0.0).is_empty());
+        assert!(steps(0, &judge, 0.0).is_empty());
     }
 
     #[test]
     fn a_row_that_goes_back_says_to_which_flights() {
         let row = [1.0, 1.1, 0.9, 3.0, 3.1, 1.0, 1.1, 0.9];
         let judge = difference(&row);
-        let mut found = steps(row.len(), &judge);
+        let mut found = steps(row.len(), &judge, f64::INFINITY);
         find_returns(row.len(), &mut found, &|groups, _| judge(groups).is_none());
         let returned: Vec<(usize, &[usize])> =
             found.iter().map(|step| (step.from, step.as_before.as_slice())).collect();
         assert_eq!(returned, [(3, &[][..]), (5, &[0, 1, 2][..])]);
+    }
+    #[test]
+    fn flights_between_others_that_differ_from_both_are_found_where_no_step_divides_the_row() {
+        // a step must part the row by as much as it scatters
+        let row = [1.0, 1.1, 0.9, 1.8, 1.9, 1.8, 1.0, 1.0, 1.1, 0.9, 1.0, 1.1];
+        let judge = |groups: &Groups| {
+            let of = |places: &[usize]| {
+                let mean = places.iter().map(|place| row[*place]).sum::<f64>() / places.len() as f64;
+                (mean, places.iter().map(|place| (row[*place] - mean).powi(2)).sum::<f64>())
+            };
+            let ((before, one), (after, other)) = (of(&groups.before), of(&groups.after));
+            let scatter = ((one + other) / 10.0).sqrt().max(0.1);
+            let strength = (after - before).abs() / scatter;
+            (strength > 1.5).then_some((strength, after - before))
+        };
+        assert!(steps(row.len(), &judge, f64::INFINITY).is_empty());
+        let found = steps(row.len(), &judge, 5.0);
+        assert_eq!(found.iter().map(|step| step.from).collect::<Vec<_>>(), [3, 6]);
+        assert!(found[0].change > 0.7 && found[1].change < -0.7);
+        assert_eq!((&found[0].groups.before, &found[0].groups.after), (&vec![0, 1, 2], &vec![3, 4, 5]));
     }
 }

@@ -22,7 +22,10 @@ pub use compare::CompareArgs;
 pub use convert::{ConvertArgs, ConvertForm};
 pub use csv_map::CsvMapArgs;
 pub use effects::EffectsArgs;
-pub use fleet::{FleetArgs, FleetLogArgs, FleetReportArgs, FleetRunArgs, FleetVerb, FormName};
+pub use fleet::{
+    FleetArgs, FleetLogArgs, FleetReportArgs, FleetRowsArgs, FleetRunArgs, FleetStudyArgs, FleetVerb,
+    FormName,
+};
 pub use flight::{CheckName, FlyArgs, OriginName};
 pub use given::ShapeArgs;
 pub use installed::{CompletionsArgs, ManArgs};

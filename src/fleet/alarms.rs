@@ -22,7 +22,7 @@ pub struct FalseAlarms {
     /// what was asked for: share of unchanged vehicles, over the whole time of their histories
     #[serde(rename = "wanted")]
     pub allowed: f64,
-    /// histories that were shuffled; 0: no vehicle has flights enough, and the usual bound holds
+    /// histories that were shuffled; 0: too few orders differ for the share that was asked for, and the usual bound holds
     pub shuffled: usize,
     /// of these called changed, by the bound below
     pub called: usize,
@@ -69,7 +69,9 @@ pub fn calibrated(histories: &[VehicleHistory], wanted: f64, shuffles: u32) -> F
         blocks: 0.0,
         least_sigmas: NAMED_SIGMAS,
     };
-    if long.is_empty() {
+    // of fewer orders than one false alarm takes, each is as likely as is allowed, and the true one is among them
+    let orders: f64 = long.iter().map(|history| orders(blocks(history).len())).sum();
+    if wanted * orders < 1.0 {
         return none;
     }
     // nothing is taken out at first: the bound is the highest
@@ -95,6 +97,11 @@ pub fn calibrated(histories: &[VehicleHistory], wanted: f64, shuffles: u32) -> F
     }
     let flights = mean(long.iter().map(|history| history.study.flights.len()));
     FalseAlarms { shuffled, called, flights, blocks, least_sigmas, ..none }
+}
+
+/// Orders in which so many blocks can stand.
+fn orders(blocks: usize) -> f64 {
+    (1..=blocks).map(|place| place as f64).product()
 }
 
 /// How often the changes beyond a bound are taken out and the bound is found again: each time it falls, or stays.

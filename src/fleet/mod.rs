@@ -6,6 +6,7 @@ mod of_flight;
 mod of_log;
 mod outliers;
 mod parts;
+mod place;
 mod report;
 mod rotors;
 mod rows;
@@ -27,7 +28,7 @@ pub use rows::{
     WarningRow,
 };
 pub use schema::{Schema, TableSchema};
-pub use sources::{Shard, Source, SourceError, sources, unread_name};
+pub use sources::{At, Shard, Source, SourceError, sources, unread_name};
 pub use task::{LogSettings, LogTask, hexadecimal, program};
 pub use transfer::{rows_of_text, rows_text};
 pub use vehicles::{FleetVehicle, OfLog, Vehicles, VehiclesError};

@@ -9,6 +9,7 @@ use crate::config::vehicle_to_toml;
 use crate::inspect::{Inspection, Reading};
 use crate::note::{Note, Severity};
 use crate::study::{AloneRequest, AloneStudy, Depth, OwnWords, ReadSettings, alone};
+use crate::text;
 use crate::vehicle::Vehicle;
 
 /// The rows of a log. A log that cannot be read has one row in `logs`, with the reason; nothing is an error of this function.
@@ -38,10 +39,26 @@ pub fn log_rows(task: &LogTask) -> LogRows {
     let vehicles = &task.settings.vehicles;
     let whose =
         |own: &OwnWords<'_>| vehicles.of(&OfLog { uri: &task.uri, own: *own }).map(|known| known.given());
-    match alone(&request, &whose) {
+    let mut rows = match alone(&request, &whose) {
         Ok(study) => studied(task, &study),
         Err(why) => error_rows(task, &why.to_string()),
+    };
+    call_by_uri(&mut rows, task);
+    rows
+}
+
+/// Sentences name the log by its address, also where its bytes lie in a copy.
+fn call_by_uri(rows: &mut LogRows, task: &LogTask) {
+    let path = text::path(&task.path);
+    if path == task.uri {
+        return;
     }
+    let call = |text: &mut String| *text = text.replace(&path, &task.uri);
+    rows.logs.iter_mut().flat_map(|log| log.error.iter_mut().chain(&mut log.verdict)).for_each(call);
+    for flight in &mut rows.flights {
+        flight.balance_error.iter_mut().chain(&mut flight.motion_error).for_each(call);
+    }
+    rows.warnings.iter_mut().map(|warning| &mut warning.text).for_each(call);
 }
 
 /// The rows of a log that could not be read.

@@ -1,14 +1,15 @@
-//! The parts of a fleet's tables in a folder: `TABLE/part-ID.parquet`, or `.jsonl`. Parts merge by lying beside one another.
+//! The parts of a fleet's tables in a folder, here or in a store: `TABLE/part-ID.parquet`, or `.jsonl`. Parts merge by lying beside one another.
 
 use std::collections::BTreeMap;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use super::place::Place;
 use super::rows::LogRows;
 use super::sources::Shard;
 use super::task::hexadecimal;
 use crate::each_table;
-use crate::files::write_whole;
+use crate::store::StoreError;
 use crate::table::{Row, TableError};
 use crate::text;
 use serde::{Deserialize, Serialize};
@@ -48,6 +49,16 @@ impl PartForm {
         }
     }
 
+    /// By the ending of a file; `None` of what this program does not read.
+    fn of_name(name: &str) -> Option<Self> {
+        match name.rsplit_once('.')?.1 {
+            "jsonl" => Some(Self::Jsonl),
+            #[cfg(feature = "fleet")]
+            "parquet" => Some(Self::Parquet),
+            _ => None,
+        }
+    }
+
     fn bytes<R: Row>(self, rows: &[R]) -> Result<Vec<u8>, TableError> {
         match self {
             Self::Jsonl => crate::table::to_json_lines(rows).map(String::into_bytes),
@@ -79,6 +90,9 @@ pub struct Listed {
     pub bytes: u64,
     /// when it was changed last, nanoseconds since 1970 UTC
     pub modified_ns: u64,
+    /// its rows are those of another log of the part, which has the same bytes
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub twin: bool,
 }
 
 /// The list of a part.
@@ -98,68 +112,73 @@ pub struct PartList {
 #[derive(Debug, thiserror::Error)]
 pub enum PartsError {
     /// the system says so
-    #[error("{}: {error}", text::path(path))]
+    #[error("{file}: {error}")]
     File {
         /// which file or folder
-        path: PathBuf,
+        file: String,
         /// why
         error: io::Error,
     },
     /// a file is damaged
-    #[error("{}: {error}", text::path(path))]
+    #[error("{file}: {error}")]
     Table {
         /// which file
-        path: PathBuf,
+        file: String,
         /// why
         error: TableError,
     },
     /// parts that other settings made
     #[error(
-        "{}: expected rows by the same settings and program, got part {part} of others; give another --out",
-        text::path(path)
+        "{folder}: expected rows by the same settings and program, got part {part} of others; give another --out"
     )]
     OtherSettings {
         /// the folder
-        path: PathBuf,
+        folder: String,
         /// one of its parts
         part: String,
     },
     /// nothing of a fleet is there
-    #[error(
-        "{}: expected a folder that `mavid fleet ... --out` wrote, got none of its parts",
-        text::path(path)
-    )]
+    #[error("{folder}: expected a folder that `mavid fleet ... --out` wrote, got none of its parts")]
     Nothing {
         /// the folder
-        path: PathBuf,
+        folder: String,
     },
+    /// the store cannot be spoken with
+    #[error(transparent)]
+    Store(#[from] StoreError),
 }
 
 /// A folder of parts.
 #[derive(Debug, Clone)]
 pub struct PartsFolder {
-    root: PathBuf,
+    place: Place,
 }
 
 impl PartsFolder {
-    /// A folder, whether it is there or not.
-    #[must_use]
-    pub fn new(root: &Path) -> Self {
-        Self { root: root.to_owned() }
+    /// The folder of a path or of an address in a store, whether anything is in it or not.
+    ///
+    /// # Errors
+    /// [`PartsError::Store`] where it is an address and its store cannot be opened.
+    pub fn open(given: &Path) -> Result<Self, PartsError> {
+        Ok(Self { place: Place::open(given)? })
     }
 
-    /// The folder.
+    /// The folder as messages call it.
     #[must_use]
-    pub fn root(&self) -> &Path {
-        &self.root
+    pub fn name(&self) -> String {
+        self.place.name()
     }
 
-    fn write(path: &Path, bytes: &[u8]) -> Result<(), PartsError> {
-        let failed = |error| PartsError::File { path: path.to_owned(), error };
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(failed)?;
-        }
-        write_whole(path, bytes).map_err(failed)
+    /// Writes a file beside the tables.
+    ///
+    /// # Errors
+    /// [`PartsError::File`].
+    pub fn write(&self, name: &str, bytes: Vec<u8>) -> Result<(), PartsError> {
+        self.place.write(name, bytes).map_err(|error| self.failed(name, error))
+    }
+
+    fn failed(&self, name: &str, error: io::Error) -> PartsError {
+        PartsError::File { file: self.place.name_of(name), error }
     }
 
     /// The lists of all finished parts, by their names.
@@ -167,20 +186,14 @@ impl PartsFolder {
     /// # Errors
     /// [`PartsError::File`] where one cannot be read.
     pub fn lists(&self) -> Result<Vec<PartList>, PartsError> {
-        let folder = self.root.join(LISTS);
-        if !folder.is_dir() {
-            return Ok(Vec::new());
-        }
-        let failed = |path: &Path, error| PartsError::File { path: path.to_owned(), error };
-        let entries = std::fs::read_dir(&folder).map_err(|error| failed(&folder, error))?;
-        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-        paths.retain(|path| path.extension().is_some_and(|ending| ending == "json"));
-        paths.sort();
-        let read = |path: &PathBuf| {
-            let bytes = std::fs::read(path).map_err(|error| failed(path, error))?;
-            serde_json::from_slice(&bytes).map_err(|error| failed(path, io::Error::other(error)))
+        let mut names = self.place.names(LISTS).map_err(|error| self.failed(LISTS, error))?;
+        names.retain(|name| name.ends_with(".json"));
+        let read = |name: &String| {
+            let name = format!("{LISTS}/{name}");
+            let bytes = self.place.read(&name).map_err(|error| self.failed(&name, error))?;
+            serde_json::from_slice(&bytes).map_err(|error| self.failed(&name, io::Error::other(error)))
         };
-        paths.iter().map(read).collect()
+        names.iter().map(read).collect()
     }
 
     /// Writes a part: its tables, then its list. The rows are in the order of `logs`.
@@ -200,24 +213,19 @@ impl PartsFolder {
         macro_rules! each {
             ($field:ident, $row:ty) => {
                 // an empty file of a table is still one of its parts: a reader then knows the columns
-                let path = self.file(<$row>::TABLE, &part, form);
+                let name = file(<$row>::TABLE, &part, form);
                 let bytes = form
                     .bytes(&rows.$field)
-                    .map_err(|error| PartsError::Table { path: path.clone(), error })?;
-                Self::write(&path, &bytes)?;
+                    .map_err(|error| PartsError::Table { file: self.place.name_of(&name), error })?;
+                self.write(&name, bytes)?;
             };
         }
         each_table!(each);
         let list = PartList { part, form, settings: settings.to_owned(), logs };
-        let path = self.root.join(LISTS).join(format!("{}.json", list.part));
-        let text = text::json_line(&list)
-            .map_err(|error| PartsError::File { path: path.clone(), error: io::Error::other(error) })?;
-        Self::write(&path, text.as_bytes())?;
+        let name = format!("{LISTS}/{}.json", list.part);
+        let text = text::json_line(&list).map_err(|error| self.failed(&name, io::Error::other(error)))?;
+        self.write(&name, text.into_bytes())?;
         Ok(list)
-    }
-
-    fn file(&self, table: &str, part: &str, form: PartForm) -> PathBuf {
-        self.root.join(table).join(format!("{part}.{}", form.ending()))
     }
 
     /// Removes the files of this shard's parts that were begun and not finished.
@@ -234,13 +242,11 @@ impl PartsFolder {
         let is_finished = |name: &str| lists.iter().any(|list| name.starts_with(&list.part));
         macro_rules! each {
             ($field:ident, $row:ty) => {
-                let folder = self.root.join(<$row>::TABLE);
-                for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten() {
-                    // a part has a name of plain letters
-                    let Ok(name) = entry.file_name().into_string() else { continue };
+                let table = <$row>::TABLE;
+                for name in self.place.names(table).map_err(|error| self.failed(table, error))? {
                     if is_own(&name) && !is_finished(&name) {
-                        let path = entry.path();
-                        std::fs::remove_file(&path).map_err(|error| PartsError::File { path, error })?;
+                        let name = format!("{table}/{name}");
+                        self.place.remove(&name).map_err(|error| self.failed(&name, error))?;
                     }
                 }
             };
@@ -249,47 +255,54 @@ impl PartsFolder {
         Ok(())
     }
 
-    /// The file of rows of a log that is in no part yet.
+    /// The rows of a log that is in no part yet, as an earlier run left them.
     #[must_use]
-    pub fn work_file(&self, sha256: &str, settings: &str) -> PathBuf {
-        let short = settings.get(..8).unwrap_or(settings);
-        self.root.join(WORK).join(format!("{sha256}-{short}.rows"))
+    pub fn kept(&self, key: &str, settings: &str) -> Option<String> {
+        self.place.read(&work_file(key, settings)).ok().and_then(|bytes| String::from_utf8(bytes).ok())
     }
 
-    /// Writes the rows of a log that is in no part yet.
+    /// Keeps the rows of a log that is in no part yet.
     ///
     /// # Errors
     /// [`PartsError::File`].
-    pub fn keep(&self, path: &Path, text: &str) -> Result<(), PartsError> {
-        Self::write(path, text.as_bytes())
+    pub fn keep(&self, (key, settings): (&str, &str), text: String) -> Result<(), PartsError> {
+        self.write(&work_file(key, settings), text.into_bytes())
+    }
+
+    /// Removes what was kept of a log. What stays is not read again once its log is in a part.
+    pub fn forget(&self, key: &str, settings: &str) {
+        drop(self.place.remove(&work_file(key, settings)));
     }
 
     /// All rows of all finished parts. A log that several parts have, as shards that found the same bytes at two addresses write it, is
-    /// taken once.
+    /// taken once: by the first of its addresses.
     ///
     /// # Errors
     /// [`PartsError`] where a part cannot be read, or there is none.
     pub fn read_all(&self) -> Result<LogRows, PartsError> {
         let lists = self.lists()?;
         if lists.is_empty() {
-            return Err(PartsError::Nothing { path: self.root.clone() });
+            return self.read_unlisted();
         }
-        let mut first: BTreeMap<&str, &str> = BTreeMap::new();
+        let mut first: BTreeMap<&str, (&str, &str)> = BTreeMap::new();
         for list in &lists {
-            for log in &list.logs {
-                first.entry(&log.sha256).or_insert(&list.part);
+            for log in list.logs.iter().filter(|log| !log.twin) {
+                let own = (log.uri.as_str(), list.part.as_str());
+                first.entry(&log.sha256).and_modify(|found| *found = own.min(*found)).or_insert(own);
             }
         }
         let mut all = LogRows::default();
         for list in &lists {
             macro_rules! each {
                 ($field:ident, $row:ty) => {
-                    let path = self.file(<$row>::TABLE, &list.part, list.form);
-                    let bytes = std::fs::read(&path)
-                        .map_err(|error| PartsError::File { path: path.clone(), error })?;
-                    let rows: Vec<$row> =
-                        list.form.rows(bytes).map_err(|error| PartsError::Table { path, error })?;
-                    let is_first = |row: &$row| first.get(row.log.as_str()) == Some(&list.part.as_str());
+                    let name = file(<$row>::TABLE, &list.part, list.form);
+                    let bytes = self.place.read(&name).map_err(|error| self.failed(&name, error))?;
+                    let rows: Vec<$row> = list
+                        .form
+                        .rows(bytes)
+                        .map_err(|error| PartsError::Table { file: self.place.name_of(&name), error })?;
+                    let is_first =
+                        |row: &$row| first.get(row.log.as_str()).is_some_and(|(_, part)| *part == list.part);
                     all.$field.extend(rows.into_iter().filter(is_first));
                 };
             }
@@ -297,4 +310,37 @@ impl PartsFolder {
         }
         Ok(all)
     }
+}
+
+impl PartsFolder {
+    /// All rows of tables that an engine wrote with the function for one log: files without lists, each log once.
+    fn read_unlisted(&self) -> Result<LogRows, PartsError> {
+        let mut all = LogRows::default();
+        macro_rules! each {
+            ($field:ident, $row:ty) => {
+                let table = <$row>::TABLE;
+                for name in self.place.names(table).map_err(|error| self.failed(table, error))? {
+                    let Some(form) = PartForm::of_name(&name) else { continue };
+                    let name = format!("{table}/{name}");
+                    let bytes = self.place.read(&name).map_err(|error| self.failed(&name, error))?;
+                    let rows: Vec<$row> = form
+                        .rows(bytes)
+                        .map_err(|error| PartsError::Table { file: self.place.name_of(&name), error })?;
+                    all.$field.extend(rows);
+                }
+            };
+        }
+        each_table!(each);
+        if all.logs.is_empty() { Err(PartsError::Nothing { folder: self.name() }) } else { Ok(all) }
+    }
+}
+
+/// Name of a table's file of a part.
+fn file(table: &str, part: &str, form: PartForm) -> String {
+    format!("{table}/{part}.{}", form.ending())
+}
+
+/// Name of the file of rows of a log that is in no part yet.
+fn work_file(key: &str, settings: &str) -> String {
+    format!("{WORK}/{key}-{}.rows", settings.get(..8).unwrap_or(settings))
 }

@@ -1,29 +1,49 @@
-//! Where logs are: files, folders and patterns.
+//! Where logs are: files, folders, patterns, and addresses in object stores.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::task::hexadecimal;
 use crate::log::{FORMATS, is_named_like_a_log};
+use crate::store::{Address, Store, StoreError, Stored, is_remote};
 use crate::text;
+use glob::{MatchOptions, Pattern};
 use sha2::{Digest, Sha256};
 
 /// One log.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone)]
 pub struct Source {
     /// as it is named in the tables
     pub uri: String,
-    /// the file
-    pub path: PathBuf,
+    /// where its bytes are
+    pub at: At,
+}
+
+/// Where the bytes of a log are.
+#[derive(Debug, Clone)]
+pub enum At {
+    /// a file of this computer
+    File(PathBuf),
+    /// a file in a store
+    Stored(Store, Stored),
 }
 
 /// Why a source gives no logs.
 #[derive(Debug, thiserror::Error)]
-#[error("{given}: expected {expected}, got {came}")]
-pub struct SourceError {
-    given: String,
-    expected: &'static str,
-    came: String,
+pub enum SourceError {
+    /// nothing there, or no log
+    #[error("{given}: expected {expected}, got {came}")]
+    Given {
+        /// as it was given
+        given: String,
+        /// what was expected
+        expected: &'static str,
+        /// what is there
+        came: String,
+    },
+    /// a store says why
+    #[error(transparent)]
+    Store(#[from] StoreError),
 }
 
 /// The logs of all that was given, each once, in the order of their names. Of folders and patterns, files are taken that are named like
@@ -42,16 +62,49 @@ pub fn sources(given: &[String]) -> Result<Vec<Source>, SourceError> {
             return Err(refused(one, "logs", came));
         }
     }
-    all.sort();
-    all.dedup();
+    all.sort_by(|a, b| a.uri.cmp(&b.uri));
+    all.dedup_by(|a, b| a.uri == b.uri);
     Ok(all)
 }
 
 fn refused(given: &str, expected: &'static str, came: String) -> SourceError {
-    SourceError { given: text::clean(given), expected, came }
+    SourceError::Given { given: text::clean(given), expected, came }
+}
+
+/// Logs in a store: a file that is named, or what is named like a log in a folder or by a pattern.
+fn take_stored(given: &str, all: &mut Vec<Source>) -> Result<(), SourceError> {
+    let address = Address::of(given)?;
+    let store = Store::open(&address)?;
+    let source =
+        |stored: Stored| Source { uri: address.uri_of(&stored.name), at: At::Stored(store.clone(), stored) };
+    if let Some((below, pattern)) = address.pattern() {
+        let pattern =
+            Pattern::new(&pattern).map_err(|error| refused(given, "a pattern", error.to_string()))?;
+        // as of paths: an asterisk stays within a folder, and two go through all
+        let options = MatchOptions { require_literal_separator: true, ..MatchOptions::new() };
+        let found = store.list(&below.name)?.into_iter();
+        all.extend(found.filter(|stored| pattern.matches_with(&stored.name, options)).map(source));
+        return Ok(());
+    }
+    let named = if address.is_folder { None } else { store.head(&address.name)? };
+    match named {
+        Some(stored) => all.push(source(stored)),
+        // few web servers list folders: none is asked to that is not called one
+        None if address.is_of_web() && !address.is_folder => {
+            return Err(StoreError::Nothing { address: text::clean(given) }.into());
+        }
+        None => {
+            let found = store.list(&address.name)?.into_iter();
+            all.extend(found.filter(|stored| is_named_like_a_log(Path::new(&stored.name))).map(source));
+        }
+    }
+    Ok(())
 }
 
 fn take(given: &str, all: &mut Vec<Source>) -> Result<(), SourceError> {
+    if is_remote(given) {
+        return take_stored(given, all);
+    }
     let path = Path::new(given.strip_prefix("file://").unwrap_or(given));
     if path.is_dir() {
         return walk(path, all)
@@ -82,7 +135,7 @@ fn take(given: &str, all: &mut Vec<Source>) -> Result<(), SourceError> {
 }
 
 fn source(path: &Path) -> Source {
-    Source { uri: text::path(&path), path: path.to_owned() }
+    Source { uri: text::path(&path), at: At::File(path.to_owned()) }
 }
 
 /// All logs below a folder. Links to folders are not followed, and what is neither a file nor a link to one is left out: a pipe never
@@ -179,10 +232,7 @@ mod tests {
         let at = |name: &str| folder.join(name).display().to_string();
         let names = |given: &[String]| {
             let found = sources(given).unwrap();
-            found
-                .iter()
-                .map(|source| source.path.file_name().unwrap().to_str().unwrap().to_owned())
-                .collect::<Vec<_>>()
+            found.iter().map(|source| source.uri.rsplit('/').next().unwrap().to_owned()).collect::<Vec<_>>()
         };
         assert_eq!(names(&[at("")]), ["a.tlog", "b.BIN", "c.ulg"]);
         assert_eq!(names(&[at("**/*.ulg"), at("a.tlog"), at("a.tlog")]), ["a.tlog", "c.ulg"]);
@@ -191,7 +241,9 @@ mod tests {
         for (given, said) in [
             (at("no.tlog"), "got nothing of that name"),
             (at("*.ulg"), "no file that ends in"),
-            ("s3://bucket/logs".to_owned(), "an address of `s3`"),
+            ("ftp://host/logs".to_owned(), "an address of `ftp`"),
+            #[cfg(not(feature = "fleet"))]
+            ("s3://bucket/logs".to_owned(), "--features fleet"),
         ] {
             let error = sources(&[given]).unwrap_err().to_string();
             assert!(error.contains(said), "{error}");

@@ -78,7 +78,7 @@ pub struct VehicleSummary {
 pub struct ClockSummary {
     /// first and last sample, s of the vehicle's clock since the recording's start
     pub span_s: (f64, f64),
-    /// host's clock at the recording's start, microseconds since 1970 UTC
+    /// at the recording's start, microseconds since 1970 UTC: by the host's clock, or in the vehicle's own log by a satellite receiver
     pub start_utc_us: Option<u64>,
     /// host's clock less the vehicle's, s: how much it grew in a million
     pub drift_ppm: Option<f64>,

@@ -1,6 +1,6 @@
 //! The readers' reports as they are told.
 
-use super::inspection::{CsvReading, Reading, SenderSummary, TlogReading, VehicleSummary};
+use super::inspection::{CsvReading, Inspection, Reading, SenderSummary, TlogReading, VehicleSummary};
 use super::onboard::onboard_reading;
 use crate::autopilot::{Autopilot, VehicleKind};
 use crate::log::csv::CsvReport;
@@ -10,6 +10,14 @@ use crate::wire::{ByteOrder, Sender, Source};
 
 /// Damaged places told one by one.
 const TOLD_RESYNCS: usize = 20;
+
+impl Inspection {
+    /// Whose clock says when the log began.
+    #[must_use]
+    pub fn start_words(&self) -> &'static str {
+        if matches!(self.reading, Reading::Onboard(_)) { "UTC at its start" } else { "host's at its start" }
+    }
+}
 
 /// What was met while reading.
 pub(super) fn reading_of(report: &ReadReport) -> Reading {

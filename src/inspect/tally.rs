@@ -199,6 +199,7 @@ impl Pass {
             steps_back: self.report.out_of_order(),
             damage: self.report.damage(),
             is_onboard: self.report.onboard().is_some(),
+            start_utc_us: self.report.onboard().and_then(|onboard| onboard.start_utc_us),
         };
         found.inspection(self.tally, self.assessment, vehicle)
     }
@@ -239,6 +240,7 @@ pub fn inspect_recording(opened: &Opened, vehicle: Option<&Vehicle>) -> Inspecti
         steps_back: report.out_of_order(),
         damage: report.damage(),
         is_onboard: report.onboard().is_some(),
+        start_utc_us: report.onboard().and_then(|onboard| onboard.start_utc_us),
     };
     found.inspection(tally, assessor.finish(), vehicle)
 }
@@ -269,6 +271,8 @@ struct Found {
     damage: Option<String>,
     /// the vehicle wrote it
     is_onboard: bool,
+    /// when it began, as a satellite receiver says
+    start_utc_us: Option<u64>,
 }
 
 impl Found {
@@ -333,7 +337,8 @@ impl Found {
                 .push("all behind its first messages: it was cut off before its first sample".to_owned());
         }
         let flown_s = self.conclude(&mut tally, &mut assessment);
-        let clock = std::mem::take(&mut tally.clock).summary();
+        let mut clock = std::mem::take(&mut tally.clock).summary();
+        clock.start_utc_us = clock.start_utc_us.or(self.start_utc_us);
         let modes = self.modes_of();
         let foreseen = self.foreseen(&tally, &mut assessment, vehicle);
         let parameter = |name: &str| tally.parameters.values().get(name).copied();

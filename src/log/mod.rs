@@ -9,6 +9,7 @@
 
 pub mod csv;
 mod dataflash;
+mod date;
 mod error;
 mod flights;
 mod foreign;

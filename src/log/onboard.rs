@@ -14,6 +14,8 @@ pub struct OnboardReport {
     pub kind: Option<VehicleKind>,
     /// the autopilot's software in its own words, such as `ArduCopter V4.5.7 (2a3dc4b7)`
     pub firmware: Option<String>,
+    /// microseconds since 1970 UTC at which the recording's clock is zero, to a second or so, by a satellite receiver
+    pub start_utc_us: Option<u64>,
     /// each kind of message that was read, by name
     pub topics: Vec<Topic>,
 }

@@ -18,6 +18,7 @@ mod noise;
 mod off_ground;
 mod off_mixer;
 mod one_flight;
+mod part;
 mod plausible;
 mod rebuilt;
 mod reference;

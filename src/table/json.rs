@@ -47,6 +47,17 @@ pub fn to_json_lines<R: Row>(rows: &[R]) -> Result<String, TableError> {
     Ok(out)
 }
 
+/// The rows as JSON objects.
+#[must_use]
+pub fn to_values<R: Row>(rows: &[R]) -> Vec<Value> {
+    let columns = R::columns();
+    let object = |row: &R| {
+        let cells = row.cells();
+        columns.iter().zip(&cells).map(|(column, cell)| (column.name.to_owned(), value(cell))).collect()
+    };
+    rows.iter().map(|row| Value::Object(object(row))).collect()
+}
+
 /// The rows of such a text. Columns that are not known are left out; one that is missing is empty.
 ///
 /// # Errors

@@ -11,7 +11,7 @@ mod rows;
 
 pub use cell::{Cell, Field};
 pub use column::{Column, Kind};
-pub use json::{from_json_lines, to_json_lines};
+pub use json::{from_json_lines, to_json_lines, to_values};
 #[cfg(feature = "fleet")]
 pub use parquet::{from_parquet, to_parquet};
 pub use rows::{Row, TableError};

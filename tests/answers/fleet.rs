@@ -104,7 +104,7 @@ fn every_log_is_a_row_and_bad_ones_stop_nothing() {
         (&8.into(), &1.into(), &2.into()),
         "{tally}"
     );
-    let rows = PartsFolder::new(&out).read_all().unwrap();
+    let rows = PartsFolder::open(&out).unwrap().read_all().unwrap();
     assert_eq!(rows.logs.len(), 7);
     let of = |name: &str| rows.logs.iter().find(|log| log.uri.ends_with(name)).unwrap();
     let flown = of("a.tlog");
@@ -167,7 +167,7 @@ fn killed_and_run_again_ends_in_the_same_rows_and_shards_share_them() {
     child.kill().unwrap();
     child.wait().unwrap();
     let kept: Vec<String> =
-        PartsFolder::new(&resumed).lists().unwrap().into_iter().map(|list| list.part).collect();
+        PartsFolder::open(&resumed).unwrap().lists().unwrap().into_iter().map(|list| list.part).collect();
     assert!(!kept.is_empty());
     let is_kept = |path: &Path| kept.iter().any(|part| path.to_str().unwrap().contains(part.as_str()));
     let before: BTreeMap<_, _> = parts(&resumed).into_iter().filter(|(path, _)| is_kept(path)).collect();
@@ -195,7 +195,7 @@ fn killed_and_run_again_ends_in_the_same_rows_and_shards_share_them() {
         logs.sort();
         (logs, rows.legs.len(), rows.flights.len())
     };
-    let [one, many] = [&whole, &shared].map(|out| PartsFolder::new(out).read_all().unwrap());
+    let [one, many] = [&whole, &shared].map(|out| PartsFolder::open(out).unwrap().read_all().unwrap());
     assert_eq!(of(&one), of(&many));
     let lost =
         mavid(&["fleet", sources.to_str().unwrap(), "--out", shared.to_str().unwrap(), "--shards", "3"]);
@@ -215,7 +215,7 @@ fn a_log_beyond_its_bounds_is_an_error_and_a_row() {
     fs::write(sources.join("large.csv"), "t,".to_owned() + &row.repeat(1200)).unwrap();
     let (status, tally) = run(&sources, &at.join("out"), &["--log-size", "2"]);
     assert_eq!((status, &tally["errors"], &tally["flown"]), (Some(3), &1.into(), &1.into()), "{tally}");
-    let rows = PartsFolder::new(&at.join("out")).read_all().unwrap();
+    let rows = PartsFolder::open(&at.join("out")).unwrap().read_all().unwrap();
     let large = rows.logs.iter().find(|log| log.uri.ends_with("large.csv")).unwrap();
     assert_eq!(large.error.as_deref(), Some("expected a log of at most 2 MB, got 4 MB"));
 
@@ -232,7 +232,7 @@ fn a_log_beyond_its_bounds_is_an_error_and_a_row() {
     ]);
     // 128 MB are enough for a small log: the bound is on the process and the program starts in it
     assert!(matches!(bounded.status.code(), Some(0 | 3)), "{}", said(&bounded));
-    assert_eq!(PartsFolder::new(&out).read_all().unwrap().logs.len(), 1);
+    assert_eq!(PartsFolder::open(&out).unwrap().read_all().unwrap().logs.len(), 1);
     let task = serde_json::json!({ "uri": "x", "path": "/dev/zero", "sha256": "x", "bytes": 0, "settings": {
         "depth": "inspect", "vehicles": {}, "csv_map": null, "files": []
     }});
@@ -323,7 +323,7 @@ fn the_vehicle_that_changed_is_found_with_its_rotor_and_flight() {
     assert!(text.starts_with("1 of 2 vehicles changed."), "{text}");
 
     // the unchanged one alone is status 0
-    let mut rows = PartsFolder::new(&out).read_all().unwrap();
+    let mut rows = PartsFolder::open(&out).unwrap().read_all().unwrap();
     rows.flights.retain(|flight| flight.vehicle == "craft0");
     let alone = FleetReport::of(&rows, &ReportSettings { false_alarms: 0.005, shuffles: 50 });
     assert!(alone.changed().next().is_none() && alone.vehicles.len() == 1);
@@ -332,23 +332,22 @@ fn the_vehicle_that_changed_is_found_with_its_rotor_and_flight() {
 #[test]
 fn cut_propellers_stand_out_in_the_history_of_one_vehicle() {
     let Some(shared) = support::shared() else { return };
-    let source = shared.join("onboard/propeller_cut");
     let at = folder("fleet_propellers");
-    let logs = at.join("logs");
-    fs::create_dir_all(&logs).unwrap();
-    // whole, then cut by 20 and by 25 mm
-    for (place, flight) in ["09", "04", "02", "15", "08"].into_iter().enumerate() {
-        fs::copy(source.join(format!("flight_{flight}.BIN")), logs.join(format!("{place}.bin"))).unwrap();
-    }
     let list = at.join("vehicles.toml");
-    fs::write(&list, "[[vehicle]]\nname = \"one\"\nmass = 1.5\nlogs = \"*\"\n").unwrap();
-    let (_, tally) = run(&logs, &at.join("out"), &["--vehicles", list.to_str().unwrap()]);
-    assert_eq!(tally["flown"], 5, "{tally}");
+    fs::write(&list, "[[vehicle]]\nname = \"one\"\nlogs = \"*\"\nmass = 1.5\n").unwrap();
+    let more = ["--vehicles", list.to_str().unwrap(), "--depth", "balance"];
+    let (_, tally) = run(&shared.join("onboard/propeller_cut"), &at.join("out"), &more);
+    assert_eq!(tally["flown"], 15, "{tally}");
     let report = mavid(&["fleet", "report", at.join("out").to_str().unwrap(), "--shuffles", "50", "--json"]);
     assert_eq!(report.status.code(), Some(4), "{}", said(&report));
     let document: Value = serde_json::from_slice(&report.stdout).unwrap();
-    let step = &document["vehicles"][0]["comparison"]["history"][0];
-    assert_eq!((&step["from"], &step["changes"][0]["rotor"]), (&3.into(), &0.into()), "{step}");
+    // by their dates: three flights each with whole propellers, and with one cut by 20, 5, 10 and 25 mm
+    let history = document["vehicles"][0]["comparison"]["history"].as_array().unwrap();
+    let steps: Vec<_> = history.iter().map(|step| (&step["from"], &step["changes"][0]["rotor"])).collect();
+    let rotor = &Value::from(0);
+    assert_eq!(steps, [(&3.into(), rotor), (&6.into(), rotor), (&12.into(), rotor)], "{history:?}");
+    // of four days there are too few orders to shuffle
+    assert_eq!(document["false_alarms"]["shuffled"], 0, "{}", document["false_alarms"]);
 }
 
 #[test]

@@ -20,6 +20,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("stats", &[]),
     // rows of tables, whatever they hold
     ("table", &["text"]),
+    // files in object stores, by their addresses
+    ("store", &["text"]),
     // autopilots as tables
     ("autopilot", &[]),
     // what a stage has to say beside its result
@@ -154,6 +156,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "text",
             "stats",
             "table",
+            "store",
             "note",
             "autopilot",
             "log",
@@ -167,6 +170,8 @@ const LAYERS: &[(&str, &[&str])] = &[
             "study",
         ],
     ),
+    // one log within bounds: no files, no threads
+    ("screen", &["text", "autopilot", "vehicle", "recording", "log", "signals", "trim", "draft", "diagnose"]),
     // streams for programs that plot
     ("convert", &["text", "table", "recording", "diagnose", "study", "fleet"]),
     // config: a model file is a vehicle file. Of the stages it names what a study holds, and fits nothing
@@ -209,7 +214,7 @@ const LAYERS: &[(&str, &[&str])] = &[
 const BINARY: &[&str] = &["main", "cli", "commands"];
 
 /// Who may open a socket or name the runtime.
-const NETWORK: &[&str] = &["link", "replay", "fly", "onboard", "sitl", "main", "cli", "commands"];
+const NETWORK: &[&str] = &["store", "link", "replay", "fly", "onboard", "sitl", "main", "cli", "commands"];
 
 /// Who may print.
 const PRINT: &[&str] = &["main", "commands"];

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use crate::cli::FleetStudyArgs;
+
 /// What one log may take.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
@@ -9,6 +11,31 @@ pub struct Limits {
     pub time_s: u64,
     /// memory, MB
     pub memory_mb: u64,
+}
+
+/// What each of many logs may be and take.
+#[derive(Debug, Clone, Copy)]
+pub struct Bounds {
+    /// of the process that studies it
+    pub limits: Limits,
+    /// bytes of the largest log that is read
+    pub most_bytes: u64,
+}
+
+impl Bounds {
+    /// As they were given.
+    pub fn of(args: &FleetStudyArgs) -> Self {
+        Self {
+            limits: Limits { time_s: args.log_time, memory_mb: args.log_memory },
+            most_bytes: args.log_size.saturating_mul(1 << 20),
+        }
+    }
+
+    /// Why a log of so many bytes is not read.
+    pub fn refused(&self, bytes: u64) -> Option<String> {
+        let most = self.most_bytes;
+        (bytes > most).then(|| format!("expected a log of at most {} MB, got {} MB", most >> 20, bytes >> 20))
+    }
 }
 
 /// Time on the wall over processor time after which a process is ended all the same: it waits for a file that does not come.

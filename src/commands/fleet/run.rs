@@ -1,16 +1,16 @@
 //! `mavid fleet SOURCE... --out DIR`: logs as tables.
 
 use std::num::NonZero;
-use std::path::PathBuf;
 
-use super::limits::Limits;
-use super::work::{Tally, Work, failed, hash};
+use super::limits::Bounds;
+use super::settings::settings;
+use super::work::{Tally, Work, failed};
 use crate::cli::{FleetRunArgs, FormName};
 use crate::commands::progress::Steps;
 use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, output};
-use mavid::config::load_csv_mapping;
-use mavid::fleet::{LogSettings, PartForm, PartsError, PartsFolder, Shard, Vehicles, sources};
+use mavid::fleet::{PartForm, PartsError, PartsFolder, Shard, sources};
+use mavid::store::is_remote;
 use mavid::text;
 
 /// Names of variables that say which of several runs this one is, and of the first of them.
@@ -22,21 +22,23 @@ pub fn run(json: bool, stderr: &StandardError, args: &FleetRunArgs) -> Result<Ou
     let Some(out) = &args.out else {
         return Err(CommandError::Input("expected --out DIR".to_owned()));
     };
-    if out.exists() && !out.is_dir() {
+    let is_here = !out.to_str().is_some_and(is_remote);
+    if is_here && out.exists() && !out.is_dir() {
         return Err(CommandError::Input(format!("--out: expected a folder, {} is a file", text::path(out))));
     }
     let form = form(args.format)?;
     let shard = shard(args)?;
-    let settings = settings(args)?;
+    let settings = settings(&args.study)?;
     let digest = settings.digest();
     let found = sources(&args.sources).map_err(|error| CommandError::Input(error.to_string()))?;
     let own: Vec<_> = found.into_iter().filter(|source| shard.has(&source.uri)).collect();
-    output::folder(out)?;
-    let folder = PartsFolder::new(out);
+    if is_here {
+        output::folder(out)?;
+    }
+    let folder = PartsFolder::open(out).map_err(failed)?;
     let lists = folder.lists().map_err(failed)?;
     if let Some(other) = lists.iter().find(|list| list.settings != digest) {
-        let (path, part) = (out.clone(), other.part.clone());
-        return Err(failed(PartsError::OtherSettings { path, part }));
+        return Err(failed(PartsError::OtherSettings { folder: folder.name(), part: other.part.clone() }));
     }
     folder.remove_unfinished(&lists, shard).map_err(failed)?;
     let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
@@ -44,12 +46,11 @@ pub fn run(json: bool, stderr: &StandardError, args: &FleetRunArgs) -> Result<Ou
         folder: &folder,
         settings: &settings,
         digest: &digest,
-        limits: Limits { time_s: args.log_time, memory_mb: args.log_memory },
+        bounds: Bounds::of(&args.study),
         form,
         shard,
         jobs: args.jobs.map_or(cores, usize::from),
         part_logs: usize::try_from(args.part_logs).unwrap_or(1),
-        most_bytes: args.log_size.saturating_mul(1 << 20),
     };
     let tally = {
         let steps = Steps::new(stderr, "{bar:30} {pos} of {len} logs, {eta} left");
@@ -58,7 +59,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &FleetRunArgs) -> Result<Ou
     if json {
         output::json(&tally)?;
     } else {
-        output::text(&summary(&tally, out))?;
+        output::text(&summary(&tally, &folder.name()))?;
     }
     Ok(if tally.errors == 0 { Outcome::Done } else { Outcome::DoneWithLoss })
 }
@@ -91,24 +92,7 @@ fn shard(args: &FleetRunArgs) -> Result<Shard, CommandError> {
     Shard::new(index, count).map_err(|why| CommandError::Input(format!("--shards {count}, {name}: {why}")))
 }
 
-/// All that the rows depend on beside the logs.
-fn settings(args: &FleetRunArgs) -> Result<LogSettings, CommandError> {
-    let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
-    let vehicles = args.vehicles.as_deref().map(Vehicles::read).transpose().map_err(|error| input(&error))?;
-    let vehicles = vehicles.unwrap_or_default();
-    args.csv_map.as_deref().map(load_csv_mapping).transpose()?;
-    let named: Vec<&PathBuf> =
-        vehicles.vehicle.iter().filter_map(|vehicle| vehicle.file.as_ref()).chain(&args.csv_map).collect();
-    for vehicle in vehicles.vehicle.iter().filter_map(|vehicle| vehicle.file.as_deref()) {
-        // one that cannot be read is told before the work
-        mavid::config::read_vehicle(vehicle)?;
-    }
-    let files =
-        named.iter().map(|path| hash(path)).collect::<Result<_, _>>().map_err(|error| input(&error))?;
-    Ok(LogSettings { depth: args.depth.into(), vehicles, csv_map: args.csv_map.clone(), files })
-}
-
-fn summary(tally: &Tally, out: &std::path::Path) -> String {
+fn summary(tally: &Tally, at: &str) -> String {
     let Tally { logs, done_before, twins, flown, no_flight, inspected, errors, rows, parts } = tally;
     let mut page = format!(
         "{logs} logs: {flown} with a flight, {no_flight} without one that can be used, {errors} that could not be read"
@@ -122,7 +106,6 @@ fn summary(tally: &Tally, out: &std::path::Path) -> String {
     if *twins > 0 {
         page.push_str(&format!("; {twins} are the same bytes as another"));
     }
-    let at = text::path(&out);
     page + &format!(
         "\n{rows} rows in {parts} new parts of each table: {at}\nwhich vehicles changed: mavid fleet report {at}"
     )

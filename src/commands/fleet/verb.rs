@@ -1,6 +1,6 @@
 //! The dispatch of `mavid fleet`.
 
-use super::{report, run as making};
+use super::{one, report, run as making};
 use crate::cli::{FleetArgs, FleetVerb};
 use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, output};
@@ -10,6 +10,7 @@ use mavid::fleet::Schema;
 pub fn run(json: bool, stderr: &StandardError, args: &FleetArgs) -> Result<Outcome, CommandError> {
     match &args.verb {
         Some(FleetVerb::Report(args)) => report::run(json, args),
+        Some(FleetVerb::Rows(args)) => one::run(json, args),
         Some(FleetVerb::Schema) => {
             let schema = Schema::current();
             if json { output::json(&schema) } else { output::text(&schema.markdown()) }?;

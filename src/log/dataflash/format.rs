@@ -108,7 +108,7 @@ impl<R: std::io::BufRead> Messages for DataflashTextReader<R> {
 }
 
 fn report(format: &'static str, walked: Walked, damage: &DataflashDamage) -> ReadReport {
-    let Walked { identity, tally, clock, dropped, .. } = walked;
+    let Walked { identity, tally, clock, dropped, date, .. } = walked;
     let oddities = [
         (dropped, Oddity::DroppedByVehicle { count: dropped }),
         (
@@ -132,6 +132,7 @@ fn report(format: &'static str, walked: Walked, damage: &DataflashDamage) -> Rea
             messages: damage.messages,
             kind: identity.kind(),
             firmware: identity.firmware(),
+            start_utc_us: date.began_us(),
             topics: tally.topics(),
         })),
         ..ReadReport::default()

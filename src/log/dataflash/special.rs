@@ -19,6 +19,8 @@ pub(super) enum Special {
     Jump,
     /// degrees north and east, and height, m
     Place,
+    /// week of the satellites, and ms of it
+    Date,
     /// messages dropped before they were written, so far
     Dropped,
     /// batch, kind of sensor, sensor, multiplier, time of the first sample, rate
@@ -52,6 +54,7 @@ pub(super) const SPECIALS: &[SpecialMessage] = &[
     special("XKF4", Special::Jump, &[&["OFN"], &["OFE"]]),
     special("NKF4", Special::Jump, &[&["OFN"], &["OFE"]]),
     special("POS", Special::Place, &[&["Lat"], &["Lng"], &["RelOriginAlt", "RelHomeAlt", "RelAlt", "Alt"]]),
+    special("GPS", Special::Date, &[&["GWk", "Week"], &["GMS", "TimeMS"]]),
     special("DSF", Special::Dropped, &[&["Dp"]]),
     special(
         "ISBH",

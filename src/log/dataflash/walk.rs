@@ -17,6 +17,7 @@ use super::topics::{Demand, Part};
 use super::values::Values;
 use crate::autopilot::{ARDUPILOT, Autopilot};
 use crate::frames::Geodetic;
+use crate::log::date::Date;
 use crate::log::error::LogError;
 use crate::log::format::Sink;
 use crate::log::leap::{Leap, LeapCause};
@@ -53,6 +54,7 @@ pub(super) struct Walked {
     pub identity: Identity,
     pub tally: Tally,
     pub clock: Clock,
+    pub date: Date,
     /// messages dropped before they were written, as the log itself counts
     pub dropped: u64,
     /// messages of parameters that are withheld
@@ -286,6 +288,7 @@ impl Walk<'_, '_> {
             }
             Special::Jump => {}
             Special::Place => self.place([number(0), number(1)], number(2), time_s),
+            Special::Date => self.walked.date.satellites(number(0), number(1), time_s),
             Special::Dropped => self.walked.dropped = self.walked.dropped.max(count(number(0))),
             Special::BatchHead => self.batches.head(message, fields),
             Special::BatchData => self.batch(message, fields),

@@ -3,9 +3,10 @@
 use super::clock::{Clock, Placed};
 use super::message::Message;
 use super::resets::ResetCounters;
-use super::schema::Subscription;
+use super::schema::{Cell, Subscription};
 use super::topics::{Bound, streams_of};
 use crate::autopilot::Autopilot;
+use crate::log::date::Date;
 use crate::log::flights::is_state;
 use crate::log::leap::{Leap, LeapCause};
 use crate::recording::Event;
@@ -14,6 +15,8 @@ use crate::units::seconds_from_us;
 
 /// `sys_name` of PX4, and a parameter that it alone has.
 const PX4: (&str, &str) = ("PX4", "SYS_AUTOSTART");
+/// Field of a satellite receiver's time.
+const UTC: &str = "time_utc_usec";
 /// Beginnings of the names of a simulator's own parameters, which hold its truth.
 const TRUTH: [&str; 2] = ["SIM_", "SIH_"];
 
@@ -28,6 +31,7 @@ pub(super) type Places = Vec<Option<(usize, usize)>>;
 #[derive(Debug, Default)]
 pub(super) struct Decoder {
     pub(super) clock: Clock,
+    pub(super) date: Date,
     /// by number; none where nothing is read of it
     pub(super) topics: Vec<Option<Topic>>,
     /// of each number
@@ -46,6 +50,8 @@ pub(super) struct Decoder {
 #[derive(Debug)]
 pub(super) struct Topic {
     pub(super) resets: ResetCounters,
+    /// a satellite receiver's time, microseconds since 1970 UTC
+    pub(super) utc: Option<Cell>,
     pub(super) last_us: Option<u64>,
     behind: Option<Behind>,
     /// no other topic has streams of the same key
@@ -170,7 +176,8 @@ impl Decoder {
         }
         self.streams[slot] = streams_of(subscription);
         let resets = ResetCounters::of(subscription);
-        let topic = Topic { resets, last_us: None, behind: None, is_alone: false };
+        let utc = subscription.layout.cell(UTC);
+        let topic = Topic { resets, utc, last_us: None, behind: None, is_alone: false };
         self.topics[slot] = (!self.streams[slot].is_empty()).then_some(topic);
         self.places.clear();
     }
@@ -239,6 +246,9 @@ impl Decoder {
         let Some(topic) = self.topics.get_mut(slot).and_then(Option::as_mut) else { return };
         if topic.resets.jumped(bytes) {
             sink(Event::EstimatorReset { time_s: self.clock.seconds(stamp_us) });
+        }
+        if let Some(utc) = topic.utc.filter(|_| !self.date.is_known()) {
+            self.date.utc_us(utc.read(bytes), self.clock.seconds(stamp_us));
         }
         for bound in &self.streams[slot] {
             let Some(time_s) = time_s(&self.clock, bound, bytes, stamp_us) else { continue };

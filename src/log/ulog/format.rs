@@ -91,6 +91,7 @@ fn read_report(report: UlogReport, decoder: &Decoder, craft: &Craft, autopilot: 
         messages: report.messages,
         kind: craft.kind(),
         firmware: craft.firmware(),
+        start_utc_us: decoder.date.began_us(),
         topics: topics(&report),
     };
     ReadReport {

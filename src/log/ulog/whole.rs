@@ -7,6 +7,7 @@ use super::clock::Clock;
 use super::decode::{Decoder, Places, Topic, time_s};
 use super::reader::UlogReader;
 use super::topics::Bound;
+use crate::log::date::Date;
 use crate::log::error::LogError;
 use crate::recording::{Event, Growing, RecordingBuilder};
 
@@ -58,8 +59,8 @@ impl Whole {
         }
         let Self { ready, next } = self;
         loop {
-            let Decoder { streams, places, clock, topics, leap, .. } = &mut *decoder;
-            let scan = Scan { clock, topics, may_follow: leap.is_none() };
+            let Decoder { streams, places, clock, date, topics, leap, .. } = &mut *decoder;
+            let scan = Scan { clock, date, topics, may_follow: leap.is_none() };
             let (gathered, ()) =
                 rayon::join(|| scan.gather(reader, next), || ready.decode(streams, places, builder));
             gathered?;
@@ -97,6 +98,7 @@ fn bind(decoder: &mut Decoder, builder: &mut RecordingBuilder) {
 /// What judges messages while they are gathered.
 struct Scan<'a> {
     clock: &'a mut Clock,
+    date: &'a mut Date,
     topics: &'a mut [Option<Topic>],
     /// no message waits
     may_follow: bool,
@@ -127,6 +129,9 @@ impl Scan<'_> {
         topic.last_us = Some(stamp_us);
         if topic.resets.jumped(bytes) {
             into.jumps_s.push(self.clock.seconds(stamp_us));
+        }
+        if let Some(utc) = topic.utc.filter(|_| !self.date.is_known()) {
+            self.date.utc_us(utc.read(bytes), self.clock.seconds(stamp_us));
         }
         into.count += 1;
         run.length = bytes.len();

@@ -27,8 +27,8 @@ pub(super) fn alarms(report: &FleetReport) -> String {
             significant(alarms.flights, 2)
         ),
         None => format!(
-            "A change needs {needs} standard deviations. No vehicle has four flights or more, so the rate of false alarms of this fleet is \
-             not known."
+            "A change needs {needs} standard deviations, as in a comparison. These vehicles have too few flights, or days with flights, to \
+             shuffle them: the rate of false alarms of this fleet is not known."
         ),
     }
 }

@@ -169,7 +169,7 @@ fn clock(page: &mut String, inspection: &Inspection) {
     };
     row(page, "vehicle's clock", span);
     if let Some(start_us) = clock.start_utc_us {
-        row(page, "host's at its start", text::utc(start_us));
+        row(page, inspection.start_words(), text::utc(start_us));
     }
     if let (Some(drift), Some(std)) = (clock.drift_ppm, clock.drift_std_ppm) {
         row(page, "host against vehicle", format!("{drift:+.0} +- {std:.0} ppm"));

@@ -1,7 +1,9 @@
 //! What changed between groups of flights whose balance and parameters are known.
 
 use super::result::{Change, Changed, Compared, LeastChange};
-use crate::change::{BalanceChange, Groups, Step, What, find_returns, judge_balance, judge_parameter, steps};
+use crate::change::{
+    BalanceChange, Groups, NAMED_SIGMAS, Step, What, find_returns, judge_balance, judge_parameter, steps,
+};
 use crate::diagnose::Owner;
 use crate::study::Track;
 use crate::trim::{Balance, mean_arm_m};
@@ -30,7 +32,10 @@ impl Judge<'_> {
             let strongest = compared.strongest();
             (strongest > 0.0 && strongest >= least_sigmas).then_some((strongest, compared))
         };
-        let mut found = steps(order.len(), &judged);
+        // of so many places one is reached by chance at that many more
+        let pairs = (order.len() * order.len().saturating_sub(1) / 2).max(1) as f64;
+        let there_and_back = least_sigmas.max(NAMED_SIGMAS).hypot((2.0 * pairs.ln()).sqrt());
+        let mut found = steps(order.len(), &judged, there_and_back);
         find_returns(order.len(), &mut found, &|groups, step: &Compared| {
             let compared = self.compared(&flight_groups(groups, order));
             compared.changes.is_empty() && step.certain().all(|change| compared.would_show(change))

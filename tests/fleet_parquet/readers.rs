@@ -1,17 +1,13 @@
-//! Tables as Parquet and streams as MCAP, read by other people's programs. With the feature `fleet` alone.
-
-#![cfg(feature = "fleet")]
-#![allow(clippy::panic, clippy::unwrap_used, reason = "a test ends where it fails")]
-
-mod support;
+//! Tables as Parquet and streams as MCAP, read by other people's programs.
 
 use std::path::Path;
 use std::process::Command;
 
 use mavid::fleet::{PartsFolder, Schema};
 use serde_json::json;
-use support::python::ask;
-use support::require::{Needed, skip};
+
+use crate::support::python::ask;
+use crate::support::require::{Needed, skip};
 
 #[test]
 fn other_programs_read_the_tables_and_the_streams() {
@@ -28,7 +24,7 @@ fn other_programs_read_the_tables_and_the_streams() {
     run(&["fleet", first, second, "--out", out.to_str().unwrap(), "--depth", "balance", "--part-logs", "1"]);
     run(&["convert", second, "--to", "mcap", "--out", streams.to_str().unwrap()]);
     run(&["convert", second, "--to", "parquet", "--out", streams.to_str().unwrap()]);
-    let rows = PartsFolder::new(&out).read_all().unwrap();
+    let rows = PartsFolder::open(&out).unwrap().read_all().unwrap();
     assert_eq!(rows.logs.len(), 2);
 
     let mcap = streams.join("flight.mcap");
