@@ -272,7 +272,7 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
         }
         Some(_) => {}
     }
-    if !evidence.has_vertical_motion() && !(stands && evidence.still(Quantity::SpecificForce).is_some()) {
+    if !(evidence.has_vertical_motion() || stands && evidence.still(Quantity::SpecificForce).is_some()) {
         advice.push(format!(
             "No vertical motion: mass cannot be identified. To have it, {}.",
             how(evidence, "request an IMU message, or attitude, rates and LOCAL_POSITION_NED")

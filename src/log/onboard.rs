@@ -31,7 +31,7 @@ pub struct Topic {
     pub count: u64,
     /// first and last stamp, s of the vehicle's clock; `None` where they carry none
     pub span_s: Option<(f64, f64)>,
-    /// pauses between these, as between two flights: see [`is_pause`]
+    /// pauses between these, as between two flights
     pub pauses: u64,
     /// s of them together
     pub paused_s: f64,

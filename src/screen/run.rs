@@ -90,7 +90,7 @@ fn screened(log: &[u8], settings: &ScreenSettings) -> Result<Screening, LogError
             }
         }
     }
-    screening.findings.sort_by(|a, b| b.gravity.cmp(&a.gravity));
+    screening.findings.sort_by_key(|finding| std::cmp::Reverse(finding.gravity));
     Ok(screening)
 }
 
