@@ -71,10 +71,11 @@ impl Multirotor {
     }
 
     fn diagnostic(&self, finding: Finding) -> Diagnostic {
-        let stamp = |time_s: f64| {
-            self.start_us
-                .saturating_add(std::time::Duration::from_secs_f64(time_s.max(0.0)).as_micros() as u64)
+        let since_us = |time_s: f64| {
+            let since = std::time::Duration::try_from_secs_f64(time_s.max(0.0)).unwrap_or_default();
+            u64::try_from(since.as_micros()).unwrap_or(u64::MAX)
         };
+        let stamp = |time_s: f64| self.start_us.saturating_add(since_us(time_s));
         let (from_s, to_s) = finding.span_s.unwrap_or((0.0, 0.0));
         let anchor = finding.at.and_then(|at| {
             let (_, topic, field) = FIELDS.iter().find(|(quantity, ..)| *quantity == at.quantity)?;
