@@ -6,7 +6,7 @@
 #![allow(clippy::print_stdout, reason = "an example prints its result")]
 
 mod analyzer;
-pub mod service;
+pub(crate) mod service;
 
 use analyzer::Multirotor;
 use service::{Analyzer, Diagnostic, Metadata};

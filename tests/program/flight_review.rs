@@ -6,4 +6,4 @@
 mod main;
 
 pub use main::diagnostics;
-pub use main::service::Severity;
+pub(crate) use main::service::Severity;
