@@ -14,10 +14,11 @@ use super::latency::LatencyFinding;
 use super::latency_name::{FlightLatency, flight_latency};
 use super::left_over::add_left_over;
 use super::other_law::of_other_laws;
+use super::own_wind::moves;
 use super::reconstructed::{self, Forms, reconstruct};
 use super::recorded::Recorded;
 use super::signature::EffectTerm;
-use super::signatures::ALL;
+use super::signatures::{ALL, signature_of};
 use super::tested::Search;
 use super::torques_by_instruments::torques_by_instruments;
 use super::trace::Trace;
@@ -108,6 +109,9 @@ pub fn each_with_model_of_all(
         let alone = of_other_laws(own, &[], &fit.0);
         let laws = OtherLaws { alone: &alone, together: &together, of_all: &explanation.search.after };
         let mut out = parameters(&fit, explanation.turned_by_control, &terms, Some(&laws));
+        if !moves(trace) {
+            out.retain(|parameter| !is_of_air(parameter));
+        }
         out.extend(of_latency.map(FlightParameter::from));
         Some(out)
     };
@@ -248,6 +252,12 @@ fn set_std(covariance: &mut DMatrix<f64>, index: usize, std: f64) {
         covariance.row_mut(index).scale_mut(by);
         covariance.column_mut(index).scale_mut(by);
     }
+}
+
+/// Whether the parameter is that of a force of the air.
+fn is_of_air(parameter: &FlightParameter) -> bool {
+    let signature = parameter.effect.and_then(signature_of);
+    signature.is_some_and(|signature| signature.role.of_air || signature.role.wind.is_some())
 }
 
 /// Whether an effect may be compared from flight to flight at all.

@@ -11,7 +11,7 @@ use super::trace::Trace;
 use crate::recording::Stream;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 use std::sync::Arc;
 
 /// A wind and its drag are believed from so many standard errors on. Set by judgement: a wind that is believed moves
@@ -24,10 +24,7 @@ const DRAG_1_S: f64 = 0.1;
 #[must_use]
 pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings) -> Option<Vector3<f64>> {
     let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
-    if !(trace.known.velocity && trace.known.attitude) {
-        return None;
-    }
-    if speed_spread_m_s(&trace) < CALM_M_S {
+    if !(trace.known.velocity && trace.known.attitude && moves(&trace)) {
         return None;
     }
     let carried = ALL.iter().find_map(|signature| signature.role.wind)?().into_iter().next()?;
@@ -56,13 +53,14 @@ pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings
     (is_shown && is_dragged && wind.norm() > CALM_M_S).then_some(wind)
 }
 
-/// Root mean square of the velocity along the ground about its mean, m/s. Where it is no more than the error of a velocity estimate, the
-/// slope of the drag on it comes out too small and the wind, which is a force divided by that slope, too strong.
-fn speed_spread_m_s(trace: &Trace) -> f64 {
+/// Whether the flight moves by more than the error of a velocity estimate: by less, the slope of a force on the airspeed comes out too
+/// small, with a standard error that is too small as well, and a wind, which is a force divided by that slope, too strong.
+pub(super) fn moves(trace: &Trace) -> bool {
     let count = trace.centers.len().max(1) as f64;
-    let along = || trace.centers.iter().map(|&center| trace.states[center].velocity_m_s.xy());
-    let mean = along().sum::<Vector2<f64>>() / count;
-    (along().map(|velocity| (velocity - mean).norm_squared()).sum::<f64>() / count).sqrt()
+    let along = || trace.centers.iter().map(|&center| trace.states[center].velocity_m_s);
+    let mean = along().sum::<Vector3<f64>>() / count;
+    let spread = along().map(|velocity| (velocity - mean).norm_squared()).sum::<f64>() / count;
+    spread.sqrt() > CALM_M_S
 }
 
 /// The flight as seen with air that moves at `wind` (world, m/s).

@@ -1,6 +1,6 @@
 //! The parts of a fleet's tables in a folder, here or in a store: `TABLE/part-ID.parquet`, or `.jsonl`. Parts merge by lying beside one another.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::io;
 use std::path::Path;
 
@@ -228,7 +228,7 @@ impl PartsFolder {
         Ok(list)
     }
 
-    /// Removes the files of this shard's parts that were begun and not finished.
+    /// Removes the files of this shard's parts that were begun and not finished, and what was kept of logs that are in a part since.
     ///
     /// # Errors
     /// [`PartsError::File`] where one cannot be removed.
@@ -252,6 +252,14 @@ impl PartsFolder {
             };
         }
         each_table!(each);
+        let listed: HashSet<&str> =
+            lists.iter().flat_map(|list| &list.logs).map(|log| log.sha256.as_str()).collect();
+        for name in self.place.names(WORK).map_err(|error| self.failed(WORK, error))? {
+            if name.split_once('-').is_some_and(|(key, _)| listed.contains(key)) {
+                let name = format!("{WORK}/{name}");
+                self.place.remove(&name).map_err(|error| self.failed(&name, error))?;
+            }
+        }
         Ok(())
     }
 

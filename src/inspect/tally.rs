@@ -1,7 +1,5 @@
 //! Walks through a log once and collects everything.
 
-use std::sync::mpsc::sync_channel;
-
 use super::assess::{Assessment, Assessor};
 use super::clock::ClockTally;
 use super::evidence::Evidence;
@@ -21,6 +19,7 @@ use crate::recording::{Event, Recording, StreamKey, StreamStats};
 use crate::signals::{OffMixer, SignalsError};
 use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
+use std::sync::mpsc::sync_channel;
 
 /// A window holds all of a flight where no more than this times its seconds can be used. Only the words "at most"
 /// depend on it.

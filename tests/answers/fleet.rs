@@ -335,7 +335,7 @@ fn cut_propellers_stand_out_in_the_history_of_one_vehicle() {
     let at = folder("fleet_propellers");
     let list = at.join("vehicles.toml");
     fs::write(&list, "[[vehicle]]\nname = \"one\"\nlogs = \"*\"\nmass = 1.5\n").unwrap();
-    let more = ["--vehicles", list.to_str().unwrap(), "--depth", "balance"];
+    let more = ["--vehicles", list.to_str().unwrap()];
     let (_, tally) = run(&shared.join("onboard/propeller_cut"), &at.join("out"), &more);
     assert_eq!(tally["flown"], 15, "{tally}");
     let report = mavid(&["fleet", "report", at.join("out").to_str().unwrap(), "--shuffles", "50", "--json"]);

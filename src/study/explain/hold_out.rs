@@ -1,6 +1,7 @@
 //! What the better model is shown on, and how it does there.
 
 use super::left_out::{of_others, shown_only_by};
+use super::refuted::Refuted;
 use super::result::ExplainStudy;
 use super::validation_data::ValidationData;
 use crate::diagnose::holdout::{
@@ -12,7 +13,6 @@ use crate::note::{About, Note};
 use crate::signals::{Signals, clock_offset};
 use crate::study::flights::{Prepared, shared};
 use crate::study::{Predicted, StudyError};
-use crate::text::significant;
 
 /// What a law of the rates is.
 const BY_RATE_LAW: &str = "over 0.5 s, a constant state predicts body rates or attitude better than the model: calm \
@@ -59,27 +59,6 @@ pub(super) fn hold_back(flights: &mut Prepared) -> (ValidationData, Option<Signa
     *last = identify;
     let seconds = holdout.usable.iter().filter(|used| **used).count() as f64 * holdout.grid.step_s;
     (ValidationData::HeldBack { from_s, seconds }, Some(holdout))
-}
-
-/// Names that the flights explained would give, and that flights which were not used refute.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Refuted {
-    /// each in brief, with its size
-    pub names: Vec<String>,
-    /// by how much errors over 0.5 s are larger with them, mean over the quantities, %
-    pub worse_percent: f64,
-}
-
-impl Refuted {
-    pub(super) fn note(&self) -> Note {
-        let text = format!(
-            "the flights explained alone would give a name to {}; with it, errors over 0.5 s are {} % larger in the mean on the \
-             hold-out, so it gets none",
-            self.names.join(", "),
-            significant(self.worse_percent, 2)
-        );
-        Note::warning(About::HoldOut, text)
-    }
 }
 
 impl ExplainStudy {

@@ -1,10 +1,10 @@
 //! The result of explaining: what went in, what was found, and what shows it.
 
 use super::along_flights::AlongFlights;
-use super::hold_out::Refuted;
 use super::located::Located;
 use super::predicted::Predicted;
 use super::readers::for_readers;
+use super::refuted::Refuted;
 use super::validation_data::ValidationData;
 use super::worth::Worth;
 use crate::diagnose::experiment::{NextError, NextFlight};
