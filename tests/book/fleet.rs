@@ -57,7 +57,14 @@ fn cut_history(of: &CutHistory) -> String {
             vec![flight.to_string(), propeller, step.map_or_else(String::new, change)]
         })
         .collect();
-    let text = format!("The bound by shuffled histories: {}.", bound(&of.alarms));
+    let text = if of.alarms.shuffled == 0 {
+        let least = significant(of.alarms.least_sigmas, 3);
+        format!(
+            "The flights have too few orders to shuffle them, so the bound is the least that is ever used: {least} standard deviations."
+        )
+    } else {
+        format!("The bound by shuffled histories: {}.", bound(&of.alarms))
+    };
     let head = ["flight", "propeller of motor 1", "changed from this flight on"];
     format!("{}\n\n{}\n\n{}", command(&of.command), table(&head, &rows), paragraph(&text))
 }
