@@ -11,7 +11,8 @@ use crate::stats::median;
 /// A vehicle is off the ground once its height differs by so much from that on the ground, m. A barometer's noise and the pressure
 /// under the rotors stay below it; lower there is the ground's own effect on the rotors.
 const LIFTED_M: f64 = 0.3;
-/// Height after a flight above that before it up to which the vehicle may stand on the ground, m: barometers and estimates drift.
+/// Height after a flight above that before it up to which the vehicle may stand on the ground, m: barometers and estimates drift. A
+/// vehicle that stays above half of its greatest height hovers.
 const DRIFT_M: f64 = 1.0;
 /// Time before a span whose height is that of the ground, s. Longer reaches back to when the estimator settled.
 const GROUND_S: f64 = 2.0;
@@ -28,15 +29,24 @@ const LEAST_SAMPLES: usize = 3;
 pub fn off_ground(recording: &Recording, spans_s: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let Some(heights) = Heights::of(recording) else { return spans_s };
     let margin_s = if recording.is_damaged { DAMAGED_S } else { 0.0 };
-    let one = |(place, span): (usize, &(f64, f64))| {
+    let mut ground_m = None;
+    let mut out = Vec::with_capacity(spans_s.len());
+    for (place, &(from_s, to_s)) in spans_s.iter().enumerate() {
         let before_s = place.checked_sub(1).map_or(f64::NEG_INFINITY, |before| spans_s[before].1);
         let after_s = spans_s.get(place + 1).map_or(f64::INFINITY, |(from_s, _)| *from_s);
-        let (began, ends) = (span.0 - before_s > GROUND_S, after_s - span.1 > GROUND_S);
-        let (lifted_s, down_s) = heights.off_ground(*span)?;
-        let (lifted_s, down_s) = (lifted_s + margin_s, down_s - margin_s);
-        Some((if began { lifted_s } else { span.0 }, if ends { down_s } else { span.1 }))
-    };
-    spans_s.iter().enumerate().filter_map(one).collect()
+        let mut span_s = (from_s, to_s);
+        if from_s - before_s > GROUND_S {
+            ground_m = heights.ground(from_s);
+            let Some(lifted_s) = heights.lifted_s(span_s, ground_m) else { continue };
+            span_s.0 = lifted_s + margin_s;
+        }
+        if after_s - to_s > GROUND_S {
+            span_s.1 = heights.down_s(span_s, ground_m) - margin_s;
+        }
+        out.push(span_s);
+    }
+    out.retain(|(from_s, to_s)| to_s > from_s);
+    out
 }
 
 /// What `spans_s` have in common with `limits_s`, both in order, s.
@@ -91,22 +101,29 @@ impl<'a> Heights<'a> {
         ((later - earlier).abs() < LIFTED_M).then_some(later)
     }
 
-    fn off_ground(&self, (from_s, to_s): (f64, f64)) -> Option<(f64, f64)> {
-        let Some(ground_m) = self.ground(from_s) else { return Some((from_s, to_s)) };
-        let time_s = |index: usize| self.stream.time_s[index];
-        // one sample that is damaged is no height
-        let away = |index: &usize, from_m: f64| {
-            let around = index.saturating_sub(1)..(index + 2).min(self.stream.len());
-            let mut heights: Vec<f64> = around.map(|index| self.height(index)).collect();
-            (median(&mut heights) - from_m).abs() > LIFTED_M
-        };
+    /// Whether the vehicle is off `level_m`. One sample that is damaged is no height.
+    fn is_off(&self, index: usize, level_m: f64) -> bool {
+        let around = index.saturating_sub(1)..(index + 2).min(self.stream.len());
+        let mut heights: Vec<f64> = around.map(|index| self.height(index)).collect();
+        (median(&mut heights) - level_m).abs() > LIFTED_M
+    }
+
+    /// When it leaves the ground, s; `None` where it never does. At once where the ground is not known.
+    fn lifted_s(&self, (from_s, to_s): (f64, f64), ground_m: Option<f64>) -> Option<f64> {
+        let Some(ground_m) = ground_m else { return Some(from_s) };
         let mut inside = self.between(from_s, to_s);
-        let lifted_s = inside.clone().find(|index| away(index, ground_m)).map(time_s)?;
-        let rest_m = self.rest(to_s - REST_S, to_s + REST_S);
-        let on_ground = rest_m.filter(|rest_m| rest_m - ground_m < DRIFT_M);
-        let Some(rest_m) = on_ground else { return Some((lifted_s, to_s)) };
-        let down_s = inside.rfind(|index| away(index, rest_m)).map(time_s)?;
-        (down_s > lifted_s).then_some((lifted_s, down_s))
+        inside.find(|index| self.is_off(*index, ground_m)).map(|index| self.stream.time_s[index])
+    }
+
+    /// When it is on the ground again, s: at the end where it does not come down before.
+    fn down_s(&self, (from_s, to_s): (f64, f64), ground_m: Option<f64>) -> f64 {
+        let Some(ground_m) = ground_m else { return to_s };
+        let inside = self.between(from_s, to_s);
+        let highest_m = inside.clone().map(|index| self.height(index) - ground_m).fold(0.0, f64::max);
+        let is_ground = |rest_m: &f64| rest_m - ground_m < DRIFT_M.min(0.5 * highest_m);
+        let Some(rest_m) = self.rest(to_s - REST_S, to_s + REST_S).filter(is_ground) else { return to_s };
+        let mut inside = inside;
+        inside.rfind(|index| self.is_off(*index, rest_m)).map_or(to_s, |index| self.stream.time_s[index])
     }
 }
 
@@ -168,6 +185,12 @@ mod tests {
         // recorded from the middle of a flight to its middle, at one height
         let hover = recorded(5.0, 25.0, |t_s| 4.0 + 0.1 * t_s.sin());
         assert_eq!(off_ground(&hover, span.clone()), span);
+        // low, and cut or disarmed there
+        let low = recorded(0.0, 25.0, |t_s| (t_s - 5.0).clamp(0.0, 0.5));
+        about(&off_ground(&low, vec![(4.0, 25.0)]), &[(5.4, 25.0)]);
+        // a pause in a hover, to the log's end
+        let pause = recorded(0.0, 25.0, |t_s| (t_s - 5.0).clamp(0.0, 2.0));
+        about(&off_ground(&pause, vec![(4.0, 12.0), (12.5, 25.0)]), &[(5.4, 12.0), (12.5, 25.0)]);
         // disarmed in the air, up there
         let stopped = recorded(0.0, 25.0, |t_s| (t_s - 5.0).clamp(0.0, 4.0));
         about(&off_ground(&stopped, vec![(4.0, 25.0)]), &[(5.4, 25.0)]);
