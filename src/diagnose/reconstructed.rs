@@ -6,6 +6,7 @@
 use super::base::{Base, follows_force};
 use super::channels::Nuisance;
 use super::fit::{Fitted, Newton, evaluate, fit as fit_rows};
+use super::force_forms::{choose_forms, open_form};
 use super::hausman::differ;
 use super::signature::EffectTerm;
 use super::tested::Search;
@@ -29,8 +30,8 @@ const NO_LAG_STD_S: f64 = 0.005;
 /// larger change is a failed fit.
 const MOST_SCALE: f64 = 1.5;
 
-/// A share that grows with the rotors' speed is told apart beyond this many standard errors.
-const TOLD_APART: f64 = 2.0;
+/// Standard errors by which an estimate may be beyond what is possible. The usual two.
+const BEYOND_BOUND: f64 = 2.0;
 
 /// Whether the forms of effects are open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,7 +42,8 @@ pub(super) enum Forms {
     Known,
 }
 
-/// Replaces sizes of forces, and the mass, by those of the reconstruction where all flights allow one.
+/// Replaces sizes of forces, and the mass, by those of the reconstruction where all flights allow one. It begins at the values of
+/// `start`, a model with the same effects; `None`: at those of the fit.
 ///
 /// # Errors
 /// [`PhysicsError`] where the vehicle is not physical.
@@ -49,13 +51,72 @@ pub(super) fn reconstruct(
     signals: &[Signals],
     traces: &[Trace],
     (forms, found): (Forms, &mut Search),
+    start: Option<&Base>,
 ) -> Result<(), PhysicsError> {
     let flights = Flights { signals, latency_std_s: found.latency.std_s, forms };
-    match flights.sizes(traces, &found.after)? {
+    match flights.sizes(traces, &found.after, start.unwrap_or(&found.after.base))? {
         Ok(after) => found.after = after,
         Err(why) => tracing::debug!(%why, "sizes of forces left as they were"),
     }
     Ok(())
+}
+
+/// A model as the flight path of all flights tells it.
+pub(super) struct Reconstructed {
+    /// in the forms that the forces show, at the values that were given
+    pub(super) base: Base,
+    terms: Vec<Term>,
+    pooled: PooledEstimate,
+}
+
+impl Reconstructed {
+    /// These values of all free parameters, each with the same standard error.
+    #[cfg(test)]
+    pub(super) fn by_hand(base: Base, values: &[f64], std: f64) -> Self {
+        let term = |term: &EffectTerm| {
+            Term::new(term.effect(), term.values.clone(), term.free.clone(), vec![1e-3; term.free.len()])
+        };
+        let terms = base.effects.iter().map(term).collect();
+        let values =
+            DVector::from_iterator(values.len() + 1, std::iter::once(1.0).chain(values.iter().copied()));
+        let covariance = DMatrix::identity(values.len(), values.len()) * (std * std);
+        Self { base, terms, pooled: PooledEstimate { values, covariance } }
+    }
+
+    /// Estimates, SI, and covariance of those `slots` of the effect at `place` that the forces tell.
+    pub(super) fn of(&self, place: usize, slots: &[usize]) -> (DVector<f64>, DMatrix<f64>) {
+        let own = self.terms[place].free.iter().enumerate();
+        let at: Vec<usize> = own
+            .filter(|(_, slot)| slots.contains(slot))
+            .map(|(index, _)| self.first(place) + index)
+            .collect();
+        let PooledEstimate { values, covariance } = &self.pooled;
+        (values.select_rows(&at), covariance.select_rows(&at).select_columns(&at))
+    }
+
+    /// Another model with these estimates where it has the effect: of those that forces tell each is there once.
+    pub(super) fn put_into(&self, mut base: Base) -> Base {
+        for (place, (told, term)) in self.base.effects.iter().zip(&self.terms).enumerate() {
+            let Some(same) = base.effects.iter_mut().find(|term| term.is(told.signature)) else { continue };
+            for (index, &slot) in term.free.iter().enumerate().filter(|(_, slot)| same.free.contains(slot)) {
+                same.values[slot] =
+                    same.possible(slot, self.pooled.values[self.first(place) + index], &base.size);
+            }
+        }
+        base
+    }
+
+    /// Place of an effect's first value among the estimates.
+    fn first(&self, place: usize) -> usize {
+        1 + self.terms[..place].iter().map(|term| term.free.len()).sum::<usize>()
+    }
+}
+
+/// The estimates of another model of the same flights; `None` where they allow none.
+pub(super) fn reconstructed_with(signals: &[Signals], found: &Search, base: Base) -> Option<Reconstructed> {
+    let flights = Flights { signals, latency_std_s: found.latency.std_s, forms: Forms::Chosen };
+    let (base, terms, pooled) = flights.estimated(&found.after, base).ok()?;
+    Some(Reconstructed { base, terms, pooled })
 }
 
 /// Why the sizes stay as they were.
@@ -83,16 +144,20 @@ struct Flights<'a> {
 }
 
 impl Flights<'_> {
-    fn sizes(&self, traces: &[Trace], fitted: &Fitted) -> Result<Result<Fitted, Kept>, PhysicsError> {
-        match self.estimated(fitted) {
+    fn sizes(
+        &self,
+        traces: &[Trace],
+        fitted: &Fitted,
+        start: &Base,
+    ) -> Result<Result<Fitted, Kept>, PhysicsError> {
+        match self.estimated(fitted, start.clone()) {
             Ok((base, terms, pooled)) => replaced(traces, (fitted, base), &terms, &pooled),
             Err(why) => Ok(Err(why)),
         }
     }
 
-    /// The base in the forms that the forces show, its effects as terms, and their values.
-    fn estimated(&self, fitted: &Fitted) -> Result<(Base, Vec<Term>, PooledEstimate), Kept> {
-        let mut base = fitted.base.clone();
+    /// The base in the forms that the forces show, its effects as terms, and their values; the latency is that of the fit.
+    fn estimated(&self, fitted: &Fitted, mut base: Base) -> Result<(Base, Vec<Term>, PooledEstimate), Kept> {
         let mut open = base.clone();
         for present in &mut open.effects {
             open_form(present);
@@ -129,55 +194,6 @@ impl Flights<'_> {
 
 /// A fit of states and parameters.
 type Estimate = fn(Problem, &[usize]) -> Result<Fit, FitError>;
-
-/// Each effect in the form that its share tells.
-fn choose_forms(base: &mut Base, opened: &[Term], pooled: &PooledEstimate) {
-    let mut next = 1;
-    for (present, term) in base.effects.iter_mut().zip(opened) {
-        for &slot in &term.free {
-            if present.signature.role.with_speed.is_some_and(|(own, _)| own == slot) {
-                choose_form(present, slot, (pooled.values[next], pooled.std(next)));
-            }
-            next += 1;
-        }
-    }
-    let damped = base.effects.clone();
-    for present in &mut base.effects {
-        let role = &present.signature.role;
-        let of_body = role.with_speed.is_some_and(|(slot, _)| present.values.get(slot) == Some(&0.0));
-        let damping = role.damped_by.map(|damping| damping()).filter(|_| of_body);
-        if damping.is_some_and(|damping| damped.iter().any(|other| other.is(damping.signature))) {
-            // a drag of the body acts at its centre, and what else damps the rotation is in the model
-            let at_hubs = present.effect().parameters().len();
-            present.values[at_hubs] = 0.0;
-            present.free.retain(|slot| *slot != at_hubs);
-        }
-    }
-}
-
-/// With the share that grows with the rotors' speed among the values, and free.
-fn open_form(present: &mut EffectTerm) {
-    let Some((slot, common)) = present.signature.role.with_speed else { return };
-    let given = present.effect().parameters().len();
-    for (index, value) in common.iter().enumerate() {
-        if present.values.len() == given + index {
-            present.values.push(*value);
-        }
-    }
-    if !present.free.contains(&slot) {
-        present.free.push(slot);
-    }
-}
-
-/// Of the body, where the share is nearer to none and one is excluded; else of the rotors.
-fn choose_form(present: &mut EffectTerm, slot: usize, (share, std): (f64, f64)) {
-    if share < 0.5 && 1.0 - share > TOLD_APART * std {
-        let free = present.free.clone();
-        open_form(present);
-        present.free = free;
-        present.values[slot] = 0.0;
-    }
-}
 
 /// The effects of the model with those of their parameters free that the forces tell; `None` where one of them has states or
 /// changes what sensors show.
@@ -238,13 +254,13 @@ fn fitted_flight(
 }
 
 /// Scale and free values of all flights: each flight weighted by its information.
-struct PooledEstimate {
-    values: DVector<f64>,
+pub(super) struct PooledEstimate {
+    pub(super) values: DVector<f64>,
     covariance: DMatrix<f64>,
 }
 
 impl PooledEstimate {
-    fn std(&self, index: usize) -> f64 {
+    pub(super) fn std(&self, index: usize) -> f64 {
         self.covariance[(index, index)].max(0.0).sqrt()
     }
 
@@ -306,9 +322,11 @@ fn replaced(
     for (place, term) in terms.iter().enumerate() {
         for &slot in &term.free {
             let at = 1 + sizes.len();
-            let (present, value) = (&mut base.effects[place], values[at]);
-            if present.possible(slot, value, &base.size) != value {
-                return Ok(Err(Kept::Implausible { what: present.id(), value }));
+            let (present, estimate) = (&mut base.effects[place], values[at]);
+            // what is beyond its bound by no more than its error is at the bound
+            let value = present.possible(slot, estimate, &base.size);
+            if (value - estimate).abs() > BEYOND_BOUND * covariance[(at, at)].max(0.0).sqrt() {
+                return Ok(Err(Kept::Implausible { what: present.id(), value: estimate }));
             }
             present.values[slot] = value;
             sizes.push(Size { place, slot, at, value });

@@ -2,6 +2,7 @@
 //! not bias (flight path reconstruction, instruments).
 
 use super::base::Base;
+use super::drag_law::settle_laws;
 use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
 use super::floors::{FORM, add_floors};
@@ -41,10 +42,11 @@ pub(super) fn refine(
 ) -> Result<(), PhysicsError> {
     let trim = Trim::of(flights, vehicle);
     leave_out_unnamed(traces, &trim, found)?;
+    let mut start = tracing::info_span!("laws").in_scope(|| settle_laws(flights, traces, found))?;
     let mut by_instruments = Vec::new();
     for left in (0..ROUNDS).rev() {
         tracing::info_span!("reconstruct")
-            .in_scope(|| reconstruct(flights, traces, (Forms::Chosen, found)))?;
+            .in_scope(|| reconstruct(flights, traces, (Forms::Chosen, found), start.take().as_ref()))?;
         if is_fed_back(traces) {
             by_instruments = tracing::info_span!("instruments")
                 .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;

@@ -7,6 +7,7 @@ use super::rotors::{OfRotors, RotorMotion, felt, filtered};
 use super::timing::{command_period_s, inertial_late};
 use super::trace_error::TraceError;
 use crate::physics::{ActuationLatency, Airframe, State};
+use crate::reconstruction::velocity_error_m_s;
 use crate::signals::{
     Butterworth, Grid, Series, Signals, ThrustSource, WeakKernel, central_difference, stride,
 };
@@ -71,6 +72,8 @@ pub struct Trace {
     pub height_by_pose: Option<bool>,
     /// a satellite receiver gives the position
     pub position_by_receiver: bool,
+    /// m/s rms, slow error of the horizontal velocity by a satellite receiver; `None` without one
+    pub velocity_error_m_s: Option<f64>,
     /// of the torques, if the commanded trajectory was recorded
     pub(super) instruments: Option<Arc<Instruments>>,
     /// what every model of this motion is compared with, once it was asked for
@@ -149,6 +152,7 @@ impl Trace {
             gravity_m_s2: vehicle.gravity_m_s2,
             height_by_pose: signals.quality.height_by_pose,
             position_by_receiver: signals.quality.position_by_receiver,
+            velocity_error_m_s: velocity_error_m_s(signals),
             instruments: None,
             weak_motion: Arc::default(),
         };

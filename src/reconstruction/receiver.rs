@@ -1,16 +1,57 @@
 //! The velocity that a satellite receiver measures: raw, beside the autopilot's estimate.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
 use super::place::{Place, STEP_S, cell_of};
 use crate::recording::Stream;
-use crate::signals::Grid;
+use crate::signals::{Grid, Signals};
 
 /// Latenesses of a receiver that are tried, s: from the first to the last by the step. A receiver's delay lies well
 /// within; a wider range costs time.
 const TRIED_S: (f64, f64, f64) = (-0.1, 0.4, 0.01);
 /// Fewer samples than this teach no lateness. They are 4 s at 5 Hz; a shorter piece resembles itself at any lateness.
 const LEAST_SAMPLES: usize = 20;
+
+/// Neighbouring samples of a receiver that are further apart than this say little of an error that changes within seconds.
+const NEIGHBOURS_S: f64 = 1.0;
+
+/// Root mean square of the slow error of the autopilot's horizontal velocity in flight, m/s, each axis: what it differs by from a
+/// receiver's for longer than from one sample to the next. A receiver's own noise is another in each sample. `None` without a receiver,
+/// or with too few of its samples in the air.
+#[must_use]
+pub fn velocity_error_m_s(signals: &Signals) -> Option<f64> {
+    let (stream, velocity) = (signals.as_recorded.gps_velocity.as_deref()?, signals.velocity.as_ref()?);
+    slow_error_m_s(stream, (&signals.grid, velocity), &signals.quality.airborne_s)
+}
+
+/// The same of a receiver's stream; `estimated` is the autopilot's velocity on its grid.
+fn slow_error_m_s(
+    stream: &Stream,
+    estimated: (&Grid, &[Vector3<f64>]),
+    airborne_s: &[(f64, f64)],
+) -> Option<f64> {
+    let (grid, velocity) = estimated;
+    let horizontal = |index: &usize| stream.sample(*index)[..2].iter().all(|part| part.is_finite());
+    let flown = |index: &usize| {
+        let t = stream.time_s[*index];
+        airborne_s.iter().any(|(from_s, to_s)| (*from_s..*to_s).contains(&t))
+    };
+    let samples: Vec<usize> = (0..stream.len()).filter(flown).filter(horizontal).collect();
+    if samples.len() < LEAST_SAMPLES {
+        return None;
+    }
+    let late_s = lateness_s(stream, &samples, estimated);
+    let apart = |&index: &usize| {
+        let here = Place::of(grid, stream.time_s[index] - late_s).between(velocity);
+        let seen = stream.sample(index);
+        Vector2::new(seen[0] - here.x, seen[1] - here.y)
+    };
+    let near = |pair: &&[usize]| stream.time_s[pair[1]] - stream.time_s[pair[0]] < NEIGHBOURS_S;
+    let products: Vec<f64> =
+        samples.windows(2).filter(near).map(|pair| apart(&pair[0]).dot(&apart(&pair[1])) / 2.0).collect();
+    let mean = products.iter().sum::<f64>() / products.len() as f64;
+    (products.len() >= LEAST_SAMPLES).then(|| mean.max(0.0).sqrt())
+}
 
 /// One sample.
 #[derive(Debug, Clone, Copy)]
@@ -98,6 +139,28 @@ mod tests {
             let true_m_s = at(cells[seen.cell] + seen.share * STEP_S);
             assert!((seen.velocity_m_s - true_m_s).xy().norm() < 1e-3 && !seen.climbs, "{seen:?}");
         }
+    }
+
+    #[test]
+    fn the_slow_error_of_a_velocity_shows_beside_a_receivers_noise() {
+        let grid = Grid { start_s: 0.0, step_s: 0.01, count: 6000 };
+        // each axis is wrong by 0.3 m/s rms, within ten seconds
+        let wrong = |t: f64| Vector3::new((0.6 * t).sin(), (0.6 * t).cos(), 0.0) * (0.3 * 2.0_f64.sqrt());
+        let estimated: Vec<Vector3<f64>> =
+            (0..grid.count).map(|index| at(grid.time_s(index)) + wrong(grid.time_s(index))).collect();
+        let time_s: Vec<f64> = (0..500).map(|index| 2.0 + 0.1 * f64::from(index)).collect();
+        // noise of 0.2 m/s that is another in each sample
+        let noise = |index: usize| 0.2 * 2.0_f64.sqrt() * (2.4 * index as f64).sin();
+        let seen = time_s.iter().enumerate().flat_map(|(index, t)| {
+            let seen = at(*t);
+            [seen.x + noise(index), seen.y + noise(7 * index), f64::NAN]
+        });
+        let values = seen.collect();
+        let stream = Stream { time_s, width: 3, values };
+        let error = |airborne_s| slow_error_m_s(&stream, (&grid, &estimated), airborne_s);
+        assert_eq!(error(&[(0.0, 2.5)]), None);
+        let error_m_s = error(&[(0.0, 60.0)]).expect("enough samples");
+        assert!((error_m_s - 0.3).abs() < 0.06, "{error_m_s}");
     }
 
     #[test]

@@ -110,27 +110,29 @@ pub(super) fn beside_harmonics(view: &View, series: &[f64]) -> Vec<Ordinate> {
 }
 
 /// What the velocity's own slow error makes of the drag, N (rms): an estimated velocity that wanders does not
-/// follow from the accelerometer, and the two readings of the force contradict each other by the error's rate.
+/// follow from the accelerometer, and the two readings of the force contradict each other by the error's rate. A satellite receiver
+/// shows the error itself.
 fn force_of_velocity_error_n(view: &View, fitted: &Fitted, (of, correlation_s): (Quantity, f64)) -> f64 {
     let (axis, across) = match of {
         Quantity::World(axis) => (axis, true),
         Quantity::BodyZ => (2, false),
         Quantity::Lift | Quantity::Torque(_) => return 0.0,
     };
-    let Some(contradiction) = &view.contradiction_n else { return 0.0 };
-    let ordinates = beside_harmonics(view, &contradiction[axis]);
     let mass_kg = fitted.base.vehicle.body.mass_kg;
-    let drag_n_s_m = if across {
-        lateral_drag(view, fitted).map_or(0.0, |(drag_n_s_m, _)| drag_n_s_m)
+    let (drag_n_s_m, by_receiver_m_s) = if across {
+        let drag_n_s_m = lateral_drag(view, fitted).map_or(0.0, |(drag_n_s_m, _)| drag_n_s_m);
+        (drag_n_s_m, view.velocity_error_m_s)
     } else {
-        axial_drag_n_s_m(fitted)
+        (axial_drag_n_s_m(fitted), 0.0)
     };
+    let Some(contradiction) = &view.contradiction_n else { return drag_n_s_m * by_receiver_m_s };
+    let ordinates = beside_harmonics(view, &contradiction[axis]);
     // an error whose rate wanders, and one that is itself a first-order Gauss-Markov process as a gust is
     let of_rate_m_s = red_fit(view, &ordinates)
         .filter(|(.., statistic)| *statistic > CONTRADICTION_STATISTIC)
         .map_or(0.0, |(correlation_s, fit, _)| fit.coefficients[2].sqrt() * correlation_s / mass_kg);
     let of_process_m_s = velocity_error_m_s(view, &ordinates, correlation_s).unwrap_or(0.0) / mass_kg;
-    drag_n_s_m * of_rate_m_s.max(of_process_m_s)
+    drag_n_s_m * of_rate_m_s.max(of_process_m_s).max(by_receiver_m_s)
 }
 
 /// Standard deviation, times the mass (kg m/s), of a velocity's Gauss-Markov error that the contradiction shows

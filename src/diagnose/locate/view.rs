@@ -40,6 +40,8 @@ pub(super) struct View {
     pub(super) world_force_n: Option<[Vec<f64>; 3]>,
     /// first measurement of the force minus the second, on world x, y, z, N; `None` if there is only one
     pub(super) contradiction_n: Option<[Vec<f64>; 3]>,
+    /// m/s rms, slow error of the horizontal velocity by satellite receivers: that of the flight with the greatest; 0 without one
+    pub(super) velocity_error_m_s: f64,
     /// weak form's test function
     pub(super) kernel: WeakKernel,
     /// s, of the recordings' grid
@@ -71,6 +73,7 @@ impl View {
             thrust_n: Vec::with_capacity(rows),
             world_force_n: None,
             contradiction_n: None,
+            velocity_error_m_s: traces.iter().filter_map(|of| of.velocity_error_m_s).fold(0.0, f64::max),
             kernel: first.kernel.clone(),
             grid_step_s: first.grid.step_s,
         };
@@ -258,6 +261,7 @@ pub(super) mod tests {
             thrust_n: vec![10.0; rows],
             world_force_n: None,
             contradiction_n: None,
+            velocity_error_m_s: 0.0,
             kernel,
             grid_step_s,
             time_s,
