@@ -200,6 +200,8 @@ impl Session {
     /// Those of [`talk`](Self::talk), [`OnboardError::Armed`] and [`OnboardError::Silent`].
     pub async fn expect_disarmed(&mut self) -> Result<(), OnboardError> {
         let system = self.vehicle.system;
+        // what was received before tells of then
+        while let Ok(Some(_)) = self.reader.try_receive() {}
         let until = self.start.elapsed() + SILENT;
         let mut listening = Listening { vehicle: self.vehicle, until, armed: None, is_over: false };
         self.talk(&mut listening, |_| Ok(Flow::On)).await?;
