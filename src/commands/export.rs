@@ -1,5 +1,6 @@
 //! `mavid export MODEL --to FORMAT`: the model for another simulator.
 
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use mavid::autopilot::Autopilot;
@@ -129,9 +130,12 @@ pub fn make(args: &ExportArgs) -> Result<Made, CommandError> {
         }
     };
     if let Some(path) = &args.out {
+        let beside = callback.is_some().then(|| callback_of(path));
+        let read: Vec<&PathBuf> = args.model.iter().collect();
+        output::refuse_overwriting(&read, &iter::once(path).chain(&beside).collect::<Vec<_>>())?;
         output::file(path, &text)?;
-        if let Some(callback) = &callback {
-            output::file(&callback_of(path), callback)?;
+        if let (Some(callback), Some(beside)) = (&callback, &beside) {
+            output::file(beside, callback)?;
         }
     }
     let warnings = loaded.warnings;

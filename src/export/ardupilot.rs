@@ -91,9 +91,9 @@ fn tell(source: &mut Source<'_>) {
     source.note(format!(
         "battery and power were not identified, and those of the file are not the vehicle's: refVoltage times refCurrent makes the simulator's own loss of thrust in a climb, which the model does not have, a share of (v / {OUTFLOW_M_S})^2 at v m/s; SIM_BATT_VOLTAGE has to be {BATTERY_V} V, as by default"
     ));
-    source.note("the reaction torque goes with thrust times command in the simulator and with thrust in the model: they change alike about hover");
+    source.note("the reaction torque goes with thrust times command in the simulator and with thrust in the model: they change alike about hover, and a violent turn identifies an izz that is some percent too large");
     source.note("versions with parameters SIM_FRM_* take their defaults from this file, so that none has to be set; one that was set by hand stays as it was set");
-    source.note("the simulator has no gyroscopic torque w x J w");
+    source.note("the simulator has no gyroscopic torque w x J w: a flight that turns while it tilts identifies an izz near ixx and iyy, so turn and tilt one after the other where izz is wanted");
     if source.lags_s().is_some() {
         source.note("the simulator's rotors have no lag (slew_max limits their rate alone)");
         source.refuse("motor_lag");

@@ -26,12 +26,19 @@ const STEPS_HZ: f64 = 1000.0;
 pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     let arms = source.arms_m();
     source.refuse("com_offset");
+    let unfit = |got| ExportError::Unfit { format: FORMAT, expected: "four rotors in an X", got };
     if arms.len() != 4 {
-        let got = format!("{} rotors", arms.len());
-        return Err(ExportError::Unfit { format: FORMAT, expected: "four rotors in an X", got });
+        return Err(unfit(format!("{} rotors", arms.len())));
     }
     let mean = |axis: usize| arms.iter().map(|arm| arm[axis].abs()).sum::<f64>() / 4.0;
     let (forward_m, left_m) = (mean(0), mean(1));
+    if !in_an_x(&arms, forward_m, left_m) {
+        return Err(unfit("other places of them".to_owned()));
+    }
+    if arms.iter().zip(&source.vehicle.rotors).any(|(arm, rotor)| rotor.spin.yaw_sign() * arm.x * arm.y < 0.0)
+    {
+        source.note("the simulator's front right and rear left rotors turn counter-clockwise, the model's do not: identify a flight of the simulator with the simulator's spins");
+    }
     if arms.iter().any(|arm| (arm.x.abs() - forward_m).abs() > 1e-3 || (arm.y.abs() - left_m).abs() > 1e-3) {
         source.note("the simulator's rotors are symmetric about the centre of mass: arms are means, an offset of the centre of mass is left out");
     }
@@ -79,6 +86,21 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
         }
         text
     }))
+}
+
+/// Share of the mean arm forward and to the left that every rotor of an X has at least (-). In a plus two rotors have none, and a
+/// centre of mass that is off leaves more.
+const LEAST_OF_MEAN: f64 = 0.4;
+
+/// Whether there is one rotor in each quadrant, none near an axis (`arms`: m, body, from the centre of mass).
+fn in_an_x(arms: &[Vector3<f64>], forward_m: f64, left_m: f64) -> bool {
+    let quadrants = [(true, true), (true, false), (false, true), (false, false)];
+    let one_in = |quadrant: (bool, bool)| {
+        arms.iter().filter(|arm| (arm.x > 0.0, arm.y > 0.0) == quadrant).count() == 1
+    };
+    let away =
+        |arm: &Vector3<f64>| arm.x.abs() > LEAST_OF_MEAN * forward_m && arm.y.abs() > LEAST_OF_MEAN * left_m;
+    quadrants.into_iter().all(one_in) && arms.iter().all(away)
 }
 
 /// Thrust at hover over full thrust (-): the simulator's command there. Tells what that means for the model's.

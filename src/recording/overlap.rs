@@ -12,16 +12,15 @@ const RUN: usize = 6;
 /// Sensors whose noise makes every sample another.
 const NOISY: [Quantity; 2] = [Quantity::AngularRate, Quantity::SpecificForce];
 
-/// Share (0..1) of a recording's inertial samples that the other holds as well, in the same order with the same
-/// values, whatever their times; of several streams the largest. 0 where neither body rates nor specific force are
-/// in both.
+/// Share (0..1) of a recording's inertial samples at the times that count (s) that the other holds as well, in the same order with
+/// the same values, whatever their times; of several streams the largest. 0 where neither body rates nor specific force are in both.
 #[must_use]
-pub fn shared_share(of: &Recording, other: &Recording) -> f64 {
+pub fn shared_share(of: &Recording, other: &Recording, counts: impl Fn(f64) -> bool) -> f64 {
     NOISY
         .iter()
         .filter_map(|quantity| {
-            let known: HashSet<u64> = streams(other, *quantity).flat_map(runs).collect();
-            streams(of, *quantity).filter_map(|stream| share(stream, &known)).reduce(f64::max)
+            let known: HashSet<u64> = streams(other, *quantity).flat_map(runs).map(|(_, run)| run).collect();
+            streams(of, *quantity).filter_map(|stream| share(stream, &known, &counts)).reduce(f64::max)
         })
         .fold(0.0, f64::max)
 }
@@ -30,17 +29,17 @@ fn streams(recording: &Recording, quantity: Quantity) -> impl Iterator<Item = &S
     recording.streams.iter().filter(move |(key, _)| key.quantity == quantity).map(|(_, stream)| stream)
 }
 
-fn share(stream: &Stream, known: &HashSet<u64>) -> Option<f64> {
+fn share(stream: &Stream, known: &HashSet<u64>, counts: impl Fn(f64) -> bool) -> Option<f64> {
     let (mut all, mut same) = (0_usize, 0_usize);
-    for run in runs(stream) {
+    for (_, run) in runs(stream).filter(|(time_s, _)| counts(*time_s)) {
         all += 1;
         same += usize::from(known.contains(&run));
     }
     (all > 0).then(|| same as f64 / all as f64)
 }
 
-/// Hashes of every few samples in a row; a sensor that stands still is left out.
-fn runs(stream: &Stream) -> impl Iterator<Item = u64> {
+/// Hashes of every few samples in a row, each with the time of the first, s; a sensor that stands still is left out.
+fn runs(stream: &Stream) -> impl Iterator<Item = (f64, u64)> {
     let width = stream.width.max(1);
     let samples: Vec<&[f64]> = stream.values.chunks_exact(width).collect();
     (0..samples.len().saturating_sub(RUN - 1)).filter_map(move |first| {
@@ -50,7 +49,7 @@ fn runs(stream: &Stream) -> impl Iterator<Item = u64> {
         }
         let mut hasher = DefaultHasher::new();
         run.iter().flat_map(|sample| sample.iter()).for_each(|value| value.to_bits().hash(&mut hasher));
-        Some(hasher.finish())
+        Some((stream.time_s[first], hasher.finish()))
     })
 }
 
@@ -74,10 +73,19 @@ mod tests {
     #[test]
     fn a_part_of_a_flight_is_found_whatever_its_clock_says() {
         let whole = recording(0, 1000, 0.0);
-        assert_eq!(shared_share(&recording(100, 300, 7.0), &whole), 1.0);
-        let half = shared_share(&recording(500, 1500, 0.0), &whole);
+        let share = |of: &Recording| shared_share(of, &whole, |_| true);
+        assert_eq!(share(&recording(100, 300, 7.0)), 1.0);
+        let half = share(&recording(500, 1500, 0.0));
         assert!((half - 0.5).abs() < 0.01, "{half}");
-        assert_eq!(shared_share(&recording(2000, 2500, 0.0), &whole), 0.0);
-        assert_eq!(shared_share(&Recording::default(), &whole), 0.0);
+        assert_eq!(share(&recording(2000, 2500, 0.0)), 0.0);
+        assert_eq!(share(&Recording::default()), 0.0);
+    }
+
+    #[test]
+    fn only_what_counts_is_compared() {
+        // a simulator repeats its noise from its start, until the vehicle moves at 10 s
+        let (whole, half) = (recording(0, 1000, 0.0), recording(500, 1500, 0.0));
+        assert_eq!(shared_share(&half, &whole, |time_s| time_s > 10.0), 0.0);
+        assert_eq!(shared_share(&half, &whole, |time_s| time_s < 9.0), 1.0);
     }
 }

@@ -11,7 +11,7 @@ use crate::log::{
 use crate::note::{About, Note};
 use crate::recording::{Recording, shared_share};
 use crate::signals::{
-    ConditionSettings, ReportedState, Signals, adopt_in_flight_parameters, outputs_off_mixer,
+    ConditionSettings, ReportedState, Signals, adopt_in_flight_parameters, off_ground, outputs_off_mixer,
 };
 use crate::text;
 use crate::vehicle::Vehicle;
@@ -285,9 +285,18 @@ pub(super) fn refuse_off_mixer<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) 
     Ok(())
 }
 
-/// The share (0..1) of a recording that the other holds as well, where it is more than chance.
+/// The share (0..1) of a recording in the air that the other holds as well, where it is more than chance. On the ground does not
+/// count: a simulator repeats the noise of its sensors from its start.
 pub(super) fn shared(of: &Recording, other: &Recording) -> Option<f64> {
-    Some(shared_share(of, other)).filter(|share| *share > MOST_SHARED)
+    let said = ReportedState::of(of);
+    let times = of.streams.values().flat_map(|stream| &stream.time_s).copied();
+    let (from_s, to_s) = times
+        .filter(|time_s| said.may_be_off_ground(*time_s))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(from_s, to_s), t_s| (t_s.min(from_s), t_s.max(to_s)));
+    let flown = if from_s < to_s { off_ground(of, vec![(from_s, to_s)]) } else { Vec::new() };
+    let counts =
+        |t_s: f64| flown.is_empty() || flown.iter().any(|(from_s, to_s)| (*from_s..*to_s).contains(&t_s));
+    Some(shared_share(of, other, counts)).filter(|share| *share > MOST_SHARED)
 }
 
 /// The same file twice is refused; `logs` are the flights of each.

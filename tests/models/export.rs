@@ -242,6 +242,22 @@ fn what_a_simulator_cannot_be_is_said() {
     vehicle.rotors.pop();
     let error = export(&vehicle, &[], None, Format::Px4Sih).unwrap_err();
     assert!(error.to_string().contains("3 rotors"), "{error}");
+    // a plus, whose rotors PX4's simulator would put in an X at half their arms
+    let mut plus = self::vehicle();
+    for (rotor, [x, y]) in plus.rotors.iter_mut().zip([[0.2, 0.0], [-0.2, 0.0], [0.0, 0.2], [0.0, -0.2]]) {
+        (rotor.position_m.x, rotor.position_m.y) = (x, y);
+    }
+    let error = export(&plus, &[], None, Format::Px4Sih).unwrap_err();
+    assert!(error.to_string().contains("four rotors in an X"), "{error}");
+    let mut mirrored = self::vehicle();
+    for rotor in &mut mirrored.rotors {
+        rotor.position_m.y = -rotor.position_m.y;
+    }
+    let turn = |vehicle| {
+        let notes = export(vehicle, &[], None, Format::Px4Sih).unwrap().left_out;
+        notes.iter().any(|note| note.contains("turn counter-clockwise"))
+    };
+    assert_ne!(turn(&self::vehicle()), turn(&mirrored));
     vehicle.propulsion.thrust_coefficient = None;
     vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 10.0, expo: 0.5 };
     let error = export(&vehicle, &[], None, Format::Rotorpy).unwrap_err();

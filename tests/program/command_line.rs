@@ -36,6 +36,16 @@ fn vehicle_says_what_a_file_means() {
 }
 
 #[test]
+fn an_export_does_not_replace_its_model() {
+    let text = std::fs::read_to_string(config("qball2.toml")).unwrap();
+    let model = written("exported.toml", &text);
+    let path = model.display().to_string();
+    let output = mavid(&["export", &path, "--to", "rotorpy", "--out", &path]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert_eq!(std::fs::read_to_string(&model).unwrap(), text);
+}
+
+#[test]
 fn json_is_one_document_and_messages_stay_off_it() {
     let weak = std::fs::read_to_string(config("qball2.toml")).unwrap().replace("mass = 1.79", "mass = 4.0");
     let path = written("weak.toml", &weak);
