@@ -9,6 +9,7 @@ use crate::diagnose::signature::{
 use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::SlungLoad;
+use crate::units::STANDARD_GRAVITY_M_S2;
 
 /// Lengths of a load's cord that are tried, m: their periods differ by about 20 %.
 const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
@@ -20,6 +21,10 @@ const CORDS_M: (f64, f64) = (0.2, 4.0);
 /// Dampings of the swing that are fitted, 1/s, each with the ratio of neighbouring cord lengths. Swings of neighbouring
 /// lengths stay in phase while the swing lasts, or differ by a tenth of a period after a minute.
 const SWINGS: [(f64, f64); 3] = [(0.0, 1.015), (0.1, 1.03), (0.5, 1.1)];
+
+/// Damping ratio of the swing from which on it is none. Air and cord damp a load to a tenth or less, so that it swings on after a stop;
+/// at this ratio a twentieth of the swing is left after one period.
+const SWINGS_BELOW: f64 = 0.4;
 
 /// A load that swings below on a cord.
 pub static SIGNATURE: Signature = Signature {
@@ -41,6 +46,7 @@ pub static SIGNATURE: Signature = Signature {
     naming: Naming {
         extra_z: 1.0,
         least_of_mass: LEAST_OF_MASS,
+        is_ordinary: |term, _| damping_ratio(term) > SWINGS_BELOW,
         usual: |parameter, vehicle| (parameter == "mass").then_some(0.08 * vehicle.body.mass_kg),
         ..Naming::PLAIN
     },
@@ -75,6 +81,12 @@ pub static SIGNATURE: Signature = Signature {
     )
 };
 
+/// Damping ratio of the swing: its damping over twice the frequency of a pendulum of this length.
+fn damping_ratio(term: &EffectTerm) -> f64 {
+    let damping_1_s = first_finer(term).first().map_or(0.0, |slot| term.values[*slot]);
+    0.5 * damping_1_s * (term.values[1] / STANDARD_GRAVITY_M_S2).sqrt()
+}
+
 /// Highest position above the ground, m, if position is known and the ground is at zero; otherwise infinite.
 fn highest_m(recorded: &Recorded) -> f64 {
     if !recorded.all(|trace| trace.known.position) {
@@ -100,6 +112,15 @@ fn cords_m(ratio: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_does_not_swing_on_is_no_load() {
+        let ratio = |damping_1_s: f64| damping_ratio(&SIGNATURE.term(&[0.1, 0.9, damping_1_s], &[0]));
+        // 3.3 rad/s
+        assert!((ratio(0.3) - 0.0454).abs() < 1e-4);
+        assert!(ratio(0.5) < SWINGS_BELOW && ratio(3.0) > SWINGS_BELOW);
+        assert_eq!(damping_ratio(&SIGNATURE.term(&[0.1, 0.9], &[0])), 0.0);
+    }
 
     #[test]
     fn cords_reach_from_the_shortest_to_the_longest() {
