@@ -17,10 +17,11 @@ use super::tested::Search;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
+use crate::stats::normal_deviate;
 
-/// Standard errors by which a law that the search missed must differ from nothing. One more than a name needs: the search had its say.
+/// Normal deviate that a law needs that the search missed. One more than a name needs: the search had its say.
 const ENTERS_Z: f64 = NAME_Z + 1.0;
-/// A law stays where it differs by this many standard errors from nothing. As of any effect beside the others.
+/// Normal deviate that a law needs to stay. As of any effect beside the others.
 const STAYS_Z: f64 = 3.0;
 /// A coefficient further than this many standard errors from nothing has a sign: below, it refutes its law. The usual two.
 const CERTAIN: f64 = 2.0;
@@ -47,9 +48,9 @@ pub(super) fn settle_laws(
     let mut best: Option<(f64, Reconstructed)> = None;
     for base in with_all_laws(&found.after.base, traces) {
         let Some(told) = reconstructed_with(signals, found, base) else { continue };
-        // of several forms of a law the most certain one
+        // of several forms of a law the most certain one that is possible
         let before = &found.after.base.effects;
-        let is_new = |law: &Law| before.iter().all(|term| !term.is(law.term.signature));
+        let is_new = |law: &Law| law.possible && before.iter().all(|term| !term.is(law.term.signature));
         let z = laws(&told).filter(is_new).map(|law| law.z).fold(0.0, f64::max);
         if best.as_ref().is_none_or(|(most, _)| z > *most) {
             best = Some((z, told));
@@ -58,6 +59,9 @@ pub(super) fn settle_laws(
     let Some((_, told)) = best else { return Ok(None) };
     let Some(base) = settled(&found.after.base, &told) else { return Ok(None) };
     found.after = fit(traces, base, Newton::Held)?;
+    let present = &found.after.base.effects;
+    let is_open = |signature: &'static Signature| present.iter().all(|term| !term.is(signature));
+    found.last.retain(|tested| tested.candidate.signature().is_none_or(is_open));
     Ok(Some(told.put_into(found.after.base.clone())))
 }
 
@@ -98,7 +102,7 @@ fn with_all_laws(base: &Base, traces: &[Trace]) -> Vec<Base> {
 /// A law as the flight path tells it.
 struct Law<'a> {
     term: &'a EffectTerm,
-    /// standard errors by which its coefficients across the rotor axis differ from nothing, together
+    /// normal deviate of its coefficients across the rotor axis together
     z: f64,
     /// none of these coefficients is certainly below nothing
     possible: bool,
@@ -120,8 +124,9 @@ fn laws(told: &Reconstructed) -> impl Iterator<Item = Law<'_>> {
             let is_told = |value: &&f64| **value > CERTAIN * variance[(0, 0)].max(0.0).sqrt();
             free.extend(along.iter().find(is_told).map(|_| slot));
         }
-        let information = covariance.try_inverse();
-        let z = information.map_or(0.0, |information| values.dot(&(information * &values)).max(0.0).sqrt());
+        let information = covariance.cholesky().map(|root| root.inverse());
+        let wald = information.map_or(0.0, |information| values.dot(&(information * &values)));
+        let z = normal_deviate(wald, values.len());
         Law { term, z, possible, free }
     })
 }
@@ -135,17 +140,27 @@ fn settled(base: &Base, told: &Reconstructed) -> Option<Base> {
         return None;
     }
     let mut out = base.clone();
+    // what one law had taken over along an axis belongs to the other
+    let along = |law: &Law| law.term.signature.role.vertical.filter(|slot| law.term.free.contains(slot));
+    let left = |law: &Law| {
+        let term = base.effects.iter().find(|term| term.is(law.term.signature)).filter(|_| !stays(law));
+        term.is_some_and(|term| along(law).is_some_and(|slot| term.free.contains(&slot)))
+    };
+    let leaves_along = told.iter().any(left);
     for law in &told {
         let (is_there, is_told) = (was(law), stays(law));
         tracing::debug!(law = law.term.id(), z = law.z, law.possible, is_there, is_told, "law of the drag");
         match (is_there, is_told) {
             (true, false) => out.effects.retain(|term| !term.is(law.term.signature)),
-            (false, true) => out.effects.push(EffectTerm { free: Vec::new(), ..law.term.clone() }),
+            (false, true) => {
+                let free = (law.term.signature.refinement.freed)(law.term);
+                out.effects.push(EffectTerm { free, ..law.term.clone() });
+            }
             _ => {}
         }
-        // what one law had taken over along an axis belongs to the other
         for term in out.effects.iter_mut().filter(|term| term.is(law.term.signature)) {
             term.free.extend(&law.free);
+            term.free.extend(along(law).filter(|_| leaves_along));
             term.free.sort_unstable();
             term.free.dedup();
         }

@@ -1,7 +1,7 @@
 //! Forms of forces that the reconstructed flight path tells: whether a drag is the body's or grows with the rotors' speed.
 
 use super::base::Base;
-use super::reconstructed::PooledEstimate;
+use super::pooled_estimate::PooledEstimate;
 use super::signature::EffectTerm;
 use crate::reconstruction::Term;
 

@@ -49,6 +49,7 @@ mod other_law;
 mod own_wind;
 mod physical;
 mod picture;
+mod pooled_estimate;
 mod price;
 mod priors;
 mod pruning;

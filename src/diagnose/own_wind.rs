@@ -75,9 +75,11 @@ pub fn relative_to_air(signals: &Signals, wind: &Vector3<f64>) -> Signals {
             position.iter().enumerate().map(|(index, at)| at - wind * (signals.grid.step_s * index as f64));
         Arc::new(drifted.collect::<Vec<_>>())
     });
-    seen.as_recorded.velocity = seen.as_recorded.velocity.as_ref().map(|stream| {
+    let recorded = |stream: &Arc<Stream>| {
         let values = stream.values.iter().enumerate().map(|(place, value)| value - wind[place % 3]);
         Arc::new(Stream { values: values.collect(), ..Stream::clone(stream) })
-    });
+    };
+    seen.as_recorded.velocity = seen.as_recorded.velocity.as_ref().map(recorded);
+    seen.as_recorded.gps_velocity = seen.as_recorded.gps_velocity.as_ref().map(recorded);
     seen
 }

@@ -8,6 +8,7 @@ use super::channels::Nuisance;
 use super::fit::{Fitted, Newton, evaluate, fit as fit_rows};
 use super::force_forms::{choose_forms, open_form};
 use super::hausman::differ;
+use super::pooled_estimate::PooledEstimate;
 use super::signature::EffectTerm;
 use super::tested::Search;
 use super::trace::Trace;
@@ -42,8 +43,8 @@ pub(super) enum Forms {
     Known,
 }
 
-/// Replaces sizes of forces, and the mass, by those of the reconstruction where all flights allow one. It begins at the values of
-/// `start`, a model with the same effects; `None`: at those of the fit.
+/// Replaces sizes of forces, and the mass, by those of the reconstruction where all flights allow one; returns whether they do. It
+/// begins at the values of `start`, a model with the same effects; `None`: at those of the fit.
 ///
 /// # Errors
 /// [`PhysicsError`] where the vehicle is not physical.
@@ -52,13 +53,18 @@ pub(super) fn reconstruct(
     traces: &[Trace],
     (forms, found): (Forms, &mut Search),
     start: Option<&Base>,
-) -> Result<(), PhysicsError> {
+) -> Result<bool, PhysicsError> {
     let flights = Flights { signals, latency_std_s: found.latency.std_s, forms };
     match flights.sizes(traces, &found.after, start.unwrap_or(&found.after.base))? {
-        Ok(after) => found.after = after,
-        Err(why) => tracing::debug!(%why, "sizes of forces left as they were"),
+        Ok(after) => {
+            found.after = after;
+            Ok(true)
+        }
+        Err(why) => {
+            tracing::debug!(%why, "sizes of forces left as they were");
+            Ok(matches!(why, Kept::Alike))
+        }
     }
-    Ok(())
 }
 
 /// A model as the flight path of all flights tells it.
@@ -116,6 +122,7 @@ impl Reconstructed {
 pub(super) fn reconstructed_with(signals: &[Signals], found: &Search, base: Base) -> Option<Reconstructed> {
     let flights = Flights { signals, latency_std_s: found.latency.std_s, forms: Forms::Chosen };
     let (base, terms, pooled) = flights.estimated(&found.after, base).ok()?;
+    plausible_scale(pooled.values[0]).ok()?;
     Some(Reconstructed { base, terms, pooled })
 }
 
@@ -253,32 +260,6 @@ fn fitted_flight(
     Ok(estimate(problem, &free)?)
 }
 
-/// Scale and free values of all flights: each flight weighted by its information.
-pub(super) struct PooledEstimate {
-    pub(super) values: DVector<f64>,
-    covariance: DMatrix<f64>,
-}
-
-impl PooledEstimate {
-    pub(super) fn std(&self, index: usize) -> f64 {
-        self.covariance[(index, index)].max(0.0).sqrt()
-    }
-
-    fn of(fits: &[Fit], terms: &[Term]) -> Option<Self> {
-        let count = 1 + terms.iter().map(|term| term.free.len()).sum::<usize>();
-        let mut information = DMatrix::zeros(count, count);
-        let mut weighted = DVector::zeros(count);
-        for fit in fits {
-            let (values, covariance) = fit.scale_and_effects();
-            let inverse = covariance.try_inverse()?;
-            weighted += &inverse * values;
-            information += inverse;
-        }
-        let covariance = information.try_inverse()?;
-        Some(Self { values: &covariance * weighted, covariance })
-    }
-}
-
 /// A value of the reconstruction: its place among the effects and its slot, where it stands in [`PooledEstimate`], the value.
 struct Size {
     place: usize,
@@ -307,32 +288,59 @@ fn differs(fitted: &Fitted, sizes: &[Size], covariance: &DMatrix<f64>) -> bool {
     })
 }
 
+/// The base at the estimates, and these with what is beyond its bound at the bound.
+fn within_bounds(
+    base: &Base,
+    terms: &[Term],
+    pooled: &PooledEstimate,
+) -> Result<(Base, PooledEstimate), Kept> {
+    plausible_scale(pooled.values[0])?;
+    let slots = || {
+        terms.iter().enumerate().flat_map(|(place, term)| term.free.iter().map(move |&slot| (place, slot)))
+    };
+    let mut held: Vec<(usize, f64)> = Vec::new();
+    for (index, (place, slot)) in slots().enumerate() {
+        let (at, present) = (1 + index, &base.effects[place]);
+        let (estimate, bound) = (pooled.values[at], present.possible(slot, pooled.values[at], &base.size));
+        if (bound - estimate).abs() > BEYOND_BOUND * pooled.std(at) {
+            return Err(Kept::Implausible { what: present.id(), value: estimate });
+        }
+        held.extend((bound != estimate).then_some((at, bound)));
+    }
+    let pooled = pooled.held_at(&held).ok_or(Kept::Singular)?;
+    plausible_scale(pooled.values[0])?;
+    let mut within = base.clone();
+    for (index, (place, slot)) in slots().enumerate() {
+        let present = &mut within.effects[place];
+        present.values[slot] = present.possible(slot, pooled.values[1 + index], &base.size);
+    }
+    Ok((within, pooled))
+}
+
+fn plausible_scale(scale: f64) -> Result<(), Kept> {
+    let plausible = (MOST_SCALE.recip()..=MOST_SCALE).contains(&scale);
+    plausible.then_some(()).ok_or(Kept::Implausible { what: "thrust over mass", value: scale })
+}
+
 /// The fit with the new values, and their covariance in place of its own.
 fn replaced(
     traces: &[Trace],
     (fitted, mut base): (&Fitted, Base),
     terms: &[Term],
-    PooledEstimate { values, covariance }: &PooledEstimate,
+    pooled: &PooledEstimate,
 ) -> Result<Result<Fitted, Kept>, PhysicsError> {
-    let scale = values[0];
-    if !(MOST_SCALE.recip()..=MOST_SCALE).contains(&scale) {
-        return Ok(Err(Kept::Implausible { what: "thrust over mass", value: scale }));
-    }
+    let (within, PooledEstimate { values, covariance }) = match within_bounds(&base, terms, pooled) {
+        Ok(within) => within,
+        Err(why) => return Ok(Err(why)),
+    };
+    base = within;
     let mut sizes: Vec<Size> = Vec::new();
     for (place, term) in terms.iter().enumerate() {
         for &slot in &term.free {
-            let at = 1 + sizes.len();
-            let (present, estimate) = (&mut base.effects[place], values[at]);
-            // what is beyond its bound by no more than its error is at the bound
-            let value = present.possible(slot, estimate, &base.size);
-            if (value - estimate).abs() > BEYOND_BOUND * covariance[(at, at)].max(0.0).sqrt() {
-                return Ok(Err(Kept::Implausible { what: present.id(), value: estimate }));
-            }
-            present.values[slot] = value;
-            sizes.push(Size { place, slot, at, value });
+            sizes.push(Size { place, slot, at: 1 + sizes.len(), value: base.effects[place].values[slot] });
         }
     }
-    if !differs(fitted, &sizes, covariance) {
+    if !differs(fitted, &sizes, &covariance) {
         return Ok(Err(Kept::Alike));
     }
     // amounts that are not the forces' follow, on the scale of the thrust until now; the forms stay
@@ -346,10 +354,11 @@ fn replaced(
         present.values.clone_from(&settled.values);
     }
     base.vehicle = settled.vehicle;
+    let scale = values[0];
     base.vehicle.body.mass_kg = fitted.base.vehicle.body.mass_kg / scale;
     let by_force = base.bring_to_scale(fitted.rows.compares_torques);
     let mut after = evaluate(traces, base)?;
-    put_covariance(&mut after, &sizes, (scale, by_force), covariance);
+    put_covariance(&mut after, &sizes, (scale, by_force), &covariance);
     Ok(Ok(after))
 }
 

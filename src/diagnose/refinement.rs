@@ -42,11 +42,18 @@ pub(super) fn refine(
 ) -> Result<(), PhysicsError> {
     let trim = Trim::of(flights, vehicle);
     leave_out_unnamed(traces, &trim, found)?;
+    let by_search = found.after.clone();
     let mut start = tracing::info_span!("laws").in_scope(|| settle_laws(flights, traces, found))?;
     let mut by_instruments = Vec::new();
     for left in (0..ROUNDS).rev() {
-        tracing::info_span!("reconstruct")
-            .in_scope(|| reconstruct(flights, traces, (Forms::Chosen, found), start.take().as_ref()))?;
+        let start = start.take();
+        let done = tracing::info_span!("reconstruct")
+            .in_scope(|| reconstruct(flights, traces, (Forms::Chosen, found), start.as_ref()))?;
+        if start.is_some() && !done {
+            // laws without sizes of their own are none
+            found.after.clone_from(&by_search);
+            reconstruct(flights, traces, (Forms::Chosen, found), None)?;
+        }
         if is_fed_back(traces) {
             by_instruments = tracing::info_span!("instruments")
                 .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;

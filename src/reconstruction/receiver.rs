@@ -32,9 +32,12 @@ fn slow_error_m_s(
 ) -> Option<f64> {
     let (grid, velocity) = estimated;
     let horizontal = |index: &usize| stream.sample(*index)[..2].iter().all(|part| part.is_finite());
+    // at every lateness that is tried there is a velocity to compare with
+    let (first_s, last_s) = (grid.start_s + TRIED_S.1, grid.time_s(grid.count.saturating_sub(1)) + TRIED_S.0);
     let flown = |index: &usize| {
         let t = stream.time_s[*index];
-        airborne_s.iter().any(|(from_s, to_s)| (*from_s..*to_s).contains(&t))
+        (first_s..last_s).contains(&t)
+            && airborne_s.iter().any(|(from_s, to_s)| (*from_s..*to_s).contains(&t))
     };
     let samples: Vec<usize> = (0..stream.len()).filter(flown).filter(horizontal).collect();
     if samples.len() < LEAST_SAMPLES {

@@ -26,8 +26,8 @@ use std::sync::Arc;
 /// mean over more.
 pub const WEAK_HALF_WIDTH_S: f64 = 0.2;
 
-/// Least step of the grid that is chosen, s. The fastest motion of a vehicle, some 20 Hz, has a dozen instants in a period; 20 logs
-/// of ArduCopter at 400 Hz gave the same names and sizes at twice the step, in half the time.
+/// Least step of the grid that is chosen, s. Half a period of a vehicle's fastest motion, some 20 Hz, has three instants or more; 20 logs
+/// of ArduCopter's simulator at 400 Hz gave the same names and sizes at twice the step, in half the time.
 const LEAST_STEP_S: f64 = 0.004;
 /// A period is the same as another one within this share: that of stamps in whole microseconds.
 const ROUNDING: f64 = 0.01;

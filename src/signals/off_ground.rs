@@ -36,8 +36,7 @@ pub fn off_ground(recording: &Recording, spans_s: Vec<(f64, f64)>) -> Vec<(f64, 
         let after_s = spans_s.get(place + 1).map_or(f64::INFINITY, |(from_s, _)| *from_s);
         let mut span_s = (from_s, to_s);
         if from_s - before_s > GROUND_S {
-            ground_m =
-                heights.ground(from_s).filter(|ground_m| !heights.is_below(span_s, ground_m - DRIFT_M));
+            ground_m = heights.ground(from_s);
             let Some(lifted_s) = heights.lifted_s(span_s, ground_m) else { continue };
             span_s.0 = lifted_s + margin_s;
         }
@@ -100,11 +99,6 @@ impl<'a> Heights<'a> {
             [from_s - GROUND_S, from_s - 0.5 * GROUND_S].map(|at_s| self.rest(at_s, at_s + 0.5 * GROUND_S));
         let [Some(earlier), Some(later)] = halves else { return None };
         ((later - earlier).abs() < LIFTED_M).then_some(later)
-    }
-
-    /// Whether the vehicle comes below `level_m` in a span: where it stays before is no ground then, and it hovered there.
-    fn is_below(&self, (from_s, to_s): (f64, f64), level_m: f64) -> bool {
-        self.between(from_s, to_s).any(|index| self.is_off(index, level_m) && self.height(index) < level_m)
     }
 
     /// Whether the vehicle is off `level_m`. One sample that is damaged is no height.
@@ -200,9 +194,6 @@ mod tests {
         // disarmed in the air, up there
         let stopped = recorded(0.0, 25.0, |t_s| (t_s - 5.0).clamp(0.0, 4.0));
         about(&off_ground(&stopped, vec![(4.0, 25.0)]), &[(5.4, 25.0)]);
-        // a hover before the outputs are recorded is no ground: the vehicle lands lower
-        let late = recorded(0.0, 30.0, |t_s| 4.0 - (t_s - 20.0).clamp(0.0, 4.0));
-        assert_eq!(off_ground(&late, span.clone())[0].0, 5.0);
         // no height
         assert_eq!(off_ground(&Recording::default(), span.clone()), span);
         assert_eq!(off_ground(&recorded(0.0, 30.0, |_| 0.0), span.clone()), span);

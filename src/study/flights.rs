@@ -9,9 +9,10 @@ use crate::log::{
     Hold, LogError, LogFlight, OpenOptions, OpenedFlights, ReadReport, format_of, open_flights,
 };
 use crate::note::{About, Note};
-use crate::recording::{Recording, shared_share};
+use crate::recording::{Quantity, Recording, shared_share};
 use crate::signals::{
-    ConditionSettings, ReportedState, Signals, adopt_in_flight_parameters, off_ground, outputs_off_mixer,
+    ConditionSettings, ReportedState, SHORTEST_FLIGHT_S, Signals, adopt_in_flight_parameters, off_ground,
+    outputs_off_mixer,
 };
 use crate::text;
 use crate::vehicle::Vehicle;
@@ -289,11 +290,24 @@ pub(super) fn refuse_off_mixer<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) 
 /// count: a simulator repeats the noise of its sensors from its start.
 pub(super) fn shared(of: &Recording, other: &Recording) -> Option<f64> {
     let said = ReportedState::of(of);
-    let times = of.streams.values().flat_map(|stream| &stream.time_s).copied();
-    let (from_s, to_s) = times
-        .filter(|time_s| said.may_be_off_ground(*time_s))
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(from_s, to_s), t_s| (t_s.min(from_s), t_s.max(to_s)));
-    let flown = if from_s < to_s { off_ground(of, vec![(from_s, to_s)]) } else { Vec::new() };
+    // before its first word nothing is said
+    let first_word_s =
+        said.words().and_then(|words| words.time_s.first()).copied().unwrap_or(f64::NEG_INFINITY);
+    let may_fly = |t_s: f64| t_s >= first_word_s && said.may_be_off_ground(t_s);
+    let inertial = of.streams.iter().filter(|(key, _)| key.quantity == Quantity::AngularRate);
+    let time_s = inertial.map(|(_, stream)| &stream.time_s).max_by_key(|time_s| time_s.len());
+    let mut flown: Vec<(f64, f64)> = Vec::new();
+    let mut open = false;
+    for &t_s in time_s.into_iter().flatten() {
+        match (may_fly(t_s), flown.last_mut().filter(|_| open)) {
+            (true, Some((_, to_s))) => *to_s = t_s,
+            (true, None) => flown.push((t_s, t_s)),
+            (false, _) => {}
+        }
+        open = may_fly(t_s);
+    }
+    flown.retain(|(from_s, to_s)| to_s - from_s > SHORTEST_FLIGHT_S);
+    let flown = off_ground(of, flown);
     let counts =
         |t_s: f64| flown.is_empty() || flown.iter().any(|(from_s, to_s)| (*from_s..*to_s).contains(&t_s));
     Some(shared_share(of, other, counts)).filter(|share| *share > MOST_SHARED)

@@ -23,7 +23,7 @@ const CORDS_M: (f64, f64) = (0.2, 4.0);
 const SWINGS: [(f64, f64); 3] = [(0.0, 1.015), (0.1, 1.03), (0.5, 1.1)];
 
 /// Damping ratio of the swing from which on it is none. Air and cord damp a load to a tenth or less, so that it swings on after a stop;
-/// at this ratio a twentieth of the swing is left after one period.
+/// at this ratio a sixteenth of the swing is left after one period.
 const SWINGS_BELOW: f64 = 0.4;
 
 /// A load that swings below on a cord.
@@ -81,7 +81,7 @@ pub static SIGNATURE: Signature = Signature {
     )
 };
 
-/// Damping ratio of the swing: its damping over twice the frequency of a pendulum of this length.
+/// Damping ratio of the swing: its damping over twice the frequency of a pendulum of this length below a heavy vehicle.
 fn damping_ratio(term: &EffectTerm) -> f64 {
     let damping_1_s = first_finer(term).first().map_or(0.0, |slot| term.values[*slot]);
     0.5 * damping_1_s * (term.values[1] / STANDARD_GRAVITY_M_S2).sqrt()
