@@ -129,6 +129,12 @@ impl Progress for Landed {
         }
     }
 
+    fn about(&self, done: u64, of: u64) {
+        if let Some(stage) = self.shared().view.stages.last_mut() {
+            (stage.steps, stage.is_estimate) = (Some((done, of)), true);
+        }
+    }
+
     fn note(&self, note: &Note) {
         self.shared().view.notes.push(note.sentence());
     }
