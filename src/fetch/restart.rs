@@ -73,3 +73,28 @@ impl Dialogue for Restart {
         self.is_over || self.answer.is_some()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+    use super::*;
+    use crate::autopilot::Autopilot;
+    use crate::wire::command::FAILED;
+    use crate::wire::{ComponentId, SystemId};
+
+    #[test]
+    fn a_refusal_is_told_and_silence_is_none() {
+        let (system, component, autopilot) = (SystemId(1), ComponentId(1), Autopilot::Px4);
+        let vehicle = Vehicle { system, component, autopilot, kind: None };
+        let mut restart = Restart::new(vehicle).unwrap();
+        let sent = (0..60).filter(|second| restart.poll(Duration::from_secs(*second)).unwrap().is_some());
+        assert_eq!(sent.count(), 4);
+        assert!(
+            restart.is_done() && restart.obeyed().is_ok(),
+            "it may have started anew before it could answer"
+        );
+        restart.answer = Some(FAILED);
+        let said = restart.obeyed().unwrap_err().to_string();
+        assert!(said.contains("a restart of the autopilot") && said.contains("MAV_RESULT 4"), "{said}");
+    }
+}

@@ -107,6 +107,7 @@ fn after_the_landing_the_view_shows_the_analysis_and_then_the_answer() {
         flown: vec!["landed".into(), "4 periods, 0.016 m rms off the reference".into()],
         stages: vec![
             stage("reading the logs", 0.4, None),
+            StageView { is_estimate: true, ..stage("searching for effects", 2.0, Some((2, 7))) },
             stage("designing the next flight", 3.0, Some((3, 12))),
         ],
         notes: vec!["no velocity is recorded".into()],
@@ -118,6 +119,7 @@ fn after_the_landing_the_view_shows_the_analysis_and_then_the_answer() {
         "not yet: the flight is analysed",
         "4 periods",
         "reading the logs, 0 s",
+        "░ about 5 s left",
         "designing the next flight ██████░",
         "3 of 12, 9 s left",
         "no velocity is recorded",

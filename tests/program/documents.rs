@@ -247,7 +247,8 @@ fn the_parameter_file_of_the_guide_holds_what_the_guide_says() {
         .collect();
     assert_eq!(file, stated);
     // the file for earlier releases says the same in their names and units
-    let old = mavid::onboard::read_parameter_file(&root().join("fixtures/ardupilot-guided-4.6.parm")).unwrap();
+    let old =
+        mavid::onboard::read_parameter_file(&root().join("fixtures/ardupilot-guided-4.6.parm")).unwrap();
     assert_eq!(old.len(), stated.len());
     let values = old.into_iter().collect();
     let old = mavid::fly::parameters::Parameters {

@@ -144,6 +144,7 @@ impl Shared {
     /// The last stage has taken so long.
     fn ends_stage(&mut self) {
         self.tells_time();
+        self.ends_estimate();
         self.since = Instant::now();
     }
 
@@ -151,6 +152,13 @@ impl Shared {
         let elapsed_s = self.since.elapsed().as_secs_f64();
         if let Some(stage) = self.view.stages.last_mut() {
             stage.elapsed_s = elapsed_s;
+        }
+    }
+
+    /// An estimate of what was to come is over with its stage.
+    fn ends_estimate(&mut self) {
+        if let Some(stage) = self.view.stages.last_mut().filter(|stage| stage.is_estimate) {
+            stage.steps = None;
         }
     }
 }
