@@ -1,14 +1,12 @@
-//! Logging that counts only after a restart of the autopilot: set, restarted, and put back.
+//! A restart of the autopilot, for logging that counts only then.
 
 use std::time::{Duration, Instant};
 
-use mavid::onboard::{self, ChangedSince, Session};
+use mavid::onboard::{self, Session};
 
-use super::link::{open, open_patiently};
-use super::prepare::{changes_page, expect_rates, put_back_page};
-use super::state;
+use super::link::open_patiently;
 use crate::cli::VehicleLinkArgs;
-use crate::commands::{CommandError, network, output};
+use crate::commands::{CommandError, output};
 
 /// An autopilot that was restarted is back within this.
 const BACK: Duration = Duration::from_secs(60);
@@ -42,42 +40,4 @@ pub async fn restart(mut session: Session, link: &VehicleLinkArgs) -> Result<(),
         "the autopilot was told to restart: expected it back within {} s with a time since its start that says so",
         BACK.as_secs()
     )))
-}
-
-/// Sets what an identification needs, and restarts the autopilot for it.
-///
-/// # Errors
-/// It does not answer or take the values, or those of [`restart`]: what was set stays set, and noted.
-pub fn set_and_restart(link: &VehicleLinkArgs) -> Result<(), CommandError> {
-    network::block_on(async {
-        let mut session = open(link).await?;
-        let offer = session.offer().await?;
-        let notes = state::notes(&session.known_as(&offer))?;
-        let state = onboard::look(&mut session, &notes).await?;
-        expect_rates(&session, &state)?;
-        let changes = &state.plan.changes;
-        if !changes.is_empty() {
-            onboard::change(&mut session, &state, changes, &notes).await?;
-            output::message(&format!("logging: {} is set", changes_page(changes)));
-        }
-        restart(session, link).await
-    })
-}
-
-/// Puts back what was changed of the logging, line by line what it was. That it cannot be put back is an error.
-///
-/// # Errors
-/// The vehicle does not answer or take the values.
-pub fn put_back_now(link: &VehicleLinkArgs) -> Result<Vec<String>, CommandError> {
-    network::block_on(async {
-        let mut session = open_patiently(link, super::before::AFTER).await?;
-        let offer = session.offer().await?;
-        let notes = state::notes(&session.known_as(&offer))?;
-        let put_back = onboard::put_back(&mut session, &notes, ChangedSince::Forgotten).await?;
-        let page = put_back_page(&put_back);
-        if put_back.failed.is_empty() {
-            return Ok(page.lines().map(str::to_owned).collect());
-        }
-        Err(CommandError::Failure(page.replace('\n', "; ")))
-    })
 }
