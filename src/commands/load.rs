@@ -110,6 +110,13 @@ fn undo_command(args: &LoadArgs) -> String {
     format!("mavid vehicle load {} --undo", link_options(&args.link))
 }
 
+/// A value as people write it.
+fn short(value: f64) -> String {
+    let digits = text::significant(value, 6);
+    let has_fraction = digits.contains('.') && !digits.contains('e');
+    if has_fraction { digits.trim_end_matches('0').trim_end_matches('.').to_owned() } else { digits }
+}
+
 /// What was set, for people.
 fn set_page(loaded: &Loaded, place: &str, undo: &str) -> String {
     let mut lines = Vec::new();
@@ -117,14 +124,14 @@ fn set_page(loaded: &Loaded, place: &str, undo: &str) -> String {
         lines.push(format!("{} set and read back", loaded.kept.len()));
     }
     for (change, now) in &loaded.differing {
-        let (name, wanted) = (&change.name, text::significant(change.set, 6));
+        let (name, wanted) = (&change.name, short(change.set));
         lines.push(match now {
             Some(now) if *now == change.found => {
-                format!("{name} is not set: the vehicle does not take {wanted} and keeps {}", text::significant(*now, 6))
+                format!("{name} is not set: the vehicle does not take {wanted} and keeps {}", short(*now))
             }
             Some(now) => format!(
                 "{name} was set to {wanted}, and the vehicle made {} of it: {wanted} is not among the values that it uses",
-                text::significant(*now, 6)
+                short(*now)
             ),
             None => format!("{name} was set to {wanted}, and the vehicle did not answer when it was read back"),
         });
@@ -199,7 +206,7 @@ fn none_left(put_back: &PutBack, undo: &str) -> Result<(), CommandError> {
         return Ok(());
     }
     let one = |(noted, now): &(Noted, f64)| {
-        let [set, now, found] = [noted.set, *now, noted.found].map(|value| text::significant(value, 6));
+        let [set, now, found] = [noted.set, *now, noted.found].map(short);
         format!("{} (set to {set}, now {now}, before {found})", noted.name)
     };
     Err(CommandError::Failure(format!(
@@ -227,6 +234,14 @@ mod tests {
         ));
         assert!(page(Some(0.5)).contains("does not take 7 and keeps 0.5"));
         assert!(page(None).contains("did not answer"));
+    }
+
+    #[test]
+    fn values_are_short() {
+        assert_eq!(
+            [7.0, 0.5, 0.0, -20.0, 0.389_742, 1200.0].map(short),
+            ["7", "0.5", "0", "-20", "0.389742", "1200"]
+        );
     }
 
     #[test]
