@@ -65,6 +65,20 @@ fn what_cannot_be_is_told_before_anybody_is_spoken_to() {
             "--tracking-max: expected a number above 0 and at most 10, got NaN",
         ),
         (vec!["--sitl", "--yes", "--effects", "nowhere.toml"], "nowhere.toml"),
+        (
+            vec![nobody[0], nobody[1], "--mass", "0", "--yes"],
+            "--mass: expected a mass from 0.005 to 500 kg, got 0",
+        ),
+        (vec!["--sitl", "--mass", "-1", "--yes"], "--mass: expected a mass from 0.005 to 500 kg, got -1"),
+        (
+            vec![nobody[0], nobody[1], "--mass", "2", "--size", "90", "--yes"],
+            "--size: expected a size from 0.03 to 10 m, got 90",
+        ),
+        (vec![nobody[0], nobody[1], "--vehicle", "nowhere.toml", "--yes"], "nowhere.toml"),
+        (
+            vec![nobody[0], nobody[1], "--vehicle", &vehicle, "--room", "1,1,1", "--yes"],
+            "for this vehicle (its rotors reach",
+        ),
         (vec![nobody[0], nobody[1], "--mass", "2", "--vehicle", &vehicle, "--yes"], "cannot be used with"),
     ] {
         let output = run(&out, &arguments);

@@ -73,6 +73,9 @@ pub struct FlyArgs {
     /// before the flight, set what the autopilot logs so that an identification can use it; it is put back after the flight
     #[arg(long)]
     pub set_logging: bool,
+    /// with --set-logging: leave it set after the flight, for a further flight; `mavid log prepare --restore` puts it back
+    #[arg(long, requires = "set_logging")]
+    pub keep_logging: bool,
     /// after landing, fetch the log that the vehicle wrote itself, however long that takes
     #[arg(long, conflicts_with = "no_fetch_log")]
     pub fetch_log: bool,

@@ -46,6 +46,9 @@ pub struct LoadArgs {
     /// put back what was found before a file was loaded onto this vehicle
     #[arg(long)]
     pub undo: bool,
+    /// with --undo: put back also what somebody changed since; without it this stays as it is, and noted
+    #[arg(long, requires = "undo")]
+    pub overwrite: bool,
     /// set them without a question
     #[arg(long, conflicts_with = "undo")]
     pub yes: bool,

@@ -62,6 +62,9 @@ pub struct LogPrepareArgs {
     /// set the parameters that an identification needs, without asking
     #[arg(long, conflicts_with = "restore")]
     pub set_logging: bool,
+    /// with --set-logging: restart the autopilot where what is set counts only then, and wait until it is back
+    #[arg(long, requires = "set_logging")]
+    pub restart: bool,
     /// put back what an earlier run changed on this vehicle
     #[arg(long)]
     pub restore: bool,

@@ -91,15 +91,22 @@ impl Analysis {
         written.then(|| self.folder.join(REPORT))
     }
 
-    /// For people: parameters, then the explanation's answer and where its report lies.
+    /// For people: the answer, and where all else lies. The parameters of the rigid body alone are told where there is no answer, or
+    /// where they are in no file.
     pub fn page(&self) -> String {
-        let mut parts: Vec<String> = self.identified.iter().map(identification_text).collect();
+        let mut parts: Vec<String> = self.explained.iter().map(explanation_answer).collect();
+        let mut places: Vec<String> =
+            self.report().map(|path| format!("report: {}", text::path(&path))).into_iter().collect();
         if self.identified.is_ok() && self.unwritten[0].is_none() {
-            let parameters = self.folder.join(RIGID_BODY).join(REPORT);
-            parts.push(format!("the rigid body alone, without effects: {}", text::path(&parameters)));
+            let place = |name| text::path(&self.folder.join(RIGID_BODY).join(name));
+            places.push(format!("the rigid body alone, without effects: {}, {}", place(REPORT), place(PAGE)));
         }
-        parts.extend(self.explained.iter().map(explanation_answer));
-        parts.extend(self.report().map(|path| format!("report: {}", text::path(&path))));
+        if !places.is_empty() {
+            parts.push(places.join("\n"));
+        }
+        if self.explained.is_err() || self.unwritten[0].is_some() {
+            parts.extend(self.identified.iter().map(identification_text));
+        }
         parts.join("\n\n")
     }
 
@@ -214,6 +221,11 @@ mod tests {
             analysis.page()
         );
         assert!(matches!(analysis.outcome(), Err(CommandError::Reported(NOT_WRITTEN))));
+        // where all is written, the answer comes first, and the parameters are in their files
+        let whole = Analysis { unwritten: [None, None], ..analysis };
+        let (answer, page) = (whole.answer(), whole.page());
+        assert!(page.starts_with(&answer) && page.contains("\nreport: "), "{page}");
+        assert!(page.ends_with("identification.txt") && !page.contains("std"), "{page}");
         fs::remove_dir_all(folder).unwrap();
     }
 }

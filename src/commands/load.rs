@@ -1,7 +1,11 @@
 //! `mavid vehicle load`: parameters of a file onto a vehicle, and back.
 
 use crate::commands::agreement::SET;
-use mavid::onboard::{self, Loading, ParameterComparison, ParameterFileError, Session, read_parameter_file};
+use mavid::fetch::Noted;
+use mavid::onboard::{
+    self, ChangedSince, Loaded, Loading, ParameterComparison, ParameterFileError, PutBack, Session,
+    read_parameter_file,
+};
 use mavid::text;
 use serde::Serialize;
 
@@ -29,11 +33,22 @@ struct Line {
     /// before; `null` where the vehicle does not have it
     found: Option<f64>,
     wanted: f64,
+    /// what the vehicle made of it by itself, where that is not what was wanted
+    #[serde(skip_serializing_if = "Option::is_none")]
+    became: Option<f64>,
 }
 
 impl From<&ParameterComparison> for Line {
     fn from(ParameterComparison { name, found, in_file }: &ParameterComparison) -> Self {
-        Self { parameter: name.clone(), found: *found, wanted: *in_file }
+        Self { parameter: name.clone(), found: *found, wanted: *in_file, became: None }
+    }
+}
+
+impl Line {
+    /// With what the vehicle made of it.
+    fn with(self, loaded: &Loaded) -> Self {
+        let differing = loaded.differing.iter().find(|(change, _)| change.name == self.parameter);
+        Self { became: differing.and_then(|(_, now)| *now), ..self }
     }
 }
 
@@ -45,7 +60,7 @@ pub fn run(json: bool, args: &LoadArgs) -> Result<Outcome, CommandError> {
         let mut session = open(&args.link).await?;
         match &file {
             Some(file) => load(json, args, &mut session, file).await,
-            None => undo(json, &mut session).await,
+            None => undo(json, args, &mut session).await,
         }
     })
 }
@@ -65,31 +80,65 @@ async fn load(
     }
     let differing = loading.parameters.iter().filter(|parameter| parameter.differs()).count();
     let set = differing > 0 && (args.yes || !json && agreed(SET, "set these")?);
-    if set {
-        onboard::load(session, &loading, &notes).await?;
-    }
+    let loaded = if set { onboard::load(session, &loading, &notes).await? } else { Loaded::default() };
     let place = text::path(&notes.path());
     if json {
         output::json(&Document {
             schema: 1,
             system: session.vehicle.system.0,
             autopilot: session.stack.id,
-            parameters: loading.parameters.iter().map(Line::from).collect(),
+            parameters: loading
+                .parameters
+                .iter()
+                .map(|parameter| Line::from(parameter).with(&loaded))
+                .collect(),
             set,
             notes: set.then_some(place),
             ..Document::default()
         })?;
     } else if set {
-        output::text(&format!(
-            "{differing} set and read back; what was found stands in {place}\nto undo it: mavid vehicle load {} --undo",
-            link_options(&args.link)
-        ))?;
+        output::text(&set_page(&loaded, &place, &undo_command(args)))?;
     } else if differing > 0 {
         output::text("nothing is changed; --yes sets it without a question")?;
     } else {
         output::text("nothing to change")?;
     }
-    Ok(Outcome::Done)
+    Ok(if loaded.differing.is_empty() { Outcome::Done } else { Outcome::DoneWithLoss })
+}
+
+fn undo_command(args: &LoadArgs) -> String {
+    format!("mavid vehicle load {} --undo", link_options(&args.link))
+}
+
+/// A value as people write it.
+fn short(value: f64) -> String {
+    let digits = text::significant(value, 6);
+    let has_fraction = digits.contains('.') && !digits.contains('e');
+    if has_fraction { digits.trim_end_matches('0').trim_end_matches('.').to_owned() } else { digits }
+}
+
+/// What was set, for people.
+fn set_page(loaded: &Loaded, place: &str, undo: &str) -> String {
+    let mut lines = Vec::new();
+    if !loaded.kept.is_empty() {
+        lines.push(format!("{} set and read back", loaded.kept.len()));
+    }
+    for (change, now) in &loaded.differing {
+        let (name, wanted) = (&change.name, short(change.set));
+        lines.push(match now {
+            Some(now) if *now == change.found => {
+                format!("{name} is not set: the vehicle does not take {wanted} and keeps {}", short(*now))
+            }
+            Some(now) => format!(
+                "{name} was set to {wanted}, and the vehicle made {} of it: {wanted} is not among the values that it uses",
+                short(*now)
+            ),
+            None => format!("{name} was set to {wanted}, and the vehicle did not answer when it was read back"),
+        });
+    }
+    lines.push(format!("what was found stands in {place}"));
+    lines.push(format!("to undo it: {undo}"));
+    lines.join("\n")
 }
 
 /// All or nothing, unless told otherwise: a file for another autopilot or a simulator is refused.
@@ -122,26 +171,84 @@ fn table(session: &Session, loading: &Loading) -> String {
     lines.join("\n")
 }
 
-async fn undo(json: bool, session: &mut Session) -> Result<Outcome, CommandError> {
+async fn undo(json: bool, args: &LoadArgs, session: &mut Session) -> Result<Outcome, CommandError> {
     let offer = session.offer().await?;
     let notes = notes_of_loaded(&session.known_as(&offer))?;
-    let put_back = onboard::put_back(session, &notes).await?;
+    let since = if args.overwrite { ChangedSince::Overwritten } else { ChangedSince::Kept };
+    let put_back = onboard::put_back(session, &notes, since).await?;
+    let place = text::path(&notes.path());
+    let is_whole = put_back.failed.is_empty() && put_back.left.is_empty();
     if json {
         let restored = put_back.done.iter().map(|noted| Line {
             parameter: noted.name.clone(),
-            found: Some(noted.set),
+            found: Some(noted.became.unwrap_or(noted.set)),
             wanted: noted.found,
+            became: None,
         });
         output::json(&Document {
             schema: 1,
             system: session.vehicle.system.0,
             autopilot: session.stack.id,
             restored: restored.collect(),
-            notes: (!put_back.failed.is_empty()).then(|| text::path(&notes.path())),
+            notes: (!is_whole).then(|| place.clone()),
             ..Document::default()
         })?;
     } else {
         output::text(&put_back_page(&put_back))?;
     }
-    all_put_back(&put_back, &text::path(&notes.path()))
+    none_left(&put_back, &undo_command(args))?;
+    all_put_back(&put_back, &place)
+}
+
+/// Fails where somebody changed something since: it is not known whether that is to be lost.
+fn none_left(put_back: &PutBack, undo: &str) -> Result<(), CommandError> {
+    if put_back.left.is_empty() {
+        return Ok(());
+    }
+    let one = |(noted, now): &(Noted, f64)| {
+        let [set, now, found] = [noted.set, *now, noted.found].map(short);
+        format!("{} (set to {set}, now {now}, before {found})", noted.name)
+    };
+    Err(CommandError::Failure(format!(
+        "not put back, because somebody changed it since: {}. To put it back all the same: {undo} --overwrite",
+        put_back.left.iter().map(one).collect::<Vec<_>>().join(", ")
+    )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noted(set: f64) -> Noted {
+        Noted { name: "MPC_THR_HOVER".to_owned(), found: 0.5, set, became: None, at: None }
+    }
+
+    #[test]
+    fn what_a_vehicle_makes_of_a_value_is_told_apart() {
+        let page = |now: Option<f64>| {
+            let loaded = Loaded { kept: vec![noted(0.4)], differing: vec![(noted(7.0), now)] };
+            set_page(&loaded, "notes", "undo")
+        };
+        assert!(page(Some(1.0)).starts_with(
+            "1 set and read back\nMPC_THR_HOVER was set to 7, and the vehicle made 1 of it: 7 is not"
+        ));
+        assert!(page(Some(0.5)).contains("does not take 7 and keeps 0.5"));
+        assert!(page(None).contains("did not answer"));
+    }
+
+    #[test]
+    fn values_are_short() {
+        assert_eq!(
+            [7.0, 0.5, 0.0, -20.0, 0.389_742, 1200.0].map(short),
+            ["7", "0.5", "0", "-20", "0.389742", "1200"]
+        );
+    }
+
+    #[test]
+    fn who_changed_it_since_is_asked_by_an_option() {
+        let put_back = PutBack { left: vec![(noted(0.4), 0.6)], ..PutBack::default() };
+        let said = none_left(&put_back, "mavid vehicle load --undo").unwrap_err().to_string();
+        assert!(said.contains("MPC_THR_HOVER (set to 0.4, now 0.6, before 0.5)"), "{said}");
+        assert!(said.ends_with("mavid vehicle load --undo --overwrite"), "{said}");
+    }
 }

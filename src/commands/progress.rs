@@ -66,6 +66,8 @@ pub struct Spinner(ProgressBar);
 
 /// A stage whose steps are not counted.
 const STAGE: &str = "{spinner} {msg}, {elapsed}";
+/// A stage of which it is known about how long it is.
+const ESTIMATED: &str = "{spinner} {msg} {bar:20} {elapsed}, about {eta} left";
 /// A stage of counted steps.
 const COUNTED: &str = "{spinner} {msg} {bar:20} {pos} of {len}, {eta} left";
 
@@ -103,6 +105,14 @@ impl Progress for Spinner {
 
     fn step(&self) {
         self.0.inc(1);
+    }
+
+    fn about(&self, done: u64, of: u64) {
+        self.0.set_length(of);
+        self.0.set_position(done);
+        if done > 0 {
+            self.restyle(ESTIMATED);
+        }
     }
 
     fn note(&self, note: &Note) {
@@ -183,6 +193,10 @@ impl Progress for Notes<'_> {
 
     fn step(&self) {
         self.watches.step();
+    }
+
+    fn about(&self, done: u64, of: u64) {
+        self.watches.about(done, of);
     }
 
     fn note(&self, note: &Note) {

@@ -6,7 +6,9 @@ use mavid::config::read_vehicle;
 use mavid::draft::{Draft, parameters_of};
 use mavid::link::Address;
 use mavid::report::vehicle_text;
-use mavid::study::{draft_from_log, draft_from_parameters, draft_text, vehicle_summary, with_thrust_stand};
+use mavid::study::{
+    check_given, draft_from_log, draft_from_parameters, draft_text, vehicle_summary, with_thrust_stand,
+};
 use mavid::text;
 use mavid::vehicle::{Guess, Guessed};
 
@@ -55,6 +57,7 @@ fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
         return Err(CommandError::Input(what));
     }
     let given = args.shape.given(args.mass);
+    check_given(&given)?;
     let mut draft = match link(args) {
         Some(link) => {
             let Answered { autopilot, parameters, .. } =

@@ -12,6 +12,7 @@ use super::latency_name::latency_name;
 use super::limits::{limits, too_little_excitation};
 use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
 use super::named::{Confusable, Named, NamedParameter, Strength};
+use super::pace::Pace;
 use super::refinement::{fitted_strength, refine};
 use super::search::search;
 use super::signature::{EffectTerm, Signature};
@@ -105,6 +106,20 @@ pub fn explain(
     vehicle: &Vehicle,
     settings: &ExplainSettings,
 ) -> Result<Explanation, ExplainError> {
+    explain_watched(flights, vehicle, settings, &|_, _| {})
+}
+
+/// The same, and `tell` is told the rounds of the search that are done, and how many there may be: their number is not known
+/// beforehand.
+///
+/// # Errors
+/// Those of [`explain`].
+pub fn explain_watched(
+    flights: &[Signals],
+    vehicle: &Vehicle,
+    settings: &ExplainSettings,
+    tell: &dyn Fn(u64, u64),
+) -> Result<Explanation, ExplainError> {
     let _stage = tracing::info_span!("explain", flights = flights.len()).entered();
     let trace = |signals| Trace::new(signals, vehicle, settings.half_width_s);
     let traces: Vec<Trace> = flights.iter().map(trace).collect::<Result<_, _>>()?;
@@ -113,8 +128,9 @@ pub fn explain(
         let (seconds, needed_s) = (rows as f64 * ROW_S, LEAST_FLIGHT_S);
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
-    let mut found = search(&traces, vehicle, &settings.gates, settings.signatures)?;
-    refine((flights, &traces), vehicle, &mut found)?;
+    let mut pace = Pace::new(tell);
+    let mut found = search(&traces, vehicle, &settings.gates, (settings.signatures, &mut pace))?;
+    refine((flights, &traces), vehicle, (&mut found, &mut pace))?;
     let beyond = tracing::info_span!("locate").in_scope(|| beyond(&traces, &found));
     let explanation = judge(&traces, vehicle, found, beyond);
     explanation.emit();

@@ -11,6 +11,7 @@ use super::limits::is_beyond_showing;
 use super::measured_force::{Felt, shows_in_forces};
 use super::named::Strength;
 use super::other_law::add_other_laws;
+use super::pace::Pace;
 use super::physical::make_physical;
 use super::reconstructed::{Forms, reconstruct};
 use super::signature::EffectTerm;
@@ -38,7 +39,7 @@ const ROUNDS: usize = 6;
 pub(super) fn refine(
     (flights, traces): (&[Signals], &[Trace]),
     vehicle: &Vehicle,
-    found: &mut Search,
+    (found, pace): (&mut Search, &mut Pace<'_>),
 ) -> Result<(), PhysicsError> {
     let trim = Trim::of(flights, vehicle);
     leave_out_unnamed(traces, &trim, found)?;
@@ -58,9 +59,11 @@ pub(super) fn refine(
             by_instruments = tracing::info_span!("instruments")
                 .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
         }
+        pace.reconstructed();
         if left == 0 || !leave_out_unnamed(traces, &trim, found)? {
             break;
         }
+        pace.again();
     }
     add_left_over(&mut found.after, &by_instruments);
     add_other_laws(traces, &found.last, &mut found.after);

@@ -10,6 +10,7 @@ use super::grid_refinement::between_grid;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::mounting::mountings;
 use super::other_forms::other_form;
+use super::pace::Pace;
 use super::price::Price;
 use super::pruning::{UNCHANGED_S, prune};
 use super::score::test_all;
@@ -28,7 +29,7 @@ pub fn search(
     flights: &[Trace],
     vehicle: &Vehicle,
     gates: &Gates,
-    signatures: &[&'static Signature],
+    (signatures, pace): (&[&'static Signature], &mut Pace<'_>),
 ) -> Result<Search, PhysicsError> {
     let _step = tracing::info_span!("search").entered();
     let (before, latency) = fit_latency(flights, Base::anchored(vehicle))?;
@@ -43,6 +44,7 @@ pub fn search(
         let passed;
         (passed, last) = ranked(flights, (&after, price), gates, signatures, &refused);
         tracing::debug!(candidates = last.len(), taken = steps.len(), "candidates tested");
+        pace.tested();
         match passed.first() {
             Some(best) if steps.len() < gates.steps => {
                 let id = best.candidate.id;

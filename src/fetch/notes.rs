@@ -22,6 +22,9 @@ pub struct Noted {
     pub found: f64,
     /// what it was set to
     pub set: f64,
+    /// what the vehicle made of it by itself; `None` where it kept what was set, or this is not known
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub became: Option<f64>,
     /// when it was set; not in notes of older releases
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<Moment>,
@@ -66,24 +69,57 @@ const SUFFIX: &str = ".toml";
 pub struct Notes {
     path: PathBuf,
     vehicle: String,
+    kind: Kind,
+}
+
+/// For what parameters were changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Logging,
+    Loaded,
+}
+
+impl Kind {
+    fn prefix(self) -> &'static str {
+        match self {
+            Self::Logging => PREFIX,
+            Self::Loaded => LOADED,
+        }
+    }
+
+    /// What they are, and what puts them back.
+    fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Logging => ("Parameters of logging", "mavid log prepare --connect ADDRESS --restore"),
+            Self::Loaded => ("Parameters of a file", "mavid vehicle load --connect ADDRESS --undo"),
+        }
+    }
+}
+
+impl Noted {
+    /// Whether a value of it is due to what was set, and not to somebody who changed it since.
+    #[must_use]
+    pub fn is_own(&self, value: f64) -> bool {
+        value == self.set || self.became == Some(value)
+    }
 }
 
 impl Notes {
     /// Of this vehicle's logging, in this folder.
     #[must_use]
     pub fn of(folder: &Path, vehicle: &str) -> Self {
-        Self::named(PREFIX, folder, vehicle)
+        Self::named(Kind::Logging, folder, vehicle)
     }
 
     /// Of what was loaded onto this vehicle from a file, in this folder.
     #[must_use]
     pub fn of_loaded(folder: &Path, vehicle: &str) -> Self {
-        Self::named(LOADED, folder, vehicle)
+        Self::named(Kind::Loaded, folder, vehicle)
     }
 
-    fn named(prefix: &str, folder: &Path, vehicle: &str) -> Self {
-        let path = folder.join(format!("{prefix}{}{SUFFIX}", local_name(vehicle)));
-        Self { path, vehicle: vehicle.to_owned() }
+    fn named(kind: Kind, folder: &Path, vehicle: &str) -> Self {
+        let path = folder.join(format!("{}{}{SUFFIX}", kind.prefix(), local_name(vehicle)));
+        Self { path, vehicle: vehicle.to_owned(), kind }
     }
 
     /// Whether a file of this name holds notes of logging.
@@ -129,7 +165,7 @@ impl Notes {
         let mut parameter = self.read()?;
         for change in changes {
             match parameter.iter_mut().find(|known| known.name == change.name) {
-                Some(known) => (known.set, known.at) = (change.set, change.at),
+                Some(known) => *known = Noted { found: known.found, ..change.clone() },
                 None => parameter.push(change.clone()),
             }
         }
@@ -151,8 +187,11 @@ impl Notes {
         if let Some(folder) = self.path.parent() {
             fs::create_dir_all(folder).map_err(|error| self.failed(error))?;
         }
-        let head = "# Parameters of logging that mavid changed on a vehicle, and what they were before.\n\
-                    # `mavid log prepare --connect ADDRESS --restore` puts them back and removes this file.\n";
+        let (what, command) = self.kind.words();
+        let head = format!(
+            "# {what} that mavid changed on a vehicle, and what they were before.\n# `{command}` puts them back and removes \
+             this file.\n"
+        );
         write_whole(&self.path, format!("{head}{words}").as_bytes()).map_err(|error| self.failed(error))
     }
 
@@ -180,11 +219,22 @@ mod tests {
             name: "SDLOG_PROFILE".to_owned(),
             found,
             set,
+            became: None,
             at: at(utc_s),
         };
         notes.add(&[noted(1.0, 9.0, 1e9)]).unwrap();
         notes.add(&[noted(9.0, 27.0, 2e9)]).unwrap();
         assert_eq!(notes.read().unwrap(), [noted(1.0, 27.0, 2e9)]);
+        // what the vehicle makes of it by itself is nobody else's
+        let became = Noted { became: Some(25.0), ..noted(1.0, 27.0, 2e9) };
+        notes.add(std::slice::from_ref(&became)).unwrap();
+        assert_eq!(notes.read().unwrap(), [became.clone()]);
+        assert!(
+            became.is_own(27.0)
+                && became.is_own(25.0)
+                && !became.is_own(1.0)
+                && !noted(1.0, 27.0, 0.0).is_own(25.0)
+        );
         let mode = Noted { name: "SDLOG_MODE".to_owned(), at: None, ..noted(-1.0, 0.0, 0.0) };
         notes.add(std::slice::from_ref(&mode)).unwrap();
         notes.keep(vec![mode.clone()]).unwrap();

@@ -9,7 +9,9 @@ use mavlink::dialects::ardupilotmega::{
 use super::FetchError;
 use crate::autopilot::Autopilot;
 use crate::wire::file_transfer::Transfer;
-use crate::wire::message_id::{AUTOPILOT_VERSION, FILE_TRANSFER_PROTOCOL, LOG_DATA, LOG_ENTRY, SYSTEM_TIME};
+use crate::wire::message_id::{
+    AUTOPILOT_VERSION, COMMAND_ACK, FILE_TRANSFER_PROTOCOL, LOG_DATA, LOG_ENTRY, SYSTEM_TIME,
+};
 use crate::wire::{Frame, Vehicle};
 
 /// Bytes of one LOG_DATA.
@@ -110,6 +112,19 @@ impl Peer {
     /// The older one of the version.
     pub(super) fn request_capabilities(&self) -> MavMessage {
         self.command(MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, 1.0)
+    }
+
+    /// The order to start the autopilot anew.
+    pub(super) fn restart(&self) -> MavMessage {
+        self.command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0)
+    }
+
+    /// MAV_RESULT of that order, if it is this vehicle's answer.
+    pub(super) fn heard_restart(&self, frame: &Frame<'_>) -> Option<u8> {
+        let payload = frame.payload();
+        let is = self.is_from(frame) && frame.header().message_id == COMMAND_ACK;
+        let ordered = u32::from(payload.u16(0)) == MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN as u32;
+        (is && ordered).then(|| payload.u8(2))
     }
 
     fn command(&self, command: MavCmd, param1: f32) -> MavMessage {

@@ -1,8 +1,14 @@
 //! Parameters of a file beside those of a vehicle, and their setting.
 
-use super::setting::{read, set};
+use std::time::Duration;
+
+use super::setting::{read, rest, set};
 use super::{OnboardError, Session};
 use crate::fetch::{Known, Noted, Notes};
+
+/// Within this an autopilot has looked at parameters that were set: PX4's modules and ArduPilot's libraries read them several
+/// times a second.
+const SETTLING: Duration = Duration::from_millis(1500);
 
 /// One parameter of a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,26 +60,50 @@ pub async fn compare(session: &mut Session, file: &[(String, f64)]) -> Result<Lo
     Ok(Loading { known, parameters })
 }
 
-/// Notes what was found, sets what differs, and reads it back.
+/// What a vehicle made of the parameters that were set.
+#[derive(Debug, Default)]
+pub struct Loaded {
+    /// those that are as they were set
+    pub kept: Vec<Noted>,
+    /// those that the vehicle changed by itself, or for which it does not answer any more: with what they are now
+    pub differing: Vec<(Noted, Option<f64>)>,
+}
+
+/// Notes what was found, sets what differs, and reads it back when the vehicle had the time to look at it: an autopilot
+/// constrains some values only after it has taken them. What it made of them is noted too.
 ///
 /// # Errors
-/// The notes cannot be written, the vehicle does not take a value or says another one afterwards, it is armed, or those of
-/// [`Session::talk`].
-pub async fn load(session: &mut Session, loading: &Loading, notes: &Notes) -> Result<(), OnboardError> {
+/// The notes cannot be written, the vehicle does not take a value, it is armed, or those of [`Session::talk`].
+pub async fn load(session: &mut Session, loading: &Loading, notes: &Notes) -> Result<Loaded, OnboardError> {
     let at = Some(session.moment().await?);
     let noted = |parameter: &ParameterComparison| {
-        Some(Noted { name: parameter.name.clone(), found: parameter.found?, set: parameter.in_file, at })
+        let (name, set) = (parameter.name.clone(), parameter.in_file);
+        Some(Noted { name, found: parameter.found?, set, became: None, at })
     };
     let changes: Vec<Noted> =
         loading.parameters.iter().filter(|parameter| parameter.differs()).filter_map(noted).collect();
-    set(session, &loading.known, &changes, notes).await?;
+    let refused = match set(session, &loading.known, &changes, notes).await {
+        Err(OnboardError::NotSet(why)) => Some(why),
+        done => done.map(|()| None)?,
+    };
+    rest(session, SETTLING).await?;
     let names: Vec<&str> = changes.iter().map(|change| change.name.as_str()).collect();
     let now = read(session, &names).await?;
-    match changes.iter().find(|change| now.value(&change.name) != Some(change.set)) {
-        None => Ok(()),
-        Some(Noted { name, set, .. }) => Err(OnboardError::Refused(format!(
-            "{name}: expected {set} when read back, the vehicle says {}",
-            now.value(name).map_or_else(|| "nothing".to_owned(), |value| value.to_string())
-        ))),
+    let mut loaded = Loaded::default();
+    for mut change in changes {
+        let value = now.value(&change.name);
+        if value == Some(change.set) {
+            loaded.kept.push(change);
+            continue;
+        }
+        change.became = value.filter(|value| *value != change.found);
+        loaded.differing.push((change, value));
+    }
+    let made: Vec<Noted> = loaded.differing.iter().map(|(change, _)| change.clone()).collect();
+    notes.add(&made)?;
+    match refused {
+        // all that was refused is as it was before
+        Some(why) if made.iter().all(|change| change.became.is_none()) => Err(OnboardError::NotSet(why)),
+        _ => Ok(loaded),
     }
 }

@@ -95,16 +95,33 @@ pub async fn change(
         name: change.parameter.to_owned(),
         found: change.found,
         set: change.needed,
+        became: None,
         at,
     };
     set(session, &state.known, &changes.iter().map(noted).collect::<Vec<_>>(), notes).await
 }
 
-/// Puts back what an earlier run changed, as far as nobody else changed it since. What cannot be put back stays noted.
+/// What happens to a parameter that somebody else changed since.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChangedSince {
+    /// it stays, and is no longer noted
+    Forgotten,
+    /// it stays, and what it was before stays noted
+    Kept,
+    /// it is put back all the same
+    Overwritten,
+}
+
+/// Puts back what an earlier run changed, what the vehicle made of it by itself included. What somebody else changed since is
+/// treated by `since`. What cannot be put back stays noted.
 ///
 /// # Errors
 /// The notes cannot be read or written, the vehicle is armed, or those of [`Session::talk`].
-pub async fn put_back(session: &mut Session, notes: &Notes) -> Result<PutBack, OnboardError> {
+pub async fn put_back(
+    session: &mut Session,
+    notes: &Notes,
+    since: ChangedSince,
+) -> Result<PutBack, OnboardError> {
     let noted = notes.read()?;
     let names: Vec<&str> = noted.iter().map(|noted| noted.name.as_str()).collect();
     let known = read(session, &names).await?;
@@ -112,9 +129,10 @@ pub async fn put_back(session: &mut Session, notes: &Notes) -> Result<PutBack, O
     let mut wanted = Vec::new();
     for noted in &noted {
         match known.value(&noted.name) {
-            Some(now) if now == noted.set => wanted.push(noted),
+            Some(now) if noted.is_own(now) => wanted.push(noted),
             // as it was: the run ended before it changed it
             Some(now) if now == noted.found => put_back.done.push(noted.clone()),
+            Some(_) if since == ChangedSince::Overwritten => wanted.push(noted),
             Some(now) => put_back.left.push((noted.clone(), now)),
             None => put_back.failed.push((noted.clone(), "the vehicle does not answer for it".to_owned())),
         }
@@ -139,7 +157,8 @@ pub async fn put_back(session: &mut Session, notes: &Notes) -> Result<PutBack, O
             None => put_back.done.push(noted.clone()),
         }
     }
-    notes.keep(put_back.failed.iter().map(|(noted, _)| noted.clone()).collect())?;
+    let left = put_back.left.iter().filter(|_| since == ChangedSince::Kept).map(|(noted, _)| noted);
+    notes.keep(put_back.failed.iter().map(|(noted, _)| noted).chain(left).cloned().collect())?;
     Ok(put_back)
 }
 

@@ -63,11 +63,16 @@ fn parse(path: &str, written: &str) -> Result<Vec<(String, f64)>, ParameterFileE
         let refuse = |expected, got: &str| ParameterFileError::Form {
             path: format!("{path}, line {}", index + 1),
             expected,
-            got: text::excerpt(got, 60),
+            got: text::excerpt(got, 24),
         };
-        let (name, value) = pair(line).ok_or_else(|| refuse("a name and a value", line))?;
-        let is_letter = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
-        if name.is_empty() || name.len() > NAME_CHARS || !name.chars().all(is_letter) {
+        // a file that begins with something else is none: what it says of itself helps nobody
+        let first = found.is_empty();
+        let (name, value) = match pair(line) {
+            Some((name, value)) if !first || is_name(name) => (name, value),
+            None if !first => return Err(refuse("a name and a value", line)),
+            _ => return Err(no_parameter_file(path, index + 1)),
+        };
+        if !is_name(name) {
             return Err(refuse("a name of at most 16 letters, digits and underscores", name));
         }
         let value: f32 = value.parse().map_err(|_| refuse("a number as the value", value))?;
@@ -92,6 +97,20 @@ fn parse(path: &str, written: &str) -> Result<Vec<(String, f64)>, ParameterFileE
         });
     }
     Ok(found)
+}
+
+fn is_name(name: &str) -> bool {
+    let is_letter = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+    !name.is_empty() && name.len() <= NAME_CHARS && name.chars().all(is_letter)
+}
+
+fn no_parameter_file(path: &str, line: usize) -> ParameterFileError {
+    let got = format!("another kind of file: its line {line} is not of this form");
+    ParameterFileError::Form {
+        path: path.to_owned(),
+        expected: "a parameter file, with lines such as MPC_THR_HOVER,0.5",
+        got,
+    }
 }
 
 /// Name and value of a line.
@@ -133,7 +152,10 @@ mod tests {
         assert_eq!(said("A,x"), "f, line 1: expected a number as the value, got x");
         assert_eq!(said("A,nan"), "f, line 1: expected a finite value, got A,nan");
         assert_eq!(said("A,1\nA,2"), "f, line 2: expected one value of each parameter, got A = 1 and 2");
-        assert!(said("A_NAME_THAT_IS_LONG,1").contains("at most 16"));
+        assert!(said("A,1\nA_NAME_THAT_IS_LONG,1").contains("at most 16"));
+        let prose = said("# mavid\n\nmavid is a ground station for PX4 and ArduPilot multirotors.\n");
+        assert!(prose.ends_with("got another kind of file: its line 3 is not of this form"), "{prose}");
+        assert!(said("[vehicle] 1\n").contains("another kind of file"));
         assert!(said("# nothing\n").contains("at least one line"));
     }
 }

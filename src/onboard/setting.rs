@@ -1,7 +1,12 @@
 //! Parameters of a vehicle, read and set over its link.
 
+use std::time::Duration;
+
+use mavlink::dialects::ardupilotmega::MavMessage;
+
 use super::{Flow, OnboardError, Session};
-use crate::fetch::{Known, Noted, Notes, ReadParameters, SetParameters};
+use crate::fetch::{Dialogue, FetchError, Known, Noted, Notes, ReadParameters, SetParameters};
+use crate::wire::Frame;
 
 /// What the vehicle says of these parameters.
 pub(super) async fn read(session: &mut Session, names: &[&str]) -> Result<Known, OnboardError> {
@@ -24,4 +29,29 @@ pub(super) async fn set(
     session.talk_disarmed(&mut setting).await?;
     let failures: Vec<_> = setting.failures().map(|(_, why)| why).collect();
     if failures.is_empty() { Ok(()) } else { Err(OnboardError::NotSet(failures)) }
+}
+
+/// Lets time pass, in which the link is kept.
+pub(super) async fn rest(session: &mut Session, time: Duration) -> Result<(), OnboardError> {
+    let mut rest = Rest { until: session.elapsed() + time, is_over: false };
+    session.talk(&mut rest, |_| Ok(Flow::On)).await.map(|_| ())
+}
+
+/// Says nothing and hears nothing.
+struct Rest {
+    until: Duration,
+    is_over: bool,
+}
+
+impl Dialogue for Rest {
+    fn poll(&mut self, now: Duration) -> Result<Option<MavMessage>, FetchError> {
+        self.is_over |= now >= self.until;
+        Ok(None)
+    }
+
+    fn take(&mut self, _now: Duration, _frame: &Frame<'_>) {}
+
+    fn is_done(&self) -> bool {
+        self.is_over
+    }
 }

@@ -35,6 +35,11 @@ pub(super) fn folded(heading: &str, content: &Markup) -> Markup {
     html! { details.method { summary { h2 { (heading) } } (BREAK) (content) } (BREAK) }
 }
 
+/// Numbers that are folded until they are asked for, within a section. They are not printed.
+pub(super) fn folded_numbers(words: &str, content: &Markup) -> Markup {
+    html! { details.numbers { summary { (words) } (content) } (BREAK) }
+}
+
 pub(super) fn paragraph(words: &str) -> Markup {
     html! { p { (words) } (BREAK) }
 }

@@ -127,6 +127,11 @@ impl Vehicle {
             // ArduPilot tells every link
             if px4 { self.send(link, &message) } else { self.broadcast(&message) }
         }
+        // PX4's controller looks at a value after it was taken and told
+        if let Some(said) = self.parameters.constrain() {
+            self.autopilot.say(MavSeverity::MAV_SEVERITY_CRITICAL, said.to_owned());
+            self.retune();
+        }
     }
 
     fn request_data_stream(&mut self, link: usize, payload: Payload) {

@@ -64,6 +64,6 @@ pub use validate::{
 };
 pub use vehicle::{RotorSummary, VehicleSummary, vehicle_summary};
 pub use vehicle_given::{
-    VehicleGiven, draft_from_log, draft_from_parameters, draft_notes, draft_text, implausible,
+    VehicleGiven, check_given, draft_from_log, draft_from_parameters, draft_notes, draft_text, implausible,
     with_thrust_stand,
 };

@@ -50,6 +50,9 @@ pub trait Progress: Sync {
 
     /// One of them is done.
     fn step(&self) {}
+
+    /// So much of the stage is done, of about so much: how much it is, is not known beforehand.
+    fn about(&self, _done: u64, _of: u64) {}
 }
 
 /// Nobody waits.

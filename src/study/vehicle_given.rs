@@ -176,6 +176,14 @@ fn not_given(error: &DraftError) -> StudyError {
     StudyError::Setting { name, why: error.to_string() }
 }
 
+/// Whether these can be the numbers of a multirotor: that is known before a log is read or a vehicle is waited for.
+///
+/// # Errors
+/// One of them cannot.
+pub fn check_given(given: &Given) -> Result<(), StudyError> {
+    given.checked().map_err(|error| not_given(&error))
+}
+
 /// A first description of the vehicle of a log.
 ///
 /// # Errors

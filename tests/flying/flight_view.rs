@@ -100,12 +100,14 @@ fn a_tall_screen_has_an_artificial_horizon_the_path_and_the_share_of_the_limit()
 #[test]
 fn after_the_landing_the_view_shows_the_analysis_and_then_the_answer() {
     let drawn = |view: &LandedView, columns, rows| screen(columns, rows, |frame| render_landed(frame, view));
-    let stage = |name: &str, elapsed_s, steps| StageView { name: name.into(), elapsed_s, steps };
+    let stage =
+        |name: &str, elapsed_s, steps| StageView { name: name.into(), elapsed_s, steps, is_estimate: false };
     let mut view = LandedView {
         title: "mavid-run".into(),
         flown: vec!["landed".into(), "4 periods, 0.016 m rms off the reference".into()],
         stages: vec![
             stage("reading the logs", 0.4, None),
+            StageView { is_estimate: true, ..stage("searching for effects", 2.0, Some((2, 7))) },
             stage("designing the next flight", 3.0, Some((3, 12))),
         ],
         notes: vec!["no velocity is recorded".into()],
@@ -117,6 +119,7 @@ fn after_the_landing_the_view_shows_the_analysis_and_then_the_answer() {
         "not yet: the flight is analysed",
         "4 periods",
         "reading the logs, 0 s",
+        "░ about 5 s left",
         "designing the next flight ██████░",
         "3 of 12, 9 s left",
         "no velocity is recorded",

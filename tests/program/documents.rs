@@ -246,4 +246,18 @@ fn the_parameter_file_of_the_guide_holds_what_the_guide_says() {
         .map(|(name, value)| (name.to_owned(), value.trim_end_matches('`').parse().unwrap()))
         .collect();
     assert_eq!(file, stated);
+    // the file for earlier releases says the same in their names and units
+    let old =
+        mavid::onboard::read_parameter_file(&root().join("fixtures/ardupilot-guided-4.6.parm")).unwrap();
+    assert_eq!(old.len(), stated.len());
+    let values = old.into_iter().collect();
+    let old = mavid::fly::parameters::Parameters {
+        autopilot: mavid::autopilot::Autopilot::ArduPilot,
+        values,
+        ..mavid::fly::parameters::Parameters::default()
+    };
+    let new = mavid::fly::parameters::Parameters { values: stated.into_iter().collect(), ..old.clone() };
+    for name in old.values.keys() {
+        assert_eq!(old.get(name), new.get(name), "{name}");
+    }
 }

@@ -161,6 +161,18 @@ pub fn logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back() {
     assert!(!said.contains("earlier run"), "{said}");
 }
 
+/// What counts only after a restart counts when it is ordered, and the next command knows it.
+pub fn an_autopilot_is_restarted_where_that_is_said() {
+    let state = folder("restarted");
+    let sitl = Sitl::start("px4", &[]);
+    let (set, said) = sitl.log(&state, &["prepare", "--set-logging", "--restart"]);
+    assert_eq!((&set["changes"][0]["set"], &set["restart"]), (&true.into(), &false.into()), "{said}");
+    assert!(said.contains("the autopilot restarts"), "{said}");
+    let (enough, _) = sitl.log(&state, &["prepare"]);
+    assert_eq!((&enough["restart"], &enough["awaiting_restart"]), (&false.into(), &Value::Array(Vec::new())));
+    assert!(enough["logs"][0].as_str().unwrap().contains("full rate"), "{enough}");
+}
+
 /// Neither is armed: a flight that does not come about leaves the logging as it was.
 pub fn a_flight_sets_the_logging_of_each_autopilot_and_puts_it_back() {
     let trajectory = planned("logged_plan", 1);
@@ -327,5 +339,29 @@ pub fn parameters_of_a_file_are_set_read_back_and_undone() {
     // what was found first, not what was set in between
     let (_, last, _) = load(&[&wanted]);
     assert_eq!(last["parameters"][0]["found"], before);
+    assert_eq!(last["parameters"][1]["found"], 1.0);
+    // PX4 takes it, and constrains it a moment later: that is not somebody else's change
+    let beyond = file("beyond.params", "MPC_THR_HOVER,7\nTHR_MDL_FAC,0.5\n");
+    let (status, set, said) = load(&[&beyond, "--yes"]);
+    assert_eq!((status, &set["parameters"][0]["became"]), (Some(3), &1.0.into()), "{said}");
+    assert!(set["parameters"][1]["became"].is_null(), "{set}");
+    let (status, undone, said) = load(&["--undo"]);
+    assert_eq!((status, &undone["restored"][0]["wanted"]), (Some(0), &before), "{said}");
+    // what somebody changed since stays noted, and is put back where that is said
+    let (status, ..) = load(&[&wanted, "--yes"]);
+    assert_eq!(status, Some(0));
+    let noted = std::fs::read_dir(&folder).unwrap().flatten().map(|entry| entry.path());
+    let noted = noted.filter(|path| path.extension().is_some_and(|end| end == "toml")).last().unwrap();
+    let text = std::fs::read_to_string(&noted).unwrap();
+    std::fs::write(&noted, text.replace("set = 0.5", "set = 0.6")).unwrap();
+    let (status, undone, said) = load(&["--undo"]);
+    assert_eq!((status, undone["restored"].as_array().unwrap().len()), (Some(1), 1), "{said}");
+    assert!(
+        said.contains("THR_MDL_FAC (set to 0.6, now 0.5, before 1)") && said.contains("--undo --overwrite"),
+        "{said}"
+    );
+    let (status, undone, said) = load(&["--undo", "--overwrite"]);
+    assert_eq!((status, undone["restored"].as_array().unwrap().len()), (Some(0), 1), "{said}");
+    let (_, last, _) = load(&[&wanted]);
     assert_eq!(last["parameters"][1]["found"], 1.0);
 }

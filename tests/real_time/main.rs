@@ -106,6 +106,7 @@ fn main() {
         own_log::a_flight_logs_as_it_is_set_and_its_log_is_fetched,
         log_commands::logs_are_listed_fetched_and_prepared_and_what_was_changed_is_put_back,
         demo::what_cannot_be_concealed_is_refused_before_anything_flies,
+        log_commands::an_autopilot_is_restarted_where_that_is_said,
         log_commands::a_host_that_refuses_is_not_waited_for,
         log_commands::a_vehicle_without_a_file_is_checked_by_its_own_parameters,
         log_commands::logging_is_not_set_where_the_vehicle_does_not_answer_for_it,

@@ -9,13 +9,13 @@ use sha2::{Digest, Sha256};
 
 /// SHA-256 of the bytes of a log; or why it is not read.
 pub fn identity(path: &Path, bounds: &Bounds) -> Result<String, String> {
-    let metadata = fs::metadata(path).map_err(|error| error.to_string())?;
+    let metadata = fs::metadata(path).map_err(|error| format!("expected the file of a log: {error}"))?;
     if !metadata.is_file() {
-        return Err("expected a file".to_owned());
+        return Err("expected the file of a log, got a folder or a device".to_owned());
     }
     match bounds.refused(metadata.len()) {
         Some(why) => Err(why),
-        None => hash(path).map_err(|error| error.to_string()),
+        None => hash(path).map_err(|error| format!("expected a log that can be read: {error}")),
     }
 }
 

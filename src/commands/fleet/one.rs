@@ -20,7 +20,9 @@ pub fn run(json: bool, args: &FleetRowsArgs) -> Result<Outcome, CommandError> {
     let bounds = Bounds::of(&args.study);
     let uri = args.uri.clone().unwrap_or_else(|| text::path(&args.log));
     let bytes = fs::metadata(&args.log)
-        .map_err(|error| CommandError::Input(format!("{}: {error}", text::path(&args.log))))?
+        .map_err(|error| {
+            CommandError::Input(format!("{}: expected the file of a log: {error}", text::path(&args.log)))
+        })?
         .len();
     let identity = identity(&args.log, &bounds);
     let sha256 = identity.clone().unwrap_or_else(|_| unread_name(&uri, bytes));

@@ -129,6 +129,12 @@ impl Progress for Landed {
         }
     }
 
+    fn about(&self, done: u64, of: u64) {
+        if let Some(stage) = self.shared().view.stages.last_mut() {
+            (stage.steps, stage.is_estimate) = (Some((done, of)), true);
+        }
+    }
+
     fn note(&self, note: &Note) {
         self.shared().view.notes.push(note.sentence());
     }
@@ -138,6 +144,7 @@ impl Shared {
     /// The last stage has taken so long.
     fn ends_stage(&mut self) {
         self.tells_time();
+        self.ends_estimate();
         self.since = Instant::now();
     }
 
@@ -145,6 +152,13 @@ impl Shared {
         let elapsed_s = self.since.elapsed().as_secs_f64();
         if let Some(stage) = self.view.stages.last_mut() {
             stage.elapsed_s = elapsed_s;
+        }
+    }
+
+    /// An estimate of what was to come is over with its stage.
+    fn ends_estimate(&mut self) {
+        if let Some(stage) = self.view.stages.last_mut().filter(|stage| stage.is_estimate) {
+            stage.steps = None;
         }
     }
 }

@@ -31,6 +31,8 @@ pub struct Manner {
     pub own: Option<Nonce>,
     /// watches in place of the view or the lines
     pub watches: Option<Watches>,
+    /// what becomes of the logging was decided before
+    pub decided: bool,
 }
 
 /// A flight that is over.
@@ -69,7 +71,7 @@ pub fn one_flight(
         // a signal ends the conversation with the vehicle
         work.ends_itself();
     }
-    let before = log::before_flight(args)?;
+    let before = log::before_flight(args, !manner.decided)?;
     // the vehicle that was spoken to, and no other
     ride.sortie.system = before.system.map(SystemId).or(ride.sortie.system);
     ride.sortie.settings.log_awaited.clone_from(&before.awaited);

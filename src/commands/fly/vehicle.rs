@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use mavid::config::read_vehicle;
 use mavid::draft::parameters_of;
 use mavid::files::write_whole;
-use mavid::study::{draft_from_parameters, draft_text};
+use mavid::study::{check_given, draft_from_parameters, draft_text};
 use mavid::text;
 use mavid::vehicle::Vehicle;
 use mavid::wire::SystemId;
@@ -49,6 +49,7 @@ pub(super) fn vehicle_of(args: &FlyArgs) -> Result<FlightVehicle, CommandError> 
     // what is there already is told before anybody is waited for
     leftover::make_way(&args.out, SystemId(args.station_id))?;
     let given = args.shape.given(mass_kg);
+    check_given(&given)?;
     let link = link_of(args, args.system_id);
     let found = parameters_of_vehicle(&link, |stack, known| parameters_of(stack, &given, known))?;
     let draft = draft_from_parameters((found.autopilot, found.parameters), &given, &args.connect)?;

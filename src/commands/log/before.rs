@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use mavid::autopilot::LogAwaited;
 use mavid::fetch::Noted;
-use mavid::onboard;
+use mavid::onboard::{self, ChangedSince};
 use mavid::wire::SystemId;
 
 use super::link::open_as;
@@ -41,18 +41,18 @@ pub fn link_of(args: &FlyArgs, system: Option<u32>) -> VehicleLinkArgs {
 }
 
 /// With `--set-logging`, sets what an identification needs, as long as the vehicle is disarmed. Otherwise it reminds of what
-/// an earlier run left, and at a terminal puts it back where the user agrees.
+/// an earlier run left, and at a terminal puts it back where the user agrees; where it was decided before, `asks` is false.
 ///
 /// # Errors
 /// With `--set-logging`: the vehicle does not answer or take the values, or has to be restarted for them.
-pub fn before_flight(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
+pub fn before_flight(args: &FlyArgs, asks: bool) -> Result<BeforeFlight, CommandError> {
     if args.set_logging {
         return network::block_on(set(args));
     }
     if !state::has_notes() {
         return Ok(BeforeFlight::default());
     }
-    match network::block_on(reminded(args)) {
+    match network::block_on(reminded(args, asks)) {
         Err(error @ CommandError::Ended(_)) => Err(error),
         Err(error) => {
             output::warning(&format!("what an earlier run changed of the logging is not looked at: {error}"));
@@ -81,8 +81,8 @@ async fn set(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
     let names: Vec<&str> = changes.iter().map(|change| change.parameter).collect();
     if onboard::needs_restart(&session, &names) {
         return Err(CommandError::Failure(format!(
-            "not flown: {what} is set and counts after a restart of the autopilot: restart it, then give the same command \
-             again (mavid does not restart it). Without a flight, {} puts it back",
+            "not flown: {what} is set and counts after a restart of the autopilot: restart it (or have it restarted by mavid \
+             log prepare --set-logging --restart), then give the same command again. Without a flight, {} puts it back",
             hint::restore(&link)
         )));
     }
@@ -101,13 +101,18 @@ async fn set(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
         ));
     }
     if !changes.is_empty() {
-        output::message(&format!("logging: {what}; it is put back after the flight"));
+        let after = if args.keep_logging {
+            "it stays so after the flight"
+        } else {
+            "it is put back after the flight"
+        };
+        output::message(&format!("logging: {what}; {after}"));
     }
     let noted = notes.read().map_err(failed)?;
     Ok(BeforeFlight { system: Some(session.vehicle.system.0), noted, awaited: Vec::new() })
 }
 
-async fn reminded(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
+async fn reminded(args: &FlyArgs, asks: bool) -> Result<BeforeFlight, CommandError> {
     let link = link_of(args, args.system_id);
     let mut session = open_as(&link, SystemId(args.station_id), BEFORE).await?;
     let offer = session.offer().await?;
@@ -118,8 +123,8 @@ async fn reminded(args: &FlyArgs) -> Result<BeforeFlight, CommandError> {
         return Ok(before);
     }
     output::message(&earlier(&link, &noted));
-    if agreed("restore", "put it back now, before the flight")? {
-        let put_back = onboard::put_back(&mut session, &notes).await?;
+    if asks && agreed("restore", "put it back now, before the flight")? {
+        let put_back = onboard::put_back(&mut session, &notes, ChangedSince::Forgotten).await?;
         put_back_page(&put_back).lines().for_each(output::message);
     } else {
         before.awaited = onboard::look(&mut session, &notes).await?.awaited;
@@ -133,11 +138,20 @@ pub fn put_back(args: &FlyArgs, before: &BeforeFlight, tell: &mut impl FnMut(Wor
         return;
     }
     let link = link_of(args, before.system);
+    if args.keep_logging {
+        let (restore, all) = (hint::restore(&link), &before.noted);
+        let stays = all.iter().map(|noted| format!("{} stays {}", noted.name, noted.set)).collect::<Vec<_>>();
+        tell(Word::Message(format!(
+            "logging: {} for a further flight; {restore} puts it back",
+            stays.join(", ")
+        )));
+        return;
+    }
     let done = network::block_on(async {
         let mut session = open_as(&link, SystemId(args.station_id), AFTER).await?;
         let offer = session.offer().await?;
         let notes = state::notes(&session.known_as(&offer))?;
-        let put_back = onboard::put_back(&mut session, &notes).await?;
+        let put_back = onboard::put_back(&mut session, &notes, ChangedSince::Forgotten).await?;
         Ok((put_back_page(&put_back), put_back.failed.is_empty()))
     });
     match done {

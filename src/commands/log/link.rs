@@ -19,6 +19,14 @@ pub async fn open(args: &VehicleLinkArgs) -> Result<Session, CommandError> {
     begin(args, LinkOptions::default(), PATIENCE).await
 }
 
+/// The same for a vehicle that has to be heard within this time: its host may still refuse.
+pub(super) async fn open_patiently(
+    args: &VehicleLinkArgs,
+    patience: Duration,
+) -> Result<Session, CommandError> {
+    begin(args, LinkOptions { patient: true, ..LinkOptions::default() }, patience).await
+}
+
 /// The same by this station, for a vehicle that has to be heard within this time: its host may still refuse.
 pub(super) async fn open_as(
     args: &VehicleLinkArgs,

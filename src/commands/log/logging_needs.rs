@@ -22,6 +22,12 @@ pub struct LoggingNeeds {
     pub awaited: Option<String>,
     /// that what it logs suffices, as far as the vehicle tells
     pub suffices: Option<String>,
+    /// what it would log after the changes, in sentences without their ends
+    pub would_log: Vec<String>,
+    /// this program changed it before, and has not put it back
+    pub is_own: bool,
+    /// and one of these counts only after a restart of the autopilot, when it is put back as well
+    pub own_restarts: bool,
     /// parameters of logging that did not answer
     pub unknown: Vec<&'static str>,
 }
@@ -36,8 +42,15 @@ pub fn logging_needs(link: &VehicleLinkArgs) -> Result<LoggingNeeds, CommandErro
         let offer = session.offer().await?;
         let notes = state::notes(&session.known_as(&offer))?;
         let state = onboard::look(&mut session, &notes).await?;
-        let names: Vec<&str> = state.plan.changes.iter().map(|change| change.parameter).collect();
+        let changes = &state.plan.changes;
+        let names: Vec<&str> = changes.iter().map(|change| change.parameter).collect();
+        let own: Vec<&str> = state.noted.iter().map(|noted| noted.name.as_str()).collect();
+        let needed =
+            |name: &str| changes.iter().find(|change| change.parameter == name).map(|change| change.needed);
         Ok(LoggingNeeds {
+            would_log: session.stack.log_plan(needed).logs,
+            is_own: !own.is_empty(),
+            own_restarts: onboard::needs_restart(&session, &own),
             changes: changes_page(&state.plan.changes),
             restarts: onboard::needs_restart(&session, &names),
             awaited: (!state.awaited.is_empty()).then(|| restart_now(&state.awaited)),

@@ -7,6 +7,8 @@ mod hint;
 mod link;
 mod logging_needs;
 mod prepare;
+mod restart;
+mod several;
 mod state;
 mod verb;
 
@@ -16,5 +18,6 @@ pub use hint::link_options;
 pub use link::{Answered, open, parameters_of_vehicle};
 pub use logging_needs::{LoggingNeeds, logging_needs};
 pub use prepare::{agreed, all_put_back, put_back_page};
+pub use several::{put_back_now, set_and_restart};
 pub use state::notes_of_loaded;
 pub use verb::run;

@@ -5,11 +5,12 @@ use std::io::{self, BufRead, IsTerminal};
 
 use mavid::autopilot::{LogAwaited, LogChange};
 use mavid::fetch::Noted;
-use mavid::onboard::{self, LoggingState, PutBack, Session};
+use mavid::onboard::{self, ChangedSince, LoggingState, PutBack, Session};
 use mavid::text;
 use serde::Serialize;
 
 use super::link::open;
+use super::restart::restart;
 use super::{hint, state};
 use crate::cli::{LogPrepareArgs, VehicleLinkArgs};
 use crate::commands::{CommandError, Outcome, output};
@@ -63,8 +64,7 @@ struct RestoredLine {
 
 impl Document {
     /// Of a vehicle of which nothing else is to be said.
-    fn of(session: &Session) -> Self {
-        let (system, autopilot) = (session.vehicle.system.0, session.stack.id);
+    fn of((system, autopilot): (u32, &'static str)) -> Self {
         Self { schema: 1, system, autopilot, ..Self::default() }
     }
 }
@@ -77,7 +77,7 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
     notes.read().map_err(|error| CommandError::Input(error.to_string()))?;
     let place = text::path(&notes.path());
     if args.restore {
-        let put_back = onboard::put_back(&mut session, &notes).await?;
+        let put_back = onboard::put_back(&mut session, &notes, ChangedSince::Forgotten).await?;
         return restored(json, &session, &put_back, place);
     }
     let prepared = onboard::look(&mut session, &notes).await?;
@@ -93,7 +93,13 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
         onboard::change(&mut session, &prepared, changes, &notes).await?;
     }
     let names: Vec<&str> = changes.iter().map(|change| change.parameter).collect();
-    let restart = set && onboard::needs_restart(&session, &names);
+    let awaits = set && onboard::needs_restart(&session, &names) || !prepared.awaited.is_empty();
+    let (known, whose) = (expect_rates(&session, &prepared), whose(&session));
+    let restarts = args.restart && awaits;
+    if restarts {
+        restart(session, &args.link).await?;
+    }
+    let awaits = awaits && !restarts;
     if json {
         let line = |change: &LogChange| ChangeLine {
             parameter: change.parameter,
@@ -102,32 +108,42 @@ pub async fn run(json: bool, args: &LogPrepareArgs) -> Result<Outcome, CommandEr
             restarts: change.restarts,
             set,
         };
+        let awaited = prepared.awaited.iter().filter(|_| awaits).map(|awaited| awaited.parameter);
         output::json(&Document {
             logs: prepared.plan.logs.clone(),
             changes: changes.iter().map(line).collect(),
             unknown: prepared.plan.unknown.clone(),
-            awaiting_restart: prepared.awaited.iter().map(|awaited| awaited.parameter).collect(),
+            awaiting_restart: awaited.collect(),
             notes: (set || !prepared.noted.is_empty()).then_some(place),
-            restart: restart || !prepared.awaited.is_empty(),
-            ..Document::of(&session)
+            restart: awaits,
+            ..Document::of(whose)
         })?;
     } else if set {
-        output::text(&set_page(&args.link, &place, restart))?;
+        output::text(&set_page(&args.link, &place, (awaits, restarts)))?;
+    } else if restarts {
+        output::text("the autopilot was restarted: it logs by what was set")?;
     } else if !changes.is_empty() {
         output::text("nothing is changed; --set-logging sets it")?;
     }
-    if args.set_logging {
-        expect_rates(&session, &prepared)?;
-    }
-    Ok(Outcome::Done)
+    if args.set_logging { known.map(|()| Outcome::Done) } else { Ok(Outcome::Done) }
+}
+
+/// Number and autopilot of a vehicle.
+fn whose(session: &Session) -> (u32, &'static str) {
+    (session.vehicle.system.0, session.stack.id)
 }
 
 /// What was set, for people.
-fn set_page(link: &VehicleLinkArgs, place: &str, restart: bool) -> String {
+fn set_page(link: &VehicleLinkArgs, place: &str, (awaits, restarted): (bool, bool)) -> String {
     let restore = hint::restore(link);
     let mut page = format!("set; what was found stands in {place}\nafter the flight: {restore} puts it back");
-    if restart {
-        page.push_str("\nrestart the autopilot now: until then it logs as before. mavid does not restart it");
+    if awaits {
+        page.push_str(
+            "\nrestart the autopilot now: until then it logs as before. With --restart mavid restarts it",
+        );
+    }
+    if restarted {
+        page.push_str("\nthe autopilot was restarted: it logs by what was set");
     }
     page
 }
@@ -183,7 +199,8 @@ pub fn restart_now(awaited: &[LogAwaited]) -> String {
         format!("{parameter} = {set} is set, and it still runs by {runs_by}")
     });
     format!(
-        "the autopilot was not restarted since its logging was set ({}): restart it now, mavid does not restart it",
+        "the autopilot was not restarted since its logging was set ({}): restart it now, or have it restarted by \
+         mavid log prepare --set-logging --restart",
         list.collect::<Vec<_>>().join("; ")
     )
 }
@@ -256,7 +273,7 @@ fn restored(
             not_restored: put_back.failed.iter().map(not_restored).collect(),
             notes: (!put_back.failed.is_empty()).then(|| place.clone()),
             restart: put_back.restart,
-            ..Document::of(session)
+            ..Document::of(whose(session))
         })?;
     } else {
         output::text(&put_back_page(put_back))?;

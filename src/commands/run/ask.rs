@@ -63,13 +63,22 @@ impl Ask {
 
     /// Yes or no; return alone is yes. Where nobody is there, `alone` is the answer.
     pub fn agreed(self, question: &str, alone: bool) -> Result<bool, CommandError> {
-        let parse = |answer: &str| match answer.to_ascii_lowercase() {
-            yes if YES.contains(&yes.as_str()) => Ok(true),
-            no if NO.contains(&no.as_str()) => Ok(false),
-            _ => Err("y or n".to_owned()),
-        };
         let question = format!("{question} [Y/n]");
-        Ok(self.value(&question, parse, || Ok(Some(alone)))?.unwrap_or(true))
+        Ok(self.value(&question, yes_or_no, || Ok(Some(alone)))?.unwrap_or(true))
+    }
+
+    /// Yes or no; return alone is no, and so it is where nobody is there.
+    pub fn agreed_expressly(self, question: &str) -> Result<bool, CommandError> {
+        let question = format!("{question} [y/N]");
+        Ok(self.value(&question, yes_or_no, || Ok(None))?.unwrap_or(false))
+    }
+}
+
+fn yes_or_no(answer: &str) -> Result<bool, String> {
+    match answer.to_ascii_lowercase() {
+        yes if YES.contains(&yes.as_str()) => Ok(true),
+        no if NO.contains(&no.as_str()) => Ok(false),
+        _ => Err("y or n".to_owned()),
     }
 }
 
@@ -110,6 +119,7 @@ mod tests {
     fn nobody_is_asked_where_yes_was_said() {
         let ask = Ask::new(true).unwrap();
         assert!(!ask.is_person() && ask.agreed("?", true).unwrap() && !ask.agreed("?", false).unwrap());
+        assert!(!ask.agreed_expressly("?").unwrap());
         let doubt = || Err(CommandError::Input("doubt".to_owned()));
         assert!(ask.value("?", |_| Ok(1), doubt).is_err());
     }

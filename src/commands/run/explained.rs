@@ -66,7 +66,8 @@ pub fn explained(
     let study = match shown {
         Some(shown) => {
             let study = made(context, &step, &shown)?;
-            shown.answered(answer(&study), context.ask.is_person());
+            // the view has its own columns
+            shown.answered(sentences(&study).join("\n"), context.ask.is_person());
             study
         }
         None => made(context, &step, &Spinner::new(context.stderr))?,
@@ -105,8 +106,11 @@ fn remark(study: &ExplainStudy) {
 
 /// The answer, and what a further flight would bring, in lines of the terminal.
 pub fn answer(study: &ExplainStudy) -> String {
-    let sentences = [Some(explanation_answer(study)), next_flight_words(study)];
-    let lines =
-        sentences.into_iter().flatten().map(|sentence| text::wrapped(&sentence, columns()).join("\n"));
+    let lines = sentences(study).into_iter().map(|sentence| text::wrapped(&sentence, columns()).join("\n"));
     lines.collect::<Vec<_>>().join("\n")
+}
+
+/// The same as sentences.
+fn sentences(study: &ExplainStudy) -> Vec<String> {
+    [Some(explanation_answer(study)), next_flight_words(study)].into_iter().flatten().collect()
 }

@@ -22,6 +22,7 @@ mod explained;
 mod finish;
 mod flying;
 mod folder;
+mod logging;
 mod page;
 mod planned;
 mod progress;

@@ -13,6 +13,7 @@ use super::context::Context;
 use super::embedded::Embedded;
 use super::explained;
 use super::flying::{fly, step_of};
+use super::logging::Logging;
 use super::step::Step;
 use super::target::{Target, WARM_UP_S};
 use super::vehicle::{asked, autopilot};
@@ -40,7 +41,7 @@ pub fn rehearse(context: &Context<'_>, vehicle: &Vehicle, trajectory: &Path) -> 
     context.tell(&step);
     let twin = Target { connect: embedded.address(), system: None, embedded: Some(embedded) };
     let out = free(context)?;
-    let step = step_of(context, &twin, (trajectory, &out), false);
+    let step = step_of(context, &twin, (trajectory, &out), Logging::Left);
     let flown = fly(context, &twin, &step);
     twin.embedded.into_iter().for_each(Embedded::stop);
     let flight = flown.map_err(|error| {

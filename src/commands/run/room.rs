@@ -107,12 +107,16 @@ pub fn of_folder(
         Some(numbers) => sides(numbers).map_err(option)?,
         None => asked(ask, vehicle, is_simulated)?,
     };
-    let came = |why: String| {
-        let [x, y, z] = sides_m;
-        option(format!("{why}, got {x},{y},{z}"))
-    };
-    let limits = limits_in(sides_m, vehicle).map_err(came)?;
-    output::file(&path, &text_of(&limits))
+    output::file(&path, &text_of(&fits(sides_m, vehicle)?))
+}
+
+/// The limits inside the room of the option for this vehicle.
+///
+/// # Errors
+/// The room is too small.
+pub fn fits(sides_m: [f64; 3], vehicle: &Vehicle) -> Result<Limits, CommandError> {
+    limits_in(sides_m, vehicle)
+        .map_err(|why| CommandError::Input(format!("--room: expected {why}, got {}", came(&sides_m))))
 }
 
 fn asked(ask: Ask, vehicle: &Vehicle, is_simulated: bool) -> Result<[f64; 3], CommandError> {
@@ -182,5 +186,7 @@ mod tests {
         // whoever asks says what came
         assert!(!typed("large").unwrap_err().contains("got") && !said.contains("got"), "{said}");
         assert!(sides(&[4.0]).unwrap_err().ends_with(", got 4"));
+        let small = fits([1.0, 1.0, 1.0], &vehicle).unwrap_err().to_string();
+        assert!(small.ends_with(", got 1,1,1") && small.matches("got").count() == 1, "{small}");
     }
 }

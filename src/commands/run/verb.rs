@@ -6,6 +6,7 @@ use std::time::Instant;
 use mavid::config::{parse_vehicle, read_vehicle};
 use mavid::fly::Record;
 use mavid::link::Address;
+use mavid::study::check_given;
 use mavid::vehicle::Vehicle;
 
 use super::ask::Ask;
@@ -14,6 +15,7 @@ use super::context::{Context, Recipe};
 use super::embedded::Embedded;
 use super::explained::{Explained, answer, explained};
 use super::folder::{Folder, Recorded};
+use super::logging::{self, Logging};
 use super::page::{Document, Made, places};
 use super::target::Target;
 use super::{finish, flying, planned, rehearsal, room, vehicle};
@@ -75,8 +77,10 @@ pub fn story(
 
 /// What can be told before anybody is spoken to.
 fn checked(args: &RunArgs) -> Result<(), CommandError> {
-    if let Some(numbers) = &args.room {
-        room::sides(numbers).map_err(|why| CommandError::Input(format!("--room: expected {why}")))?;
+    let sides_m = args.room.as_deref().map(room::sides).transpose();
+    let sides_m = sides_m.map_err(|why| CommandError::Input(format!("--room: expected {why}")))?;
+    if let Some(mass_kg) = args.mass {
+        check_given(&args.shape.given(mass_kg))?;
     }
     within(("--tracking-max", args.tracking_max, TRACKING_MOST_M))?;
     if let Some(Err(error)) = args.connect.as_deref().map(str::parse::<Address>) {
@@ -84,6 +88,11 @@ fn checked(args: &RunArgs) -> Result<(), CommandError> {
     }
     if let Some(file) = &args.effects {
         acting(file, &flying_vehicle(args)?)?;
+    }
+    if let (Some(file), Some(sides_m)) = (&args.vehicle, sides_m) {
+        room::fits(sides_m, &read_vehicle(file)?.vehicle)?;
+    } else if let Some(file) = &args.vehicle {
+        read_vehicle(file)?;
     }
     Ok(())
 }
@@ -106,7 +115,7 @@ struct FlownFlights {
 
 /// Flies until every name is certain, or nobody wants a further flight.
 fn all_flights(context: &Context<'_>) -> Result<FlownFlights, CommandError> {
-    let mut flights = context.folder.flights();
+    let flights = context.folder.flights();
     let is_over = flights.len() >= context.flights_max();
     context.stage("Vehicle");
     let mut target = if is_over { None } else { Some(Target::of(context)?) };
@@ -117,23 +126,39 @@ fn all_flights(context: &Context<'_>) -> Result<FlownFlights, CommandError> {
     let is_simulated = context.args.sitl;
     context.stage("Room and trajectory");
     room::of_folder((&context.folder, context.ask), context.args.room.as_deref(), &vehicle, is_simulated)?;
-    let (mut record, mut logging) = (None, None);
+    let mut logging = None;
+    let flown = fly_all(context, &vehicle, (target.as_mut(), &mut logging), flights);
+    if let (Some(Logging::UntilTheEnd), Some(target)) = (logging, &target) {
+        logging::put_back(context, target);
+    }
+    target.and_then(|target| target.embedded).into_iter().for_each(Embedded::stop);
+    flown
+}
+
+/// Flies and explains, until that is enough.
+fn fly_all(
+    context: &Context<'_>,
+    vehicle: &Vehicle,
+    (mut target, logging): (Option<&mut Target>, &mut Option<Logging>),
+    mut flights: Vec<Recorded>,
+) -> Result<FlownFlights, CommandError> {
+    let mut record = None;
     let mut done = None;
     if flights.is_empty() {
-        let trajectory = planned::first(context, &vehicle)?;
-        let Some(target) = &mut target else { return Err(nothing_flown()) };
+        let trajectory = planned::first(context, vehicle)?;
+        let Some(target) = target.as_deref_mut() else { return Err(nothing_flown()) };
         if context.args.rehearse {
             context.stage("Rehearsal on the embedded twin");
             rehearsal::prepare(context, target, vehicle.body.mass_kg)?;
-            rehearsal::rehearse(context, &vehicle, &trajectory)?;
+            rehearsal::rehearse(context, vehicle, &trajectory)?;
         }
-        record = Some(fly_one(context, target, (&trajectory, &mut logging), &mut flights)?);
+        record = Some(fly_one(context, target, (&trajectory, logging), &mut flights)?);
     }
     loop {
         context.stage(if flights.len() == 1 { "Explanation" } else { "Explanation of all flights together" });
         let study = &done.insert(explained(context, &flights, record.as_ref())?).study;
         let goes_on = record.as_ref().is_none_or(|record: &Record| record.outcome.is_whole());
-        let Some(target) = target.as_ref().filter(|_| goes_on && flights.len() < context.flights_max())
+        let Some(target) = target.as_deref().filter(|_| goes_on && flights.len() < context.flights_max())
         else {
             break;
         };
@@ -144,10 +169,9 @@ fn all_flights(context: &Context<'_>) -> Result<FlownFlights, CommandError> {
             break;
         }
         context.stage("Next flight");
-        let trajectory = planned::further(context, &vehicle, flights.len() + 1)?;
-        record = Some(fly_one(context, target, (&trajectory, &mut logging), &mut flights)?);
+        let trajectory = planned::further(context, vehicle, flights.len() + 1)?;
+        record = Some(fly_one(context, target, (&trajectory, logging), &mut flights)?);
     }
-    target.and_then(|target| target.embedded).into_iter().for_each(Embedded::stop);
     Ok(FlownFlights { explained: done.ok_or_else(nothing_flown)?, record, flights: flights.len() })
 }
 
@@ -168,16 +192,16 @@ fn wants_next_flight(
 fn fly_one(
     context: &Context<'_>,
     target: &Target,
-    (trajectory, logging): (&std::path::Path, &mut Option<bool>),
+    (trajectory, logging): (&std::path::Path, &mut Option<Logging>),
     flights: &mut Vec<Recorded>,
 ) -> Result<Record, CommandError> {
     context.stage("Flight");
-    let set_logging = match *logging {
+    let logging = match *logging {
         Some(known) => known,
-        None => *logging.insert(flying::may_set_logging(context, target)?),
+        None => *logging.insert(logging::decided(context, target)?),
     };
     let out = context.folder.new_flight();
-    let step = flying::step_of(context, target, (trajectory, &out), set_logging);
+    let step = flying::step_of(context, target, (trajectory, &out), logging);
     let flight = flying::fly(context, target, &step)?;
     flights.push(flight.recorded);
     Ok(flight.record)

@@ -27,7 +27,7 @@ pub(super) fn finding(parameters: &Parameters, awaited: &[LogAwaited]) -> Option
             format!("{parameter} = {set} was set since the autopilot's last start, it runs by {runs_by}")
         });
         let came: Vec<String> = list.chain(plan.logs).collect();
-        let remedy = "restart the autopilot (mavid does not restart it)";
+        let remedy = "restart the autopilot (mavid log prepare --set-logging --restart does it)";
         return Some(Finding::warning(SUBJECT, expected, came.join("; "), remedy));
     }
     if plan.changes.is_empty() {

@@ -20,6 +20,8 @@ pub struct StageView {
     pub elapsed_s: f64,
     /// steps that are done, and all of them, where they are counted
     pub steps: Option<(u64, u64)>,
+    /// how many steps there are is an estimate
+    pub is_estimate: bool,
 }
 
 impl StageView {
@@ -35,7 +37,10 @@ impl StageView {
         match (self.steps, self.left_s()) {
             (Some((done, all)), Some(left_s)) if done < all => {
                 let bar = bar(done as f64 / all.max(1) as f64, BAR_COLUMNS);
-                format!("{name}  {bar} {done} of {all}, {left_s:.0} s left")
+                match self.is_estimate {
+                    true => format!("{name}  {bar} about {left_s:.0} s left"),
+                    false => format!("{name}  {bar} {done} of {all}, {left_s:.0} s left"),
+                }
             }
             _ => format!("{name}, {elapsed_s:.0} s"),
         }

@@ -8,7 +8,9 @@ use super::pictures;
 use super::text::{after, scale, unseen};
 use crate::diagnose::holdout::RateLaw;
 use crate::diagnose::{Empirical, NO_LATENCY, Named, Slight, Verdict, called, clause};
-use crate::report::html::{self, Cell, folded, note, number, paragraph, section, table, text, warning};
+use crate::report::html::{
+    self, Cell, folded, folded_numbers, note, number, paragraph, section, table, text, warning,
+};
 use crate::report::number::{chance, significant, spoken, with_error};
 use crate::report::page::page;
 use crate::report::quality::data_quality;
@@ -144,7 +146,8 @@ fn empirical(term: &Empirical) -> Markup {
     };
     let rows: Vec<Vec<Cell>> = term.knots.iter().zip(&term.force_n).map(row).collect();
     let at = format!("{} ({})|", term.along.name(), term.along.unit());
-    html! { (paragraph(&what)) (table("Empirical force", &[&at, "x (N)|", "y (N)|", "z (N)|"], &rows)) }
+    let knots = table("Empirical force", &[&at, "x (N)|", "y (N)|", "z (N)|"], &rows);
+    html! { (paragraph(&what)) (folded_numbers(&format!("Its {} knots", rows.len()), &knots)) }
 }
 
 fn rate_law(law: &RateLaw) -> Markup {

@@ -110,6 +110,19 @@ impl Parameters {
         true
     }
 
+    /// What the autopilot's controllers make of values that they cannot use, and what is said of it: PX4's hover thrust stays
+    /// within its least and its largest thrust. Nothing where they can use all.
+    pub(in crate::sitl) fn constrain(&mut self) -> Option<&'static str> {
+        if !self.autopilot.is_px4() {
+            return None;
+        }
+        let [hover, least, most] =
+            ["MPC_THR_HOVER", "MPC_THR_MIN", "MPC_THR_MAX"].map(|name| self.value(name));
+        let usable = hover.min(most).max(least);
+        (usable != hover).then(|| self.set("MPC_THR_HOVER", usable))?;
+        Some("Hover thrust has been constrained by min/max thrust")
+    }
+
     /// What a PARAM_SET of this type and these bytes asks for; `None` where PX4 refuses the type.
     pub(in crate::sitl) fn decode(&self, at: usize, kind: u8, payload: Payload) -> Option<f64> {
         let parameter = self.list.get(at)?;

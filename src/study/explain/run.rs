@@ -127,7 +127,8 @@ impl Task<'_> {
         (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
     ) -> Result<ExplainStudy, StudyError> {
         let settings = ExplainSettings::default();
-        let explanation = crate::diagnose::explain(&flights.signals, self.vehicle, &settings)
+        let tell = |done, of| self.progress.about(done, of);
+        let explanation = crate::diagnose::explain_watched(&flights.signals, self.vehicle, &settings, &tell)
             .map_err(|source| StudyError::Explain { logs: names(&self.request.logs), source })?;
         let given = Given {
             vehicle: self.vehicle.clone(),
