@@ -24,6 +24,24 @@ pub struct Given {
     pub frame: Option<&'static Frame>,
 }
 
+impl Given {
+    /// Whether a vehicle can have these numbers.
+    ///
+    /// # Errors
+    /// [`DraftError::Given`] with the number that none has.
+    pub fn check(&self) -> Result<(), DraftError> {
+        let within = |what, unit, (least, most): (f64, f64), came: f64| {
+            if (least..=most).contains(&came) {
+                Ok(())
+            } else {
+                Err(DraftError::Given { what, least, most, unit, came })
+            }
+        };
+        within("mass", "kg", MASSES_KG, self.mass_kg)?;
+        self.size_m.map_or(Ok(()), |size_m| within("size", "m", SIZES_M, size_m))
+    }
+}
+
 /// A vehicle, and where its values come from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Draft {
@@ -94,15 +112,7 @@ pub fn actuator_of(recording: &Recording) -> Actuator {
 /// # Errors
 /// [`DraftError`] where a given number is no vehicle's, or the parameters do not say where the rotors are.
 pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, DraftError> {
-    let within = |what, unit, (least, most): (f64, f64), came: f64| {
-        if (least..=most).contains(&came) {
-            Ok(())
-        } else {
-            Err(DraftError::Given { what, least, most, unit, came })
-        }
-    };
-    within("mass", "kg", MASSES_KG, given.mass_kg)?;
-    given.size_m.map_or(Ok(()), |size_m| within("size", "m", SIZES_M, size_m))?;
+    given.check()?;
     let stack = recording.autopilot.stack();
     let outputs = stack.map(|stack| &stack.outputs);
     let parameter = |name: &str| recording.parameters.get(name).copied();

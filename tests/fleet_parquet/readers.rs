@@ -6,7 +6,7 @@ use std::process::Command;
 use mavid::fleet::{PartsFolder, Schema};
 use serde_json::json;
 
-use crate::support::python::ask;
+use crate::python::ask;
 use crate::support::require::{Needed, skip};
 
 #[test]
