@@ -18,6 +18,23 @@ from pyspark.sql import functions as f
 from pyspark.sql.pandas.types import from_arrow_schema
 
 
+def empty_logs(spark: SparkSession, sources: list[str]) -> DataFrame:
+    """Logs without a byte. Spark leaves empty files out of what it reads, and they are rows as well."""
+    context = spark.sparkContext
+    found = []
+    for source in sources:
+        path = context._jvm.org.apache.hadoop.fs.Path(source)
+        system = path.getFileSystem(context._jsc.hadoopConfiguration())
+        for status in system.globStatus(path) or []:
+            files = system.listFiles(status.getPath(), True)
+            while files.hasNext():
+                file = files.next()
+                name = file.getPath().toString()
+                if file.getLen() == 0 and name.rsplit(".", 1)[-1] in fleet_command.ENDINGS:
+                    found.append((name, bytearray()))
+    return spark.createDataFrame(found, "path string, content binary")
+
+
 def make(spark: SparkSession, sources: list[str], out: str, **options: Any) -> int:
     """Writes the tables of all logs below the sources into `out`; gives the number of logs."""
 
@@ -31,6 +48,7 @@ def make(spark: SparkSession, sources: list[str], out: str, **options: Any) -> i
     endings = ",".join(fleet_command.ENDINGS)
     files = spark.read.format("binaryFile").option("pathGlobFilter", f"*.{{{endings}}}")
     logs = files.option("recursiveFileLookup", "true").load(sources).select("path", "content")
+    logs = logs.unionAll(empty_logs(spark, sources))
     found: DataFrame = logs.mapInPandas(study, "uri string, log string, table string, row string").persist()
     # of logs with the same bytes, the rows of one
     first = found.where("table = 'logs'").groupBy("log").agg(f.min("uri").alias("uri"))

@@ -189,7 +189,7 @@ fn stores_of_google_and_azure_give_the_same_rows_as_files() {
     assert_eq!(expected.logs.len(), 2);
     for scheme in ["gs", "az"] {
         let out = at.join(scheme);
-        run(&format!("{scheme}://flights/2026/*"), out.to_str().unwrap());
+        run(&format!("{scheme}://flights/2026/**/*"), out.to_str().unwrap());
         assert_eq!(rows(&out, &format!("{scheme}://flights/2026"), "logs"), expected);
     }
     // tables beside them

@@ -107,7 +107,7 @@ def az(program: str, at: Path, folder: Path, expected: dict[str, list[str]]) -> 
     azurite = os.environ.get("AZURITE") or shutil.which("azurite-blob")
     if azurite is None:
         return print("az: skipped, there is no azurite-blob (npm install azurite)")
-    command = [azurite, "--blobHost", "127.0.0.1", "--blobPort", str(port), "--inMemoryPersistence", "--silent", "--skipApiVersionCheck"]
+    command = [azurite, "--blobHost", "127.0.0.1", "--blobPort", str(port), "--inMemoryPersistence", "--silent", "--skipApiVersionCheck", "--disableTelemetry"]
     process = subprocess.Popen(command, cwd=folder)
     try:
         wait_for(port)
@@ -179,7 +179,7 @@ def main() -> None:
     assert run.returncode == 3, (run.returncode, run.stdout, run.stderr)
     expected = moved(rows(folder / "local"), str(at))
     assert len(expected["logs"]) == 4, json.dumps(expected["logs"])
-    for store in (https, s3, az):
+    for store in (s3, az, https):
         store(program, at, folder, expected)
 
 
