@@ -138,7 +138,7 @@ fn a_later_flight_is_told_on_the_clock_of_the_log() {
     // a flight for which the bounds have no room is told, and is no loss of the log
     let of_one = screen(&fixture("px4_flight.ulg"), &ScreenSettings::default()).unwrap();
     assert!((found.airborne_s - 2.0 * of_one.airborne_s).abs() < 6.0, "{found:?}");
-    let bounds = Bounds { numbers: 40_000, ..Bounds::default() };
+    let bounds = Bounds { numbers: 10_000, ..Bounds::default() };
     let bounded = screen(&twice, &ScreenSettings { bounds, ..ScreenSettings::default() }).unwrap();
     assert!(is_told(&bounded, "s of flight at the end are not looked at"), "{bounded:?}");
     assert!(!ids(&bounded).contains(&"data_lost"), "{bounded:?}");
