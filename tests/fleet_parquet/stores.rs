@@ -25,7 +25,9 @@ fn mavid(arguments: &[&str], server: &Server) -> Output {
     command.args(arguments).env_remove("HTTP_PROXY").env_remove("http_proxy").env("NO_PROXY", "127.0.0.1");
     command.env("AWS_ENDPOINT", format!("http://{}", server.address)).env("AWS_ALLOW_HTTP", "true");
     command.env("GOOGLE_BASE_URL", format!("http://{}", server.address)).env("GOOGLE_ALLOW_HTTP", "true");
-    command.env("GOOGLE_SKIP_SIGNATURE", "true").env("AZURE_STORAGE_USE_EMULATOR", "true");
+    let open =
+        r#"{"private_key": "none", "private_key_id": "none", "client_email": "none", "disable_oauth": true}"#;
+    command.env("GOOGLE_SERVICE_ACCOUNT_KEY", open).env("AZURE_STORAGE_USE_EMULATOR", "true");
     command.env("AZURITE_BLOB_STORAGE_URL", format!("http://{}", server.address));
     command.env("AWS_ACCESS_KEY_ID", "key").env("AWS_SECRET_ACCESS_KEY", "secret").env("AWS_REGION", "here");
     command.output().unwrap()
