@@ -8,10 +8,10 @@ lost, and writes the tables as Parquet: `mavid fleet report` and whatever reads 
 
 from __future__ import annotations
 
-import argparse
 import json
 from typing import Any
 
+import fleet_command
 import mavid
 import numpy as np
 import pyarrow as pa
@@ -19,8 +19,6 @@ import pyarrow.fs
 import pyarrow.parquet
 import ray
 
-#: files that are logs
-ENDINGS = ["tlog", "ulg", "bin", "log", "csv", "BIN", "LOG", "ULG", "TLOG", "CSV"]
 COLUMNS = ("uri", "log", "table", "row")
 
 
@@ -50,7 +48,7 @@ def heads(batch: pa.Table) -> pa.Table:
 def make(sources: list[str], out: str, parallel: int = 200, **options: Any) -> int:
     """Writes the tables of all logs below the sources into `out`; gives the number of logs."""
     logs = ray.data.read_binary_files(
-        sources, include_paths=True, file_extensions=ENDINGS, override_num_blocks=parallel
+        sources, include_paths=True, file_extensions=fleet_command.ENDINGS, override_num_blocks=parallel
     )
     # the dear part, done once: it stays in the cluster's memory, and on its disks
     found = logs.map_batches(study, batch_size=1, fn_kwargs={"options": options}, num_cpus=1).materialize()
@@ -72,12 +70,7 @@ def make(sources: list[str], out: str, parallel: int = 200, **options: Any) -> i
 
 
 def main() -> None:
-    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    arguments.add_argument("sources", nargs="+", help="folders or files, as Ray reads them")
-    arguments.add_argument("--out", required=True)
-    arguments.add_argument("--depth", choices=["inspect", "balance", "explain"], default="explain")
-    arguments.add_argument("--vehicles", help="as of mavid fleet; every computer reads it at this path")
-    given = arguments.parse_args()
+    given = fleet_command.given("Ray")
     ray.init()
     print(make(given.sources, given.out, depth=given.depth, vehicles=given.vehicles), "logs")
 

@@ -8,17 +8,31 @@ the wheel, and Java.
 
 from __future__ import annotations
 
-import argparse
 from typing import Any, Iterator
 
+import fleet_command
 import mavid
 import pandas as pd
 from pyspark.sql import DataFrame, SparkSession
 from pyspark.sql import functions as f
 from pyspark.sql.pandas.types import from_arrow_schema
 
-#: files that are logs
-ENDINGS = "*.{tlog,ulg,bin,log,csv,BIN,LOG,ULG,TLOG,CSV}"
+
+def empty_logs(spark: SparkSession, sources: list[str]) -> DataFrame:
+    """Logs without a byte. Spark leaves empty files out of what it reads, and they are rows as well."""
+    context = spark.sparkContext
+    found = []
+    for source in sources:
+        path = context._jvm.org.apache.hadoop.fs.Path(source)
+        system = path.getFileSystem(context._jsc.hadoopConfiguration())
+        for status in system.globStatus(path) or []:
+            files = system.listFiles(status.getPath(), True)
+            while files.hasNext():
+                file = files.next()
+                name = file.getPath().toString()
+                if file.getLen() == 0 and name.rsplit(".", 1)[-1] in fleet_command.ENDINGS:
+                    found.append((name, bytearray()))
+    return spark.createDataFrame(found, "path string, content binary")
 
 
 def make(spark: SparkSession, sources: list[str], out: str, **options: Any) -> int:
@@ -31,8 +45,10 @@ def make(spark: SparkSession, sources: list[str], out: str, **options: Any) -> i
                 uri = path.removeprefix("file:")
                 yield pd.DataFrame(mavid.texts(bytes(log), uri, **options))
 
-    files = spark.read.format("binaryFile").option("pathGlobFilter", ENDINGS).option("recursiveFileLookup", "true")
-    logs = files.load(sources).select("path", "content")
+    endings = ",".join(fleet_command.ENDINGS)
+    files = spark.read.format("binaryFile").option("pathGlobFilter", f"*.{{{endings}}}")
+    logs = files.option("recursiveFileLookup", "true").load(sources).select("path", "content")
+    logs = logs.unionAll(empty_logs(spark, sources))
     found: DataFrame = logs.mapInPandas(study, "uri string, log string, table string, row string").persist()
     # of logs with the same bytes, the rows of one
     first = found.where("table = 'logs'").groupBy("log").agg(f.min("uri").alias("uri"))
@@ -46,12 +62,7 @@ def make(spark: SparkSession, sources: list[str], out: str, **options: Any) -> i
 
 
 def main() -> None:
-    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    arguments.add_argument("sources", nargs="+", help="folders or files, as Spark reads them")
-    arguments.add_argument("--out", required=True)
-    arguments.add_argument("--depth", choices=["inspect", "balance", "explain"], default="explain")
-    arguments.add_argument("--vehicles", help="as of mavid fleet; every computer reads it at this path")
-    given = arguments.parse_args()
+    given = fleet_command.given("Spark")
     spark = SparkSession.builder.appName("mavid fleet").getOrCreate()
     print(make(spark, given.sources, given.out, depth=given.depth, vehicles=given.vehicles), "logs")
 

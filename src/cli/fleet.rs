@@ -1,5 +1,6 @@
 //! Arguments of the verbs for many logs of many vehicles.
 
+use super::given::ShapeArgs;
 use clap::{Args, Subcommand, ValueEnum};
 use mavid::fleet::Shard;
 use mavid::study::Depth;
@@ -67,6 +68,12 @@ pub struct FleetStudyArgs {
     /// what is known of the vehicles: [[vehicle]] with `name`, `file` or `mass`, and `logs`, `system` or `parameters`
     #[arg(long, value_name = "FILE")]
     pub vehicles: Option<PathBuf>,
+    /// mass with battery of every vehicle that is not listed, kg; they are told apart by their logs
+    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    pub mass: Option<f64>,
+    /// their shape
+    #[command(flatten)]
+    pub shape: ShapeArgs,
     /// how deep each log is studied
     #[arg(long, value_enum, default_value_t)]
     pub depth: DepthName,

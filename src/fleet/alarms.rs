@@ -8,6 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use serde::Serialize;
+use statrs::distribution::{Beta, ContinuousCDF};
 
 /// Most unchanged vehicles that are called changed, as a share: one of 200.
 pub const FALSE_ALARMS: f64 = 0.005;
@@ -39,21 +40,28 @@ impl FalseAlarms {
     /// several times are counted several times: of few blocks there are few orders.
     #[must_use]
     pub fn rate(&self) -> Option<(f64, f64)> {
-        use statrs::distribution::{Beta, ContinuousCDF};
-        if self.shuffled == 0 {
-            return None;
-        }
-        let (called, all) = (self.called as f64, self.shuffled as f64);
-        let most = if self.called == self.shuffled {
-            1.0
-        } else {
-            Beta::new(called + 1.0, all - called).map_or(1.0, |beta| beta.inverse_cdf(0.95))
-        };
-        Some((called / all, most))
+        let share = self.called as f64 / self.shuffled as f64;
+        (self.shuffled > 0).then(|| (share, greatest_rate(self.called, self.shuffled)))
     }
 }
 
-/// Shuffles the histories and finds the bound beyond which at most the wanted share of them is called changed. Time is no order
+/// The largest share of all histories that agrees at 95 % with so many called changed of those that were shuffled.
+fn greatest_rate(called: usize, shuffled: usize) -> f64 {
+    if called >= shuffled {
+        return 1.0;
+    }
+    let (called, all) = (called as f64, shuffled as f64);
+    Beta::new(called + 1.0, all - called).map_or(1.0, |beta| beta.inverse_cdf(0.95))
+}
+
+/// How many of the shuffled histories may be called changed, so that the rate is below the wanted one with 95 % confidence; 0 where
+/// there are too few of them for that.
+fn callable(shuffled: usize, wanted: f64) -> usize {
+    let is_sure = |called: &usize| greatest_rate(*called, shuffled) <= wanted;
+    (0..shuffled).take_while(is_sure).last().unwrap_or(0)
+}
+
+/// Shuffles the histories and finds the bound beyond which, with 95 % confidence, at most the wanted share of them is called changed. Time is no order
 /// there: what is found is chance. Flights of one day (or of one log, where logs have no date) are alike and stay together. Changes beyond
 /// the bound are no chance: they are taken out, and the bound is found again. Until then an order that divides the flights as the true
 /// one does, by its own change, is left out: of a few flights, one order in some tens does so.
@@ -83,10 +91,7 @@ pub fn calibrated(histories: &[VehicleHistory], wanted: f64, shuffles: u32) -> F
         blocks = mean(unchanged.iter().map(|of| of.blocks.len()));
         let strongest = strongest(&unchanged, shuffles);
         shuffled = strongest.len();
-        // a chance that falls between two counts is the lower
-        let allowed =
-            (0..shuffled).take_while(|count| (*count + 1) as f64 <= wanted * shuffled as f64).count();
-        let bound = strongest.get(allowed).copied().unwrap_or(0.0);
+        let bound = strongest.get(callable(shuffled, wanted)).copied().unwrap_or(0.0);
         let found = NAMED_SIGMAS.max(bound.next_up());
         called = strongest.iter().take_while(|sigmas| **sigmas >= found).count();
         let is_settled = found >= least_sigmas;
@@ -267,6 +272,15 @@ pub fn judge(history: &VehicleHistory) -> Judge<'_> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
+
+    #[test]
+    fn the_rate_is_below_the_wanted_one_with_confidence() {
+        // of n histories without a call the rate is below 3 / n
+        assert!((greatest_rate(0, 1000) - (1.0 - 0.05_f64.powf(0.001))).abs() < 1e-9);
+        assert_eq!([100, 500, 700, 1000, 2000].map(|shuffled| callable(shuffled, 0.005)), [0, 0, 0, 1, 4]);
+        assert!(greatest_rate(4, 2000) <= 0.005 && greatest_rate(5, 2000) > 0.005);
+        assert_eq!((callable(0, 0.5), greatest_rate(7, 7)), (0, 1.0));
+    }
 
     #[test]
     fn a_row_without_its_step_scatters_as_its_parts_do() {

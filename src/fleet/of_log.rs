@@ -107,7 +107,7 @@ fn studied(task: &LogTask, study: &AloneStudy) -> LogRows {
     };
     let of_log = OfLog { uri: &task.uri, own };
     let listed = task.settings.vehicles.of(&of_log);
-    let vehicle = listed.map_or_else(|| own_name(&of_log), |vehicle| vehicle.name.clone());
+    let vehicle = listed.and_then(|vehicle| vehicle.name.clone()).unwrap_or_else(|| own_name(&of_log));
     let kind = listed.map_or_else(|| own_type(&of_log), |vehicle| vehicle.type_name(&of_log));
     let start_utc_us = found.clock.start_utc_us.and_then(|us| i64::try_from(us).ok());
     let mut rows = LogRows {
@@ -165,7 +165,7 @@ fn status(task: &LogTask, study: &AloneStudy) -> &'static str {
 
 /// How a command on one log is told of the frame, and how a fleet is.
 const OF_ONE_LOG: &str = "give the frame (--frame quadrotor-x)";
-const OF_FLEET: &str = "list the vehicle in the file of --vehicles, with its file, or its mass and frame";
+const OF_FLEET: &str = "list the vehicle in the file of --vehicles, with its file, or its mass and frame, or give --mass and --frame";
 
 fn format_name(reading: &Reading) -> &'static str {
     match reading {

@@ -4,18 +4,20 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::autopilot::Frame;
-use crate::draft::Given;
+use crate::draft::{DraftError, Given};
 use crate::study::{AIRFRAME, OwnWords, SERIAL, VehicleGiven};
 use crate::text;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-/// One vehicle of the file. A log is its own if all that is stated here fits: the address, the system id, and the parameters.
+/// One vehicle of the file, or all that are built alike. A log is its own if all that is stated here fits: the address, the system id,
+/// and the parameters.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FleetVehicle {
-    /// name
-    pub name: String,
+    /// name; without one, vehicles that fit are told apart by what their logs say
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// vehicles of one type are compared; without it the name of its file, or what the logs say
     #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
     pub kind: Option<String>,
@@ -79,7 +81,11 @@ impl Vehicles {
         let mut vehicles: Self = toml::from_str(&written).map_err(|error| refused(error.to_string()))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         for vehicle in &mut vehicles.vehicle {
-            let of = |why: &str| refused(format!("vehicle `{}`: {why}", text::clean(&vehicle.name)));
+            let called = vehicle.name.as_deref().map_or_else(
+                || "vehicle without a name".to_owned(),
+                |name| format!("vehicle `{}`", text::clean(name)),
+            );
+            let of = |why: &str| refused(format!("{called}: {why}"));
             if vehicle.file.is_some() == vehicle.mass.is_some() {
                 return Err(of("expected a `file` or a `mass`, one of them"));
             }
@@ -95,6 +101,9 @@ impl Vehicles {
                     text::clean(frame)
                 )));
             }
+            if let VehicleGiven::Weighed(given) = vehicle.given() {
+                given.checked().map_err(|error| of(&error.to_string()))?;
+            }
             if let Some(file) = &mut vehicle.file {
                 *file = folder.join(&*file);
                 if !file.is_file() {
@@ -103,6 +112,22 @@ impl Vehicles {
             }
         }
         Ok(vehicles)
+    }
+
+    /// Adds what holds for all vehicles that are not listed: they are built alike, and told apart by what their logs say.
+    ///
+    /// # Errors
+    /// [`DraftError`] where no vehicle has such a mass or size.
+    pub fn otherwise(&mut self, given: &Given) -> Result<(), DraftError> {
+        given.checked()?;
+        self.vehicle.push(FleetVehicle {
+            mass: Some(given.mass_kg),
+            size: given.size_m,
+            frame: given.frame.map(Frame::id),
+            logs: Some("*".to_owned()),
+            ..FleetVehicle::default()
+        });
+        Ok(())
     }
 
     /// The vehicle of a log; `None`: of none that is listed.
@@ -198,10 +223,19 @@ mod tests {
         )
         .unwrap();
         let (none, some) = (BTreeMap::new(), BTreeMap::from([("SYS_AUTOSTART".to_owned(), 4001.0)]));
-        let of = |uri, parameters| vehicles.of(&log(uri, parameters)).map(|vehicle| vehicle.name.clone());
+        let of =
+            |uri, parameters| vehicles.of(&log(uri, parameters)).and_then(|vehicle| vehicle.name.clone());
         assert_eq!(of("x/a/1.ulg", &none).as_deref(), Some("a"));
         assert_eq!(of("x/c/1.ulg", &some).as_deref(), Some("b"));
         assert_eq!(of("x/c/1.ulg", &none), None);
+        // what is said of all others changes none that is listed
+        let mut more = vehicles.clone();
+        let given = |mass_kg| Given { mass_kg, size_m: Some(0.5), frame: None };
+        assert!(more.otherwise(&given(-1.0)).is_err() && more == vehicles);
+        more.otherwise(&given(3.0)).unwrap();
+        assert_eq!(more.of(&log("x/a/1.ulg", &none)).unwrap().name.as_deref(), Some("a"));
+        let other = more.of(&log("x/c/1.ulg", &none)).unwrap();
+        assert_eq!((&other.name, other.given()), (&None, VehicleGiven::Weighed(given(3.0))));
     }
 
     #[test]
@@ -237,6 +271,7 @@ mod tests {
             ("[[vehicle]]\nname = 'a'\nmass = 1\nframe = 'y'\nsystem = 1", "expected a frame"),
             ("[[vehicle]]\nname = 'a'\nmass = 1\nlogs = '['", "logs:"),
             ("[[vehicle]]\nname = 'a'\nmasss = 1", "unknown field"),
+            ("[[vehicle]]\nmass = -1\nsystem = 1", "vehicle without a name: expected a mass from"),
         ] {
             std::fs::write(&path, text).unwrap();
             let error = Vehicles::read(&path).unwrap_err().to_string();

@@ -6,7 +6,9 @@ use super::finding::{Amount, Finding, Gravity, Screening, Where};
 use super::settings::{Bounds, ScreenSettings};
 use crate::autopilot::VehicleKind;
 use crate::draft::{Given, draft};
-use crate::log::{Hold, Input, LogError, OpenOptions, OpenedFlights, ReadReport, open_flights};
+use crate::log::{
+    Hold, Input, LogError, LogFlight, Loss, OpenOptions, OpenedFlights, ReadReport, open_flights,
+};
 use crate::recording::{Quantity, Recording};
 use crate::signals::{
     ConditionSettings, OffMixer, ReportedState, Signals, ThrustPreference, adopt_in_flight_parameters,
@@ -72,19 +74,22 @@ fn screened(log: &[u8], settings: &ScreenSettings) -> Result<Screening, LogError
         ));
     }
     let opened = OpenedFlights { flights, report };
-    screening.findings.extend(lost(&opened.report, used.len() < log.len()));
+    let cut = (used.len() < log.len()).then_some(used);
+    screening.findings.extend(lost(&opened.report, cut));
+    screening.not_done.extend(not_held(&opened.report));
     match refused(&opened) {
         Some(why) => screening.not_done.push(why),
         None => {
             let mut mass = Some("effects are not searched: the mass of the vehicle was not given".to_owned());
+            let is_one = opened.flights.flights.len() == 1;
             for flight in opened.flights.flights {
-                let before = screening.findings.len();
-                look_at(flight.recording, settings, &mut screening);
-                // a part of a log has a clock of its own
-                let begins_s = flight.part_s.map_or(0.0, |(from_s, _)| from_s);
-                for finding in &mut screening.findings[before..] {
-                    finding.span_s =
-                        finding.span_s.map(|(from_s, to_s)| (from_s + begins_s, to_s + begins_s));
+                let before = screening.not_done.len();
+                let part_s = flight.part_s.filter(|_| !is_one);
+                look_at(flight, settings, &mut screening);
+                if let Some((from_s, to_s)) = part_s {
+                    let of_flight =
+                        |why: &mut String| *why = format!("flight from {from_s:.0} to {to_s:.0} s: {why}");
+                    screening.not_done[before..].iter_mut().for_each(of_flight);
                 }
                 screening.not_done.extend(mass.take().filter(|_| settings.vehicle.is_none()));
             }
@@ -94,9 +99,9 @@ fn screened(log: &[u8], settings: &ScreenSettings) -> Result<Screening, LogError
     Ok(screening)
 }
 
-/// What of the log was not read.
-fn lost(report: &ReadReport, is_cut: bool) -> Vec<Finding> {
-    let finding = |loss: &crate::log::Loss| Finding {
+/// What of the log was lost. Of a log that was cut here, `cut` is what is left: its end is no damage.
+fn lost(report: &ReadReport, cut: Option<&[u8]>) -> Vec<Finding> {
+    let finding = |loss: &Loss| Finding {
         id: "data_lost",
         gravity: if loss.is_damage() { Gravity::Warning } else { Gravity::Info },
         sentence: loss.to_string(),
@@ -105,8 +110,31 @@ fn lost(report: &ReadReport, is_cut: bool) -> Vec<Finding> {
         amounts: Vec::new(),
         may_be: Vec::new(),
     };
-    // the end of what was looked at is no damage of the log
-    report.losses.iter().filter(|_| !is_cut).map(finding).collect()
+    let is_of_the_log = |loss: &&Loss| {
+        !matches!(loss, Loss::NotHeld { .. }) && !cut.is_some_and(|cut| is_of_the_cut(loss, cut))
+    };
+    report.losses.iter().filter(is_of_the_log).map(finding).collect()
+}
+
+/// The loss is the record or the row at the end of what was looked at.
+fn is_of_the_cut(loss: &Loss, cut: &[u8]) -> bool {
+    let is_last = |line: u64| line == 1 + cut.iter().map(|byte| u64::from(*byte == b'\n')).sum::<u64>();
+    match loss {
+        Loss::CutOff { .. } => true,
+        Loss::EndlessRow { line } => is_last(*line),
+        Loss::RowsRejected { count: 1, first: Some(row), .. } => is_last(row.line),
+        _ => false,
+    }
+}
+
+/// Flight that is more than the bounds allow.
+fn not_held(report: &ReadReport) -> Option<String> {
+    report.losses.iter().find_map(|loss| match loss {
+        Loss::NotHeld { seconds } => {
+            Some(format!("{seconds:.0} s of flight at the end are not looked at: the bounds allow no more"))
+        }
+        _ => None,
+    })
 }
 
 /// Why the flights of a log are not looked at.
@@ -134,16 +162,33 @@ fn refused(opened: &OpenedFlights) -> Option<String> {
 }
 
 /// One flight: what its outputs show, and then what its motion shows until the first output left the mixer.
-fn look_at(mut recording: Recording, settings: &ScreenSettings, screening: &mut Screening) {
+fn look_at(flight: LogFlight, settings: &ScreenSettings, screening: &mut Screening) {
+    let LogFlight { mut recording, part_s } = flight;
+    // a part of a log has a clock of its own
+    let begins_s = part_s.map_or(0.0, |(from_s, _)| from_s);
     let off_mixer = outputs_off_mixer(&recording);
-    let end_s = last_s(&recording);
-    screening.findings.extend(off_mixer.iter().map(|off| off_mixer_finding(off, end_s)));
+    let end_s = begins_s + last_s(&recording);
+    let told = off_mixer.iter().map(|off| off_mixer_finding(&off.later(begins_s), end_s));
+    screening.findings.extend(told);
     if let Some(first) = off_mixer.first() {
         recording.end_at(first.left_s);
     }
-    adopt_in_flight_parameters(&mut recording);
+    let before = screening.findings.len();
+    motion(&mut recording, !off_mixer.is_empty(), (settings, screening));
+    for finding in &mut screening.findings[before..] {
+        finding.span_s = finding.span_s.map(|(from_s, to_s)| (from_s + begins_s, to_s + begins_s));
+    }
+}
+
+/// What the motion of a flight shows, on the recording's clock.
+fn motion(
+    recording: &mut Recording,
+    is_off_mixer: bool,
+    (settings, screening): (&ScreenSettings, &mut Screening),
+) {
+    adopt_in_flight_parameters(recording);
     let given = settings.vehicle.unwrap_or(UNKNOWN);
-    let conditioned = conditioned(&recording, &given);
+    let conditioned = conditioned(recording, &given);
     let (signals, vehicle) = match conditioned {
         Ok(conditioned) => conditioned,
         Err(why) => return screening.not_done.push(format!("balance and effects are not looked at: {why}")),
@@ -153,7 +198,7 @@ fn look_at(mut recording: Recording, settings: &ScreenSettings, screening: &mut 
         Ok(found) => screening.findings.extend(found),
         Err(why) => screening.not_done.push(format!("the balance is not looked at: {why}")),
     }
-    if settings.vehicle.is_some() && off_mixer.is_empty() {
+    if settings.vehicle.is_some() && !is_off_mixer {
         effects(&signals, &vehicle, (settings.bounds.searched, screening));
     } else if settings.vehicle.is_some() {
         screening

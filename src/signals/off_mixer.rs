@@ -40,6 +40,16 @@ impl OffMixer {
     pub fn advice(&self) -> String {
         format!("warning: {self}. Nothing can be identified from the log after this time")
     }
+
+    /// The same on a clock that shows so much more, s.
+    #[must_use]
+    pub fn later(self, by_s: f64) -> Self {
+        Self {
+            left_s: self.left_s + by_s,
+            stopped_s: self.stopped_s.map(|stopped_s| stopped_s + by_s),
+            ..self
+        }
+    }
 }
 
 impl fmt::Display for OffMixer {

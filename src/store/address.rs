@@ -43,6 +43,11 @@ impl Address {
         if scheme.starts_with("http") && name.contains(['?', '#']) {
             return Err(refused("an address with a query, which is not sent"));
         }
+        // what is asked for stands in the tables
+        if scheme.starts_with("http") && host.contains('@') {
+            let address = format!("{scheme}://...@{}", host.rsplit('@').next().unwrap_or_default());
+            return Err(StoreError::Address { address, came: "one with a user or a password".to_owned() });
+        }
         let is_folder = name.is_empty() || name.ends_with('/');
         let name = name.trim_matches('/').to_owned();
         Ok(Self { root: format!("{scheme}://{host}"), name, is_folder })
@@ -96,9 +101,10 @@ mod tests {
             ("s3:///a", "without a bucket"),
             ("https://host/a.ulg?signature=x", "with a query"),
             ("logs/a.ulg", "got none"),
+            ("https://me:secret@host/a.ulg", "https://...@host: "),
         ] {
             let error = Address::of(given).unwrap_err().to_string();
-            assert!(error.contains(came), "{error}");
+            assert!(error.contains(came) && !error.contains("secret"), "{error}");
         }
         assert!(
             is_remote("s3://x/y") && !is_remote("file:///x") && !is_remote("C://x") && !is_remote("logs/*")

@@ -130,10 +130,10 @@ impl Store {
         let path = self.path(name)?;
         let refused = |why: String| StoreError::Refused { address: self.uri(name), why };
         let written = self.runtime.block_on(async {
-            let found = self.inner.get(&path).await.map_err(|error| refused(error.to_string()))?;
+            let found = self.inner.get(&path).await.map_err(|error| refused(with_causes(&error)))?;
             let mut pieces = found.into_stream();
             let mut bytes = 0_u64;
-            while let Some(piece) = pieces.try_next().await.map_err(|error| refused(error.to_string()))? {
+            while let Some(piece) = pieces.try_next().await.map_err(|error| refused(with_causes(&error)))? {
                 bytes += piece.len() as u64;
                 if bytes > most {
                     return Err(StoreError::TooLarge { bytes, most });
@@ -176,7 +176,7 @@ impl Store {
     }
 
     fn refused(&self, name: &str, error: &Error) -> StoreError {
-        StoreError::Refused { address: self.uri(name), why: error.to_string() }
+        StoreError::Refused { address: self.uri(name), why: with_causes(error) }
     }
 
     fn unless_missing<T>(&self, name: &str, found: Result<T, Error>) -> Result<Option<T>, StoreError> {
@@ -186,6 +186,18 @@ impl Store {
             Err(error) => Err(self.refused(name, &error)),
         }
     }
+}
+
+/// An error with its causes that it does not say itself: that a certificate does not hold stands at the end of the chain.
+fn with_causes(error: &(dyn std::error::Error + 'static)) -> String {
+    let mut said = error.to_string();
+    for cause in std::iter::successors(error.source(), |cause| cause.source()) {
+        let cause = cause.to_string();
+        if !said.contains(&cause) {
+            said = format!("{said}: {cause}");
+        }
+    }
+    said
 }
 
 fn stored(meta: &ObjectMeta) -> Stored {
@@ -205,6 +217,16 @@ fn stored(meta: &ObjectMeta) -> Stored {
 mod tests {
     use super::*;
     use object_store::memory::InMemory;
+
+    #[test]
+    fn an_error_is_told_with_what_caused_it() {
+        let cause =
+            std::io::Error::other(rustls::Error::InvalidCertificate(rustls::CertificateError::UnknownIssuer));
+        let error = Error::Generic { store: "HTTP", source: Box::new(cause) };
+        let said = with_causes(&error);
+        assert!(said.ends_with("invalid peer certificate: UnknownIssuer"), "{said}");
+        assert_eq!(said.matches("certificate").count(), 1, "{said}");
+    }
 
     #[test]
     fn what_is_written_is_listed_read_and_removed() {

@@ -285,6 +285,28 @@ fn simulated(at: &Path) {
 }
 
 #[test]
+fn vehicles_that_are_not_listed_may_share_a_mass() {
+    let at = folder("fleet_mass");
+    let (sources, out) = (at.join("logs"), at.join("out"));
+    fs::create_dir_all(&sources).unwrap();
+    fs::copy(root().join("fixtures/px4_flight.ulg"), sources.join("a.ulg")).unwrap();
+    let (status, tally) = run(&sources, &out, &["--mass", "1.0", "--size", "0.5"]);
+    assert_eq!((status, &tally["flown"]), (Some(0), &1.into()), "{tally}");
+    let rows = PartsFolder::open(&out).unwrap().read_all().unwrap();
+    let flight = &rows.flights[0];
+    // its log names it
+    assert!(flight.vehicle_is_known && flight.vehicle.starts_with("px4-"), "{flight:?}");
+    assert!(rows.provenance[0].vehicle_given && rows.provenance[0].vehicle_toml.is_some());
+    for (words, expected) in
+        [(&["--mass", "-1"][..], "expected a mass from"), (&["--size", "0.5"], "--mass <KG>")]
+    {
+        let refused = mavid(&[&["fleet", sources.to_str().unwrap(), "--out", "none"], words].concat());
+        assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
+        assert!(said(&refused).contains(expected), "{}", said(&refused));
+    }
+}
+
+#[test]
 fn the_vehicle_that_changed_is_found_with_its_rotor_and_flight() {
     let at = folder("fleet_report");
     simulated(&at);

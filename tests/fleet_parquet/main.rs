@@ -3,6 +3,8 @@
 #![cfg(feature = "fleet")]
 #![allow(clippy::panic, clippy::unwrap_used, reason = "a test ends where it fails")]
 
+#[path = "../support/python.rs"]
+mod python;
 #[path = "../support/mod.rs"]
 mod support;
 

@@ -6,7 +6,7 @@ use std::process::Command;
 use mavid::fleet::{PartsFolder, Schema};
 use serde_json::json;
 
-use crate::support::python::ask;
+use crate::python::ask;
 use crate::support::require::{Needed, skip};
 
 #[test]
@@ -21,7 +21,10 @@ fn other_programs_read_the_tables_and_the_streams() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     };
     let [first, second] = logs.each_ref().map(|log| log.to_str().unwrap());
-    run(&["fleet", first, second, "--out", out.to_str().unwrap(), "--depth", "balance", "--part-logs", "1"]);
+    let given = ["--mass", "2.06", "--size", "0.5", "--frame", "quadrotor-x"];
+    let all =
+        ["fleet", first, second, "--out", out.to_str().unwrap(), "--depth", "balance", "--part-logs", "1"];
+    run(&[&all[..], &given].concat());
     run(&["convert", second, "--to", "mcap", "--out", streams.to_str().unwrap()]);
     run(&["convert", second, "--to", "parquet", "--out", streams.to_str().unwrap()]);
     let rows = PartsFolder::open(&out).unwrap().read_all().unwrap();

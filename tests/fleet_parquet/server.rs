@@ -1,4 +1,5 @@
-//! A small store on this computer: files over HTTP, and what of S3's words the program uses.
+//! A small store on this computer: files over HTTP, and what the program uses of the words of S3, which are also those of Google Cloud
+//! Storage, and of Azure.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -90,6 +91,7 @@ fn answer(
     let mut files = files.lock().unwrap();
     match method {
         "GET" if query.contains("list-type=2") => ("200 OK", XML, list(path, query, &files)),
+        "GET" if query.contains("comp=list") => ("200 OK", XML, list_of_azure(path, query, &files)),
         "GET" | "HEAD" => match files.get(path) {
             Some(bytes) => ("200 OK", BYTES, bytes.clone()),
             None => ("404 Not Found", BYTES, Vec::new()),
@@ -114,20 +116,34 @@ fn answer(
     }
 }
 
-/// The files of a bucket that begin with a prefix.
-fn list(bucket: &str, query: &str, files: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
+/// Names and sizes of the files of a bucket that begin with a prefix.
+fn of_prefix(bucket: &str, query: &str, files: &BTreeMap<String, Vec<u8>>) -> Vec<(String, usize)> {
     let prefix =
         query.split('&').find_map(|part| part.strip_prefix("prefix=")).map_or(String::new(), decoded);
     let head = format!("{}/", bucket.trim_end_matches('/'));
+    let of = |(path, bytes): (&String, &Vec<u8>)| Some((path.strip_prefix(&head)?.to_owned(), bytes.len()));
+    files.iter().filter_map(of).filter(|(key, _)| key.starts_with(&prefix)).collect()
+}
+
+fn list(bucket: &str, query: &str, files: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
     let mut text = "<ListBucketResult><IsTruncated>false</IsTruncated>".to_owned();
-    for (path, bytes) in files.iter() {
-        let Some(key) = path.strip_prefix(&head).filter(|key| key.starts_with(&prefix)) else { continue };
+    for (key, bytes) in of_prefix(bucket, query, files) {
         text.push_str(&format!(
-            "<Contents><Key>{key}</Key><Size>{}</Size><LastModified>2026-01-01T00:00:00.000Z</LastModified><ETag>\"x\"</ETag></Contents>",
-            bytes.len()
+            "<Contents><Key>{key}</Key><Size>{bytes}</Size><LastModified>2026-01-01T00:00:00.000Z</LastModified><ETag>\"x\"</ETag></Contents>"
         ));
     }
     (text + "</ListBucketResult>").into_bytes()
+}
+
+fn list_of_azure(container: &str, query: &str, files: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
+    let mut text = "<EnumerationResults><Blobs>".to_owned();
+    for (name, bytes) in of_prefix(container, query, files) {
+        text.push_str(&format!(
+            "<Blob><Name>{name}</Name><Properties><Last-Modified>Thu, 01 Jan 2026 00:00:00 GMT</Last-Modified><Content-Length>{bytes}\
+             </Content-Length><Content-Type>application/octet-stream</Content-Type><Etag>x</Etag></Properties></Blob>"
+        ));
+    }
+    (text + "</Blobs><NextMarker/></EnumerationResults>").into_bytes()
 }
 
 /// Without `%2F` and its like.

@@ -24,6 +24,11 @@ fn mavid(arguments: &[&str], server: &Server) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_mavid"));
     command.args(arguments).env_remove("HTTP_PROXY").env_remove("http_proxy").env("NO_PROXY", "127.0.0.1");
     command.env("AWS_ENDPOINT", format!("http://{}", server.address)).env("AWS_ALLOW_HTTP", "true");
+    command.env("GOOGLE_BASE_URL", format!("http://{}", server.address)).env("GOOGLE_ALLOW_HTTP", "true");
+    let open =
+        r#"{"private_key": "none", "private_key_id": "none", "client_email": "none", "disable_oauth": true}"#;
+    command.env("GOOGLE_SERVICE_ACCOUNT_KEY", open).env("AZURE_STORAGE_USE_EMULATOR", "true");
+    command.env("AZURITE_BLOB_STORAGE_URL", format!("http://{}", server.address));
     command.env("AWS_ACCESS_KEY_ID", "key").env("AWS_SECRET_ACCESS_KEY", "secret").env("AWS_REGION", "here");
     command.output().unwrap()
 }
@@ -163,4 +168,36 @@ fn logs_and_tables_may_both_be_in_an_object_store() {
     let report = mavid(&["fleet", "report", "s3://tables/run"], &server);
     assert!(matches!(report.status.code(), Some(0 | 3)), "{}", said(&report));
     assert!(server.files.lock().unwrap().contains_key("/tables/run/report.html"));
+}
+
+#[test]
+fn stores_of_google_and_azure_give_the_same_rows_as_files() {
+    let (server, at) = (Server::start(), folder("others"));
+    let logs = at.join("logs");
+    fs::create_dir_all(logs.join("deep")).unwrap();
+    for (name, own) in [("p04_identify_10_22s.tlog", "a.tlog"), ("px4_flight.ulg", "deep/b.ulg")] {
+        let bytes = fs::read(fixture(name)).unwrap();
+        fs::write(logs.join(own), &bytes).unwrap();
+        server.put(&format!("/flights/2026/{own}"), bytes.clone());
+        server.put(&format!("/devstoreaccount1/flights/2026/{own}"), bytes);
+    }
+    let local = at.join("local");
+    let run = |source: &str, out: &str| {
+        let output = mavid(&["fleet", source, "--out", out, "--depth", "inspect"], &server);
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    };
+    run(logs.to_str().unwrap(), local.to_str().unwrap());
+    let expected = rows(&local, logs.to_str().unwrap(), "logs");
+    assert_eq!(expected.logs.len(), 2);
+    for scheme in ["gs", "az"] {
+        let out = at.join(scheme);
+        run(&format!("{scheme}://flights/2026/**/*"), out.to_str().unwrap());
+        assert_eq!(rows(&out, &format!("{scheme}://flights/2026"), "logs"), expected);
+    }
+    // tables beside them
+    run("gs://flights/2026", "gs://tables/run");
+    let files = server.files.lock().unwrap();
+    let parts =
+        |table: &str| files.keys().filter(|path| path.starts_with(&format!("/tables/run/{table}/"))).count();
+    assert_eq!((parts("logs"), parts("_parts"), parts("_work")), (1, 1, 0), "{:?}", files.keys());
 }

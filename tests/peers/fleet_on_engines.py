@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SKIPPED = 77
 #: as many logs as make two nodes work for a while
 COPIES = 12
-OPTIONS = {"depth": "balance"}
+OPTIONS = {"depth": "balance", "mass": 2.06, "size": 0.5, "frame": "quadrotor-x"}
 
 
 def logs(folder: Path) -> Path:
@@ -31,7 +31,7 @@ def logs(folder: Path) -> Path:
     for copy in range(COPIES):
         whole = (fixtures / "px4_flight.ulg").read_bytes()
         (at / f"a{copy:02}.ulg").write_bytes(whole[: len(whole) - 512 * copy])
-        whole = (fixtures / "p04_identify_10_22s.tlog").read_bytes()
+        whole = (fixtures / "p01_identify_0_25s.tlog").read_bytes()
         (at / "deep" / f"b{copy:02}.tlog").write_bytes(whole[: len(whole) - 64 * copy])
     (at / "words.bin").write_bytes(b"this is no log at all\n" * 50)
     (at / "empty.tlog").write_bytes(b"")
@@ -134,7 +134,8 @@ def main() -> int:
     folder.mkdir(parents=True)
     at = logs(folder)
     local = folder / "local"
-    command = [program, "fleet", str(at), "--out", str(local), "--depth", OPTIONS["depth"], "--quiet"]
+    options = [word for name, value in OPTIONS.items() for word in (f"--{name}", str(value))]
+    command = [program, "fleet", str(at), "--out", str(local), *options, "--quiet"]
     assert subprocess.run(command, check=False).returncode == 3, "expected logs that cannot be read among the others"
     expected = rows(local)
     assert len(expected["logs"]) == 2 * COPIES + 2, len(expected["logs"])

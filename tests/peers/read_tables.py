@@ -24,14 +24,14 @@ for table in sorted(entry.name for entry in folder.iterdir() if entry.is_dir() a
     parts = sorted((folder / table).glob("*.parquet"))
     schema = pyarrow.parquet.read_schema(parts[0])
     out[table] = {
-        "duckdb": duckdb.sql(f"SELECT count(*) FROM '{pattern}'").fetchone()[0],
+        "duckdb": duckdb.sql(f"SELECT count(*) FROM '{pattern}'").fetchall()[0][0],
         "polars": polars.read_parquet(pattern).height,
         "pandas": int(sum(len(pandas.read_parquet(part)) for part in parts)),
         "columns": {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in schema},
         "version": schema.metadata[b"mavid.schema"].decode(),
     }
 legs = str(folder / "legs" / "*.parquet")
-out["mean_lean_x"] = duckdb.sql(f"SELECT avg(lean[1]) FROM '{legs}'").fetchone()[0]
+out["mean_lean_x"] = duckdb.sql(f"SELECT avg(lean[1]) FROM '{legs}'").fetchall()[0][0]
 topics = {}
 with open(mcap, "rb") as file:
     for schema, channel, message in make_reader(file).iter_messages():

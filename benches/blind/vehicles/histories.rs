@@ -1,12 +1,16 @@
 //! Histories of many flights: vehicles one rotor of which becomes weak half way, and vehicles that stay as they are.
 //!
 //! A flight is made once and stands in several histories of its vehicle: each flight is drawn by itself, so any order of them is as likely
-//! as another. 60 flights a vehicle give two histories with a change and ten without.
+//! as another. 60 flights a vehicle give two histories with a change and ten without. With `--keep DIR` the rows of a vehicle's flights stay
+//! in a file of that folder, and are not made again where they are there.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use mavid::fleet::{FleetReport, LogRows, LogSettings, LogTask, ReportSettings, log_rows};
+use mavid::fleet::{
+    FleetReport, LogRows, LogSettings, LogTask, ReportSettings, log_rows, rows_of_text, rows_text,
+};
 use mavid::study::{Changed, Depth};
 use rand::RngExt;
 use rayon::prelude::*;
@@ -32,10 +36,10 @@ struct Flown {
     weak: Vec<LogRows>,
 }
 
-/// Makes the histories of `count` vehicles and reports them as one fleet.
-pub fn run(seed: u64, count: u64, shuffles: u32) -> Histories {
+/// Makes the histories of `count` vehicles and reports them as one fleet. Rows of flights are kept in a folder where one is given.
+pub fn run(seed: u64, count: u64, (shuffles, keep): (u32, Option<&Path>)) -> Histories {
     let began = Instant::now();
-    let flown: Vec<Flown> = (seed..seed + count).filter_map(flown).collect();
+    let flown: Vec<Flown> = (seed..seed + count).filter_map(|seed| kept_or_flown(seed, keep)).collect();
     println!("{} of {count} vehicles flown in {:.0} s", flown.len(), began.elapsed().as_secs_f64());
     let (mut rows, mut truth) = (LogRows::default(), BTreeMap::new());
     for vehicle in &flown {
@@ -52,39 +56,65 @@ pub fn run(seed: u64, count: u64, shuffles: u32) -> Histories {
     Histories { vehicles: flown.len(), ..figures }
 }
 
-fn flown(seed: u64) -> Option<Flown> {
-    let rotor = dice(seed, 14).random_range(0..4_usize);
+/// The vehicle of a seed, from the folder if its rows are there.
+fn kept_or_flown(seed: u64, keep: Option<&Path>) -> Option<Flown> {
+    let file: Option<PathBuf> = keep.map(|folder| folder.join(format!("{seed}.json")));
+    let kept = file.as_ref().and_then(|file| std::fs::read_to_string(file).ok());
+    let rows = match kept {
+        Some(text) => rows_kept(&text),
+        None => {
+            let rows = match flown(seed) {
+                Ok(rows) => rows,
+                Err(why) => {
+                    println!("  seed {seed}: not flown: {why}");
+                    return None;
+                }
+            };
+            if let Some(file) = file {
+                let texts: Vec<String> =
+                    rows.iter().map(|rows| rows_text(rows).expect("rows as text")).collect();
+                std::fs::create_dir_all(file.parent().expect("a file of a folder"))
+                    .expect("a folder for rows");
+                std::fs::write(file, serde_json::to_string(&texts).expect("texts")).expect("room for rows");
+            }
+            rows
+        }
+    };
+    let mut whole = rows;
+    let weak = whole.split_off(FLIGHTS);
+    Some(Flown { seed, rotor: rotor(seed), whole, weak })
+}
+
+fn rows_kept(text: &str) -> Vec<LogRows> {
+    let texts: Vec<String> = serde_json::from_str(text).expect("texts of rows");
+    texts.iter().map(|text| rows_of_text(text).expect("rows of a flight")).collect()
+}
+
+/// The rotor of a vehicle that becomes weak.
+fn rotor(seed: u64) -> usize {
+    dice(seed, 14).random_range(0..4_usize)
+}
+
+/// Rows of the flights of the vehicle of a seed, the whole ones first.
+fn flown(seed: u64) -> Result<Vec<LogRows>, String> {
     let folder = std::env::temp_dir().join(format!("mavid_history_{}_{seed}", std::process::id()));
-    let weak = |flight: u64| (flight >= FLIGHTS as u64).then_some(rotor);
+    let weak = |flight: u64| (flight >= FLIGHTS as u64).then(|| rotor(seed));
     let made = several_with(&folder, seed, (FLIGHTS + FROM) as u64, &weak);
     let rows = made.map(|made| {
-        let each: Vec<LogRows> = made
-            .flights
-            .par_iter()
-            .map(|path| {
-                let uri = path.display().to_string();
-                let vehicles = format!("[[vehicle]]\nname = 'one'\nfile = {:?}\nlogs = '*'\n", made.file);
-                let settings = LogSettings {
-                    depth: Depth::Balance,
-                    vehicles: toml::from_str(&vehicles).expect("a file of one vehicle"),
-                    ..LogSettings::default()
-                };
-                log_rows(&LogTask { sha256: uri.clone(), uri, path: path.clone(), bytes: 0, settings })
-            })
-            .collect();
-        each
+        let vehicles = format!("[[vehicle]]\nname = 'one'\nfile = {:?}\nlogs = '*'\n", made.file);
+        let settings = LogSettings {
+            depth: Depth::Balance,
+            vehicles: toml::from_str(&vehicles).expect("a file of one vehicle"),
+            ..LogSettings::default()
+        };
+        let of_flight = |path: &PathBuf| {
+            let (uri, settings) = (path.display().to_string(), settings.clone());
+            log_rows(&LogTask { sha256: uri.clone(), uri, path: path.clone(), bytes: 0, settings })
+        };
+        made.flights.par_iter().map(of_flight).collect()
     });
     let _ = std::fs::remove_dir_all(&folder);
-    match rows {
-        Ok(mut whole) => {
-            let weak = whole.split_off(FLIGHTS);
-            Some(Flown { seed, rotor, whole, weak })
-        }
-        Err(why) => {
-            println!("  seed {seed}: not flown: {why}");
-            None
-        }
-    }
+    rows
 }
 
 /// Name, flights in order, and whether a rotor becomes weak.

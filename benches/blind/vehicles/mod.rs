@@ -1,5 +1,5 @@
 //! Several flights of one vehicle, with an estimator in the loop: pairs that are compared (`--compared N`), eight that are
-//! explained together (`--together N`), and histories of forty (`--history N`). `--out FILE` stores the figures in sections of a
+//! explained together (`--together N`), and histories of forty (`--history N`, with `--keep DIR` resumable). `--out FILE` stores the figures in sections of a
 //! file, of which the book is made.
 
 mod histories;
@@ -26,7 +26,8 @@ pub fn run(arguments: &Arguments) {
     let histories = arguments.number("--history", 0_u64);
     if histories > 0 {
         let shuffles = arguments.number("--shuffles", mavid::fleet::SHUFFLES);
-        let figures = Histories { command, ..histories::run(seed, histories, shuffles) };
+        let keep = arguments.text("--keep").map(PathBuf::from);
+        let figures = Histories { command, ..histories::run(seed, histories, (shuffles, keep.as_deref())) };
         return out.iter().for_each(|file| store(file, "histories", &figures));
     }
     let compared = arguments.number("--compared", 40_u64);

@@ -12,7 +12,10 @@ use mavid::fleet::{LogSettings, Vehicles};
 pub fn settings(args: &FleetStudyArgs) -> Result<LogSettings, CommandError> {
     let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
     let vehicles = args.vehicles.as_deref().map(Vehicles::read).transpose().map_err(|error| input(&error))?;
-    let vehicles = vehicles.unwrap_or_default();
+    let mut vehicles = vehicles.unwrap_or_default();
+    if let Some(mass_kg) = args.mass {
+        vehicles.otherwise(&args.shape.given(mass_kg)).map_err(|error| input(&error))?;
+    }
     args.csv_map.as_deref().map(load_csv_mapping).transpose()?;
     let named: Vec<&PathBuf> =
         vehicles.vehicle.iter().filter_map(|vehicle| vehicle.file.as_ref()).chain(&args.csv_map).collect();
