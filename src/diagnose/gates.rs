@@ -24,7 +24,7 @@ pub struct Gates {
     /// least relevant force, as a share of the weight, and least relevant torque, as a share of the rms of the torque
     /// that the motion needs
     pub matters: (f64, f64),
-    /// largest number of accepted effects
+    /// largest number of effects in the model; those that left it do not count
     pub steps: usize,
 }
 

@@ -3,9 +3,13 @@
 use super::channels::Nuisance;
 use super::fit::Fitted;
 use super::trace::Trace;
-use crate::estimate::{Nominal, THETA, Theta, inertia_of, is_physical, nearest_physical, theta_of};
+use crate::estimate::{
+    LARGEST_RELATIVE_STD, MOMENTS, Nominal, THETA, Theta, inertia_of, is_physical, nearest_physical, size_of,
+    theta_of,
+};
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
+use nalgebra::{SMatrix, SVector};
 
 /// Standard errors by which an inertia may be moved to the nearest one that a body can have. The usual three: beyond,
 /// the nearest possible inertia contradicts the flight.
@@ -21,6 +25,7 @@ pub(super) fn make_physical(
     stated: &Vehicle,
     fitted: &mut Fitted,
 ) -> Result<(), PhysicsError> {
+    stay_at_prior(flights, stated, fitted)?;
     let theta = theta_of(&fitted.base.vehicle.body);
     if is_physical(&theta) {
         return Ok(());
@@ -44,6 +49,65 @@ pub(super) fn make_physical(
     }
     *fitted = after;
     Ok(())
+}
+
+/// Where a moment of inertia is not determined, or no body can have the inertia, it stays at what the vehicle file states as far as the
+/// flight tells nothing else: the mean of both, weighted by their information.
+fn stay_at_prior(flights: &[Trace], stated: &Vehicle, fitted: &mut Fitted) -> Result<(), PhysicsError> {
+    let Some(places) = inertia_places(fitted) else { return Ok(()) };
+    let covariance: SMatrix<f64, ENTRIES, ENTRIES> =
+        SMatrix::from_fn(|i, j| fitted.covariance[(places[i], places[j])]);
+    let theta = theta_of(&fitted.base.vehicle.body);
+    let nominal = Nominal::of(stated);
+    let open = |entry: usize| {
+        let size = size_of(&theta, &nominal, entry);
+        covariance[(entry - 1, entry - 1)].max(0.0).sqrt() > LARGEST_RELATIVE_STD * size
+    };
+    if is_physical(&theta) && !MOMENTS.into_iter().any(open) {
+        return Ok(());
+    }
+    let largest = MOMENTS.into_iter().map(|entry| nominal.theta[entry]).fold(0.0, f64::max);
+    let prior = SVector::<f64, ENTRIES>::from_fn(|entry, _| {
+        let share = if MOMENTS.contains(&(1 + entry)) { MOMENT_STD } else { PRODUCT_STD };
+        let size = if MOMENTS.contains(&(1 + entry)) { nominal.theta[1 + entry] } else { largest };
+        size * share.hypot(nominal.guessed(1 + entry))
+    });
+    let by_prior = SMatrix::from_diagonal(&prior.map(|std| std.powi(-2)));
+    let by_flight = covariance.cholesky().map(|root| root.inverse());
+    let Some(posterior) = by_flight.and_then(|of| (of + by_prior).cholesky()).map(|root| root.inverse())
+    else {
+        return Ok(());
+    };
+    let mut kept = theta;
+    let from_prior = posterior * by_prior * (nominal.theta - theta).fixed_rows::<ENTRIES>(1);
+    for (entry, moved) in from_prior.iter().enumerate() {
+        kept[1 + entry] += moved;
+    }
+    let mut base = fitted.base.clone();
+    base.vehicle.body.inertia_kg_m2 = inertia_of(&kept);
+    // its standard error is still the flight's own: what it does not determine is said
+    *fitted = fitted.moved_to(flights, base)?;
+    Ok(())
+}
+
+/// Entries of an inertia: xx xy xz yy yz zz.
+const ENTRIES: usize = THETA - 1;
+/// Standard deviation of a stated moment as a share of it. Moments by drawings and rules of thumb are wrong by 10 to 30 %.
+const MOMENT_STD: f64 = 0.3;
+/// Standard deviation of a stated product as a share of the largest moment: arms and batteries are placed about planes of symmetry.
+const PRODUCT_STD: f64 = 0.05;
+
+/// Columns of the inertia's entries; `None` where not all of them are estimated.
+fn inertia_places(fitted: &Fitted) -> Option<[usize; ENTRIES]> {
+    let mut places = [usize::MAX; ENTRIES];
+    for (place, column) in fitted.rows.nuisances.iter().enumerate() {
+        if let Nuisance::Inertia(entry) = column.nuisance {
+            places[entry] = place;
+        }
+    }
+    let known =
+        |place: &usize| fitted.covariance.get((*place, *place)).is_some_and(|variance| *variance > 0.0);
+    places.iter().all(known).then_some(places)
 }
 
 /// The nearest possible one, if it lies within the error, that of what the description guesses included.

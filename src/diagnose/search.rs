@@ -46,7 +46,7 @@ pub fn search(
         tracing::debug!(candidates = last.len(), taken = steps.len(), "candidates tested");
         pace.tested();
         match passed.first() {
-            Some(best) if steps.len() < gates.steps => {
+            Some(best) if after.base.effects.len() < gates.steps && steps.len() < 2 * gates.steps => {
                 let id = best.candidate.id;
                 match taken(flights, &mut after, passed, (price, gates, signatures, &refused))? {
                     Some(step) => {

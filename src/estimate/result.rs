@@ -7,7 +7,7 @@ use super::weak::WeakEstimate;
 
 /// Largest standard error of a moment of inertia that counts as determined, as a share of its nominal size. A user
 /// can state as much without a flight.
-const LARGEST_RELATIVE_STD: f64 = 0.3;
+pub const LARGEST_RELATIVE_STD: f64 = 0.3;
 
 /// One parameter.
 #[derive(Debug, Clone, PartialEq)]

@@ -26,16 +26,10 @@ use std::sync::Arc;
 /// mean over more.
 pub const WEAK_HALF_WIDTH_S: f64 = 0.2;
 
-/// Least step of the grid that is chosen, s. Half a period of a vehicle's fastest motion, some 20 Hz, has three instants or more; 20 logs
-/// of ArduCopter's simulator at 400 Hz gave the same names and sizes at twice the step, in half the time.
-const LEAST_STEP_S: f64 = 0.004;
-/// A period is the same as another one within this share: that of stamps in whole microseconds.
-const ROUNDING: f64 = 0.01;
-
 /// Settings of the conditioning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConditionSettings {
-    /// s between grid instants; `None`: the least multiple of the fastest stream's period that is 4 ms or more, at most 20 ms
+    /// s between grid instants; `None`: the period of the fastest inertial stream, 2 to 20 ms
     pub step_s: Option<f64>,
     /// time left out at the beginning of the flight, s; `None`: 10 s as in the paper, at most a fifth of the flight
     pub transient_s: Option<f64>,
@@ -283,7 +277,7 @@ fn step(
     if !period.is_finite() {
         return Err(SignalsError::NoMotion);
     }
-    Ok((period * (LEAST_STEP_S / period - ROUNDING).ceil().max(1.0)).clamp(LEAST_STEP_S, 0.02))
+    Ok(period.clamp(0.002, 0.02))
 }
 
 /// The error if no stream of motion can be used.

@@ -1,7 +1,6 @@
 //! Uniform time grids and interpolation of recorded streams onto them.
 
 use crate::recording::Stream;
-use crate::stats::median;
 
 /// Uniformly spaced instants on the vehicle's clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,21 +63,7 @@ impl Grid {
 /// Values beyond this are damage and count as missing, in SI units: no signal of a flying vehicle reaches it.
 pub const LARGEST_VALUE: f64 = 1e5;
 
-/// Samples of which the mean is one value of the grid: those of one step. What changes faster than the grid would be folded otherwise.
-fn samples_together(time_s: &[f64], step_s: f64) -> usize {
-    let mut apart: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let period_s = median(&mut apart);
-    let most = time_s.len() / 4;
-    (1..=most).take_while(|count| (*count as f64 - 0.5) * period_s < step_s).last().unwrap_or(1)
-}
-
-/// Means of so many neighbouring values, one for each place that they have.
-fn means(values: &[f64], together: usize) -> Vec<f64> {
-    values.windows(together).map(|some| some.iter().sum::<f64>() / together as f64).collect()
-}
-
-/// Natural cubic spline through a stream's samples, evaluated at the grid's instants plus `shift_s`. Of a stream with several samples in a
-/// step of the grid it is one through the means of these.
+/// Natural cubic spline through a stream's samples, evaluated at the grid's instants plus `shift_s`.
 ///
 /// Returns `width` values an instant, one after the other. Outside the samples the nearest value is
 /// held; samples with a missing or absurd value are passed over. `None` with fewer than four whole samples.
@@ -92,15 +77,12 @@ pub fn cubic_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<f64>
     let time: Vec<f64> = whole.iter().map(|&i| stream.time_s[i]).collect();
     let width = stream.width;
     let mut out = vec![0.0; grid.count * width];
-    let together = samples_together(&time, grid.step_s);
-    let time = means(&time, together);
     let brackets = brackets(&time, shift_s, grid);
-    let mut samples = vec![0.0; whole.len()];
+    let mut values = vec![0.0; time.len()];
     for channel in 0..width {
-        for (value, &index) in samples.iter_mut().zip(&whole) {
+        for (value, &index) in values.iter_mut().zip(&whole) {
             *value = stream.sample(index)[channel];
         }
-        let values = means(&samples, together);
         let curvature = natural_spline_curvature(&time, &values);
         for (instant, &(left, s)) in brackets.iter().enumerate() {
             let h = time[left + 1] - time[left];
@@ -188,21 +170,6 @@ mod tests {
         let time_s: Vec<f64> = (0..count).map(|i| period_s * i as f64).collect();
         let values = time_s.iter().map(|&t| f(t)).collect();
         Stream { time_s, width: 1, values }
-    }
-
-    #[test]
-    fn what_is_faster_than_the_grid_is_averaged() {
-        // a drift of 1 in a second, and a line at half the rate of 1 kHz samples
-        let time_s: Vec<f64> = (0..1000).map(|index| 0.001 * f64::from(index)).collect();
-        let values = time_s.iter().enumerate().map(|(index, t)| t + if index % 2 == 0 { 1.0 } else { -1.0 });
-        let stream = Stream { values: values.collect(), time_s, width: 1 };
-        let onto = |step_s: f64| {
-            let grid = Grid { start_s: 0.1, step_s, count: 100 };
-            let seen = cubic_onto(&stream, 0.0, &grid).expect("enough samples");
-            seen.iter().enumerate().map(|(at, value)| (value - grid.time_s(at)).abs()).fold(0.0, f64::max)
-        };
-        assert!(onto(0.004) < 1e-9, "{}", onto(0.004));
-        assert!(onto(0.001) > 0.9);
     }
 
     #[test]

@@ -9,7 +9,6 @@ use crate::diagnose::signature::{
 use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::SlungLoad;
-use crate::units::STANDARD_GRAVITY_M_S2;
 
 /// Lengths of a load's cord that are tried, m: their periods differ by about 20 %.
 const CORD_LENGTHS_M: [f64; 7] = [0.25, 0.4, 0.6, 0.9, 1.3, 2.0, 3.0];
@@ -81,10 +80,10 @@ pub static SIGNATURE: Signature = Signature {
     )
 };
 
-/// Damping ratio of the swing: its damping over twice the frequency of a pendulum of this length below a heavy vehicle.
+/// Damping ratio of a load's swing (-).
 fn damping_ratio(term: &EffectTerm) -> f64 {
     let damping_1_s = first_finer(term).first().map_or(0.0, |slot| term.values[*slot]);
-    0.5 * damping_1_s * (term.values[1] / STANDARD_GRAVITY_M_S2).sqrt()
+    SlungLoad::damping_ratio(term.values[1], damping_1_s)
 }
 
 /// Highest position above the ground, m, if position is known and the ground is at zero; otherwise infinite.

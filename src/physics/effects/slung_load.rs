@@ -1,5 +1,6 @@
 //! A load hangs below on a cord.
 
+use crate::units::STANDARD_GRAVITY_M_S2;
 use nalgebra::Vector3;
 
 use crate::physics::equation::documented;
@@ -26,6 +27,15 @@ const FINER: &[Parameter] = &[Parameter { name: "damping", unit: "1/s", bounds: 
 
 /// Direction and its rate.
 const STATES: usize = 6;
+
+impl SlungLoad {
+    /// Damping ratio (-) of the swing on a cord of this length (m) below a heavy vehicle: the damping over twice the frequency of a
+    /// pendulum, `damping sqrt(L / g) / 2`.
+    #[must_use]
+    pub fn damping_ratio(length_m: f64, damping_1_s: f64) -> f64 {
+        0.5 * damping_1_s * (length_m / STANDARD_GRAVITY_M_S2).sqrt()
+    }
+}
 
 impl Effect for SlungLoad {
     fn id(&self) -> &'static str {
