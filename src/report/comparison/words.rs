@@ -50,8 +50,8 @@ pub(super) fn returned(study: &CompareStudy, step: &Step<Compared>) -> String {
     let path = |place: &usize| study.flights[*place].input.path.as_str();
     match step.as_before.as_slice() {
         [] => String::new(),
-        [one] => format!("; it is again as in {}", path(one)),
-        [first, .., last] => format!("; it is again as in {} to {}", path(first), path(last)),
+        [one] => format!("; in this it is again as in {}", path(one)),
+        [first, .., last] => format!("; in this it is again as in {} to {}", path(first), path(last)),
     }
 }
 
