@@ -228,7 +228,7 @@ mod tests {
         // what the vehicle makes of it by itself is nobody else's
         let became = Noted { became: Some(25.0), ..noted(1.0, 27.0, 2e9) };
         notes.add(std::slice::from_ref(&became)).unwrap();
-        assert_eq!(notes.read().unwrap(), [became.clone()]);
+        assert_eq!(notes.read().unwrap(), std::slice::from_ref(&became));
         assert!(
             became.is_own(27.0)
                 && became.is_own(25.0)
