@@ -3,7 +3,7 @@
 use crate::autopilot::Autopilot;
 use crate::recording::landed::MOVES;
 use crate::recording::{Quantity, Recording, Stream};
-use crate::signals::{LEAST_FREE_S, ReportedState, SHORTEST_FLIGHT_S, best, off_ground, within};
+use crate::signals::{LEAST_FREE_S, ReportedState, SHORTEST_FLIGHT_S, best, off_ground, spans, within};
 use crate::stats::median;
 
 /// Command from which a motor does more than idle: autopilots let motors idle at up to this value. ArduPilot's
@@ -221,22 +221,4 @@ fn smoothed(effort: &Stream) -> Vec<f64> {
         out.push(smooth);
     }
     out
-}
-
-fn spans(time_s: &[f64], holds: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
-    let mut spans = Vec::new();
-    let mut open = None;
-    for (index, &t) in time_s.iter().enumerate() {
-        match (holds(index), open) {
-            (true, None) => open = Some(t),
-            (false, Some(start)) => {
-                spans.push((start, t));
-                open = None;
-            }
-            _ => {}
-        }
-    }
-    spans.extend(open.zip(time_s.last().copied()));
-    spans.retain(|(start, end)| end - start > SHORTEST_FLIGHT_S);
-    spans
 }

@@ -47,7 +47,7 @@ pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, Windowe
 pub use flight::{AsRecorded, Quality, Reference, Series, Signals};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use noise::white_level;
-pub use off_ground::{SHORTEST_FLIGHT_S, off_ground, within};
+pub use off_ground::{SHORTEST_FLIGHT_S, off_ground, spans, within};
 pub use off_mixer::{OffMixer, outputs_off_mixer};
 pub use one_flight::{ClockOffset, clock_offset};
 pub use reported_state::{LEAST_FREE_S, ReportedState};

@@ -23,6 +23,26 @@ pub const SHORTEST_FLIGHT_S: f64 = 2.0;
 /// So many samples tell a height.
 const LEAST_SAMPLES: usize = 3;
 
+/// The spans (s) of these times during which `holds` does, each longer than [`SHORTEST_FLIGHT_S`]. It is asked by place.
+#[must_use]
+pub fn spans(time_s: &[f64], holds: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
+    let mut spans = Vec::new();
+    let mut open = None;
+    for (index, &t) in time_s.iter().enumerate() {
+        match (holds(index), open) {
+            (true, None) => open = Some(t),
+            (false, Some(start)) => {
+                spans.push((start, t));
+                open = None;
+            }
+            _ => {}
+        }
+    }
+    spans.extend(open.zip(time_s.last().copied()));
+    spans.retain(|(start, end)| end - start > SHORTEST_FLIGHT_S);
+    spans
+}
+
 /// The spans (s) between the vehicle's first and last height off the ground, each within the given one. A span during which it never
 /// rises is none. Where nothing was recorded before a span, or no height at all, the span stays, and so does an end that the next span
 /// follows at once: that is no landing.

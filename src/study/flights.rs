@@ -11,8 +11,8 @@ use crate::log::{
 use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording, shared_share};
 use crate::signals::{
-    ConditionSettings, ReportedState, SHORTEST_FLIGHT_S, Signals, adopt_in_flight_parameters, off_ground,
-    outputs_off_mixer,
+    ConditionSettings, ReportedState, Signals, adopt_in_flight_parameters, off_ground, outputs_off_mixer,
+    spans,
 };
 use crate::text;
 use crate::vehicle::Vehicle;
@@ -296,18 +296,8 @@ pub(super) fn shared(of: &Recording, other: &Recording) -> Option<f64> {
     let may_fly = |t_s: f64| t_s >= first_word_s && said.may_be_off_ground(t_s);
     let inertial = of.streams.iter().filter(|(key, _)| key.quantity == Quantity::AngularRate);
     let time_s = inertial.map(|(_, stream)| &stream.time_s).max_by_key(|time_s| time_s.len());
-    let mut flown: Vec<(f64, f64)> = Vec::new();
-    let mut open = false;
-    for &t_s in time_s.into_iter().flatten() {
-        match (may_fly(t_s), flown.last_mut().filter(|_| open)) {
-            (true, Some((_, to_s))) => *to_s = t_s,
-            (true, None) => flown.push((t_s, t_s)),
-            (false, _) => {}
-        }
-        open = may_fly(t_s);
-    }
-    flown.retain(|(from_s, to_s)| to_s - from_s > SHORTEST_FLIGHT_S);
-    let flown = off_ground(of, flown);
+    let flown =
+        time_s.map_or_else(Vec::new, |time_s| off_ground(of, spans(time_s, |index| may_fly(time_s[index]))));
     let counts =
         |t_s: f64| flown.is_empty() || flown.iter().any(|(from_s, to_s)| (*from_s..*to_s).contains(&t_s));
     Some(shared_share(of, other, counts)).filter(|share| *share > MOST_SHARED)
