@@ -5,7 +5,7 @@ use super::fit::{Fitted, Newton, fit};
 use super::gates::NAME_Z;
 use super::grid_refinement::refined;
 use super::latency::{is_delay, with_latency};
-use super::locate::mass_step_std_kg;
+use super::locate::{mass_step_beside, mass_step_std_kg};
 use super::signature::EffectTerm;
 use super::tested::Tested;
 use super::trace::Trace;
@@ -87,13 +87,23 @@ fn at_bound(fitted: &Fitted, taken: &Tested) -> bool {
     })
 }
 
-/// Whether a step of the mass could be a force that drifts by itself.
+/// Share of a mass change that the seconds before and after it must show: a slow drift shows little of itself there.
+const SHOWN_BESIDE: f64 = 0.4;
+
+/// Whether a step of the mass could be a force that drifts by itself: its own seconds hardly show it, or other seconds show as much.
 fn wanders(flights: &[Trace], fitted: &Fitted, taken: &Tested) -> bool {
-    let moments =
-        taken.candidate.parts.iter().filter_map(|part| Some(part.values[part.signature.role.moment?]));
-    moments.into_iter().any(|moment_s| {
-        let delta_kg = taken.evidence.theta[0].abs();
-        delta_kg < NAME_Z * mass_step_std_kg(flights, fitted, moment_s)
+    let just_taken = &fitted.base.effects[fitted.base.effects.len() - taken.candidate.parts.len()..];
+    let steps = just_taken.iter().filter_map(|part| {
+        let slot = part.free.iter().find(|slot| part.is_amount(**slot))?;
+        Some((part.values[part.signature.role.moment?], part.values[*slot]))
+    });
+    steps.into_iter().any(|(moment_s, delta_kg)| {
+        let beside = mass_step_beside(flights, fitted, (moment_s, delta_kg));
+        tracing::debug!(moment_s, delta_kg, ?beside, "a change of mass is judged");
+        let stands_out = beside.is_some_and(|beside| {
+            beside.delta_kg / delta_kg > SHOWN_BESIDE && delta_kg.abs() > NAME_Z * beside.elsewhere_kg
+        });
+        !stands_out || delta_kg.abs() < NAME_Z * mass_step_std_kg(flights, fitted, moment_s)
     })
 }
 

@@ -62,7 +62,8 @@ pub(super) fn limits(last: &[Tested], fitted: &Fitted) -> Vec<DetectionLimit> {
                     None => {
                         let usual = (naming.usual)(parameter.name, vehicle);
                         let (low, high) = parameter.bounds.at(&vehicle.size());
-                        let most = high.max(-low);
+                        let nothing = part.nothing_at(free);
+                        let most = (high - nothing).max(nothing - low);
                         let (parameter, unit) = (parameter.name, parameter.unit);
                         out.push(DetectionLimit { id, parameter, limit, certain, usual, most, unit });
                     }

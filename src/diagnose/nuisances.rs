@@ -7,7 +7,10 @@ use super::rotors::RotorMotion;
 use super::trace::Trace;
 use crate::estimate::JITTER_STD;
 use crate::signals::central_difference;
+use crate::trim::mean_arm_m;
+use crate::vehicle::{Guess, Guessed, Vehicle};
 use nalgebra::Vector3;
+use std::f64::consts::SQRT_2;
 
 /// Standard deviation of the prior of the latency of force against torque, s. Filters of accelerometer and gyroscopes
 /// differ by milliseconds.
@@ -61,6 +64,9 @@ pub(super) fn nuisances(
     }
     if !trace.torques && trace.known.velocity && trace.known.attitude {
         out.extend(air_moments(trace));
+    }
+    if !trace.torques {
+        out.extend(guessed_balance(trace, &base.vehicle));
     }
     out.extend(sensor_nuisances(trace, mass_kg, base.stands_for(Nuisance::Level(0))));
     out
@@ -120,6 +126,23 @@ fn air_moments(trace: &Trace) -> [NuisanceColumn; 2] {
         column(Nuisance::AirMoment(0), None, of([about_x, none.clone(), none.clone()])),
         column(Nuisance::AirMoment(1), None, of([none.clone(), about_y, none])),
     ]
+}
+
+/// The balance of a vehicle whose centre of mass is a guess, in averaged torques: it is not told from a mean wind that pushes the frame
+/// beside its centre of mass, nor from rotors that differ a little.
+fn guessed_balance(trace: &Trace, vehicle: &Vehicle) -> Vec<NuisanceColumn> {
+    let of = |guess: &&Guess| guess.of == Guessed::CenterOfMass;
+    let Some(guess) = vehicle.guesses.iter().find(of) else { return Vec::new() };
+    let share_n = guess.relative * vehicle.body.mass_kg * trace.gravity_m_s2;
+    let across_nm = share_n * mean_arm_m(vehicle);
+    // rotors that differ by chance turn the vehicle about body z by all of their torque, and across it by the cosine of their arms
+    let about_z_nm = SQRT_2 * share_n * vehicle.propulsion.torque_per_thrust_m;
+    let about = |(axis, std_nm): (usize, f64)| {
+        let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
+        values[3 + axis].fill(1.0);
+        column(Nuisance::Balance(axis), Some(std_nm), values)
+    };
+    [across_nm, across_nm, about_z_nm].into_iter().enumerate().map(about).collect()
 }
 
 /// A column of the whole flight.

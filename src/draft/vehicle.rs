@@ -237,6 +237,7 @@ impl Noted {
         let unit = mass_kg * arm_m * arm_m;
         let relative = horizontal.relative.max(vertical.relative);
         self.guess(Guessed::Inertia, relative, "usual for mass and arms, of seven published multirotors");
+        self.guess(Guessed::CenterOfMass, rules::BALANCE, "usual between flights, with rotors that differ");
         let moments = Vector3::new(horizontal.usual, horizontal.usual, vertical.usual);
         let moments = moments.map(|moment| rounded(moment * unit));
         RigidBody {

@@ -15,12 +15,21 @@ pub enum Guessed {
     Expo,
     /// radius of a rotor
     RotorRadius,
+    /// where the centre of mass is across the rotors' axes, and how alike the rotors are
+    CenterOfMass,
 }
 
 impl Guessed {
     /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Arms, Self::Inertia, Self::TorqueRatio, Self::ThrustMax, Self::Expo, Self::RotorRadius];
+    pub const ALL: [Self; 7] = [
+        Self::Arms,
+        Self::Inertia,
+        Self::TorqueRatio,
+        Self::ThrustMax,
+        Self::Expo,
+        Self::RotorRadius,
+        Self::CenterOfMass,
+    ];
 
     /// As files name it.
     #[must_use]
@@ -32,6 +41,7 @@ impl Guessed {
             Self::ThrustMax => "thrust_max",
             Self::Expo => "thrust_curve",
             Self::RotorRadius => "rotor_radius",
+            Self::CenterOfMass => "center_of_mass",
         }
     }
 
@@ -45,6 +55,7 @@ impl Guessed {
             Self::ThrustMax => "the rotors' largest thrust",
             Self::Expo => "the shape of the thrust curve",
             Self::RotorRadius => "the rotors' radius",
+            Self::CenterOfMass => "the centre of mass, over the arms",
         }
     }
 }
@@ -54,7 +65,7 @@ impl Guessed {
 pub struct Guess {
     /// which value
     pub of: Guessed,
-    /// standard error over the value; of the thrust curve, of its exponent itself
+    /// standard error over the value; of the thrust curve, of its exponent itself; of the centre of mass, over the mean arm
     pub relative: f64,
     /// what it rests on
     pub why: String,

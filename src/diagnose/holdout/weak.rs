@@ -96,6 +96,7 @@ fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
             Nuisance::Mass | Nuisance::Inertia(_) | Nuisance::Latency | Nuisance::VelocityError => continue,
             Nuisance::AccelerometerBias(_)
             | Nuisance::AirMoment(_)
+            | Nuisance::Balance(_)
             | Nuisance::Level(_)
             | Nuisance::KinematicLatency
             | Nuisance::LateralLatency => own.coefficients[index],

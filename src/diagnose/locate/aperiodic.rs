@@ -10,10 +10,10 @@ use super::super::trace::Trace;
 use super::gust::{GustFound, gust};
 use super::localisation::Localisation;
 use super::redness::{
-    Quantity, Redness, beside_harmonics, least_unnamed, red_fit, red_quantities, redness, scale,
+    Quantity, Redness, beside_harmonics, least_trend, red_fit, red_quantities, redness, scale,
 };
 use super::view::View;
-use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_SIDEWAYS, UNNAMED_TORQUE};
+use crate::diagnose::materiality::{UNNAMED_SIDEWAYS, UNNAMED_TORQUE};
 use nalgebra::Vector3;
 
 /// A slow trend.
@@ -75,6 +75,16 @@ impl Aperiodic {
         }
     }
 
+    /// Forces that wander by themselves, certain, and too small to be missing: wind and real rotors do so. A gust has its own name.
+    pub fn wandering(&self) -> impl Iterator<Item = &Redness> {
+        let is_told = |of: Quantity| match of {
+            Quantity::World(_) => self.gust.is_none(),
+            Quantity::BodyZ => true,
+            Quantity::Lift | Quantity::Torque(_) => false,
+        };
+        self.redness.iter().filter(move |red| red.certain && !red.is_lacking() && is_told(red.of))
+    }
+
     /// Emits what is certain as tracing events.
     pub(in crate::diagnose) fn emit(&self) {
         for red in self.redness.iter().filter(|red| red.certain) {
@@ -96,7 +106,7 @@ impl Aperiodic {
         let horizontal = |of: Quantity| matches!(of, Quantity::World(_));
         let gust = self.gust.is_some_and(|gust| !gust.is_slight());
         let trend = self.trend.is_some_and(|trend| trend.certain && !(gust && horizontal(trend.of)));
-        let red = self.redness.iter().any(|red| red.certain && !(gust && horizontal(red.of)));
+        let red = self.redness.iter().any(|red| red.is_lacking() && !(gust && horizontal(red.of)));
         trend || red || self.state.is_some_and(|state| state.certain)
     }
 }
@@ -109,6 +119,12 @@ const TREND_Z: f64 = 5.5;
 const WANDERING: f64 = 12.0;
 /// Time around a mass change that is left out, s. It is the width of the kernels and of the search's step around it.
 const CHANGE_S: f64 = 2.5;
+/// Time before and after a mass change in which it must show, s.
+const BESIDE_S: f64 = 10.0;
+/// Least time that is looked at before and after, beyond [`CHANGE_S`], s.
+const LEAST_BESIDE_S: f64 = 1.0;
+/// Time between the other moments that are looked at, s. A grid.
+const ELSEWHERE_S: f64 = 1.0;
 /// p-value below which the residual depends on a state. Set by judgement; measured only together with all conditions
 /// of a finding (see `Gates`).
 const STATE_P: f64 = 1e-6;
@@ -125,7 +141,7 @@ pub fn aperiodic(traces: &[Trace], fitted: &Fitted, located: &Localisation) -> A
     Aperiodic {
         trend: trend(traces, fitted, &view),
         gust: gust(&view, fitted, &redness),
-        state: state_lack(&view, fitted, located),
+        state: state_lack(&view, fitted, (located, &redness)),
         redness,
     }
 }
@@ -151,6 +167,50 @@ pub fn mass_step_std_kg(traces: &[Trace], fitted: &Fitted, at_s: f64) -> f64 {
     let variance = fit.coefficients[2];
     let of_mean = |length_s: f64| (2.0 * variance * correlation_s / length_s.max(1e-3)).min(variance);
     (of_mean(before_s) + of_mean(after_s)).sqrt() / fitted.base.vehicle.gravity_m_s2
+}
+
+/// A mass change as the seconds before and after it show it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepBeside {
+    /// kg, by these seconds alone
+    pub delta_kg: f64,
+    /// kg rms, what the same seconds show at other times of the flight
+    pub elsewhere_kg: f64,
+}
+
+/// What the seconds before and after a mass change of a fit show of it; `None` where the flight has too few of them.
+#[must_use]
+pub fn mass_step_beside(
+    traces: &[Trace],
+    fitted: &Fitted,
+    (at_s, delta_kg): (f64, f64),
+) -> Option<StepBeside> {
+    let view = View::new(traces, fitted)?;
+    let (first_s, last_s) = (*view.time_s.first()?, *view.time_s.last()?);
+    let (back_s, on_s) = ((at_s - first_s).min(BESIDE_S), (last_s - at_s).min(BESIDE_S));
+    if back_s.min(on_s) < CHANGE_S + LEAST_BESIDE_S {
+        return None;
+    }
+    let mean = |from_s: f64, to_s: f64| {
+        let from = view.time_s.partition_point(|time_s| *time_s < from_s);
+        let rows = &view.residual[2][from..view.time_s.partition_point(|time_s| *time_s < to_s)];
+        let enough = rows.len() as f64 * view.step_s > 0.5 * (to_s - from_s);
+        enough.then(|| rows.iter().sum::<f64>() / rows.len() as f64)
+    };
+    let of_weight = fitted.base.vehicle.gravity_m_s2.recip();
+    let step = |at_s: f64| {
+        let before_n = mean(at_s - back_s, at_s - CHANGE_S)?;
+        Some(of_weight * (mean(at_s + CHANGE_S, at_s + on_s)? - before_n))
+    };
+    let here = step(at_s)?;
+    let mut squares = Vec::new();
+    let mut time_s = first_s + back_s;
+    while time_s < last_s - on_s {
+        squares.extend(step(time_s).filter(|_| (time_s - at_s).abs() > BESIDE_S).map(|step| step * step));
+        time_s += ELSEWHERE_S;
+    }
+    let count = squares.len().max(1) as f64;
+    Some(StepBeside { delta_kg: delta_kg - here, elsewhere_kg: (squares.iter().sum::<f64>() / count).sqrt() })
 }
 
 /// Leaves out the time around a mass change, which is known only to some seconds: a step at a wrong time causes a large
@@ -189,7 +249,7 @@ fn trend(traces: &[Trace], fitted: &Fitted, view: &View) -> Option<Trend> {
             let per_min = evidence.theta[0];
             let relative = per_min.abs() * longest_s / 60.0 / scale(fitted, of).max(f64::MIN_POSITIVE);
             let certain =
-                evidence.z > TREND_Z && relative > least_unnamed(of) && may_feel(fitted, &column, &evidence);
+                evidence.z > TREND_Z && relative > least_trend(of) && may_feel(fitted, &column, &evidence);
             Some(Trend { of, per_min, std_per_min: evidence.std(0), z: evidence.z, relative, certain })
         })
         .max_by(|a, b| a.certain.cmp(&b.certain).then(a.z.total_cmp(&b.z)))
@@ -226,8 +286,13 @@ fn trend_column(traces: &[Trace], view: &View, of: Quantity) -> Channels {
     out
 }
 
-/// The state on which the residual depends with the smallest p-value, if no flight is periodic.
-fn state_lack(view: &View, fitted: &Fitted, located: &Localisation) -> Option<StateLack> {
+/// The state on which the residual depends with the smallest p-value, if no flight is periodic. A controller answers a force that
+/// wanders by itself, so the motion follows that force: what a state explains has to be larger.
+fn state_lack(
+    view: &View,
+    fitted: &Fitted,
+    (located, redness): (&Localisation, &[Redness]),
+) -> Option<StateLack> {
     if view.flights.iter().any(|(_, period_s)| period_s.is_some()) {
         return None;
     }
@@ -242,20 +307,28 @@ fn state_lack(view: &View, fitted: &Fitted, located: &Localisation) -> Option<St
         .collect();
     let count = tested.len() as f64;
     let least = |channel: usize| {
-        if channel < 2 {
+        // along body z as across it: no thrust law holds to a hundredth
+        if channel < 3 {
             UNNAMED_SIDEWAYS * fitted.weight_n()
-        } else if channel < 3 {
-            UNNAMED_FORCE * fitted.weight_n()
         } else {
             UNNAMED_TORQUE * fitted.rows.torque_rms[channel - 3]
         }
+    };
+    let wanders = |channel: usize| {
+        let of_channel = |of: Quantity| match of {
+            Quantity::World(_) => channel < 2,
+            Quantity::BodyZ => channel == 2,
+            Quantity::Torque(axis) => channel == 3 + axis,
+            Quantity::Lift => false,
+        };
+        redness.iter().filter(|red| red.certain && of_channel(red.of)).map(|red| red.rms).fold(0.0, f64::max)
     };
     tested
         .into_iter()
         .map(|follow| {
             let rms = follow.share.sqrt() * located.axes[follow.channel % AXES].rms;
             let p_value = (follow.p_value * count).min(1.0);
-            let certain = p_value < STATE_P && rms > least(follow.channel);
+            let certain = p_value < STATE_P && rms > least(follow.channel).max(wanders(follow.channel));
             StateLack { channel: follow.channel, state: follow.state, p_value, rms, certain }
         })
         .max_by(|a, b| a.certain.cmp(&b.certain).then(b.p_value.total_cmp(&a.p_value)))

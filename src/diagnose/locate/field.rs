@@ -8,7 +8,7 @@ use super::super::channels::{AXES, CHANNELS, Channels, channels};
 use super::super::fit::Fitted;
 use super::super::measured_force::may_feel;
 use super::super::trace::Trace;
-use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_SIDEWAYS};
+use crate::diagnose::materiality::UNNAMED_SIDEWAYS;
 use crate::stats::{STRETCHES, quantile};
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
@@ -65,6 +65,13 @@ const FIELD_Z: f64 = 5.5;
 /// Number of these parts in which a field must explain something. Set by judgement; measured only together with all
 /// conditions of a finding (see `Gates`).
 const LEAST_STRETCHES: usize = 8;
+/// Least share of what a field explains that the other parts of the flight must predict. Set by judgement; measured only together with all
+/// conditions of a finding (see `Gates`).
+const PREDICTED: f64 = 0.5;
+/// Share of the range of positions that a vehicle must move away before it visits a place again.
+const AWAY: f64 = 0.25;
+/// Ridge of that prediction, as a share of a column's mean energy.
+const UNSEEN: f64 = 0.01;
 /// Pairs of the force's axis and the axis along which it changes. A vertical force that changes with height is left
 /// out, because ground, ceiling and tether cause it.
 const TRIED: [(usize, usize); 8] = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1), (0, 2), (1, 2)];
@@ -89,9 +96,13 @@ pub fn field_test(
     if traces.is_empty() || !traces.iter().all(|trace| trace.known.position && trace.known.attitude) {
         return None;
     }
+    // outdoors, where a satellite receiver is, the wind grows with height
+    let outdoors = traces.iter().any(|trace| trace.velocity_error_m_s.is_some());
+    let is_wind = |along: usize| outdoors && along == 2;
     let ranges: Vec<(f64, f64)> = (0..3).map(|axis| position_range(traces, axis)).collect();
     let tested: Vec<_> = TRIED
         .par_iter()
+        .filter(|(_, along)| !is_wind(*along))
         .filter_map(|&(component, along)| {
             let columns = hats(traces, (component, along), ranges[along]);
             let evidence = after.weighted.test(&columns)?;
@@ -104,12 +115,12 @@ pub fn field_test(
     })?;
     let (where_m, extent_m, force_n) =
         bump(traces, after, (component, along), ranges[along]).unwrap_or((0.0, 0.0, 0.0));
-    let least_n = if component < 2 { UNNAMED_SIDEWAYS } else { UNNAMED_FORCE } * after.weight_n();
+    let least_n = UNNAMED_SIDEWAYS * after.weight_n();
     let certain = evidence.z > FIELD_Z
         && evidence.gain >= FIELD_GAIN
         && force_n.abs() >= least_n
         && may_feel(after, &columns, &evidence)
-        && all_along(after, &columns, &evidence.theta);
+        && all_along(after, &columns, (&evidence.theta, &positions(traces, along), ranges[along]));
     let energy_alone = if certain { taken(before, after, &columns) } else { evidence.energy };
     Some(FieldTest {
         gain: evidence.gain,
@@ -128,32 +139,89 @@ pub fn field_test(
     })
 }
 
-/// Whether the columns explain something in most parts of the flight, and no part gives half of it.
-fn all_along(after: &Fitted, columns: &[Channels], theta: &[f64]) -> bool {
+/// Whether the columns explain something in most parts of the flight, no part gives half of it, and other visits to the same places
+/// predict it. `positions_m` are those of the rows.
+fn all_along(
+    after: &Fitted,
+    columns: &[Channels],
+    (theta, positions_m, (low, high)): (&[f64], &[f64], (f64, f64)),
+) -> bool {
     let Some((_, partialled)) = after.weighted.partialled(columns) else { return false };
     let left = &after.weighted.left;
-    let rest = left - partialled * DVector::from_column_slice(theta);
-    let rows = after.rows.len();
-    let gains: Vec<f64> = (0..STRETCHES)
-        .map(|stretch| {
-            let (from, to) = (rows * stretch / STRETCHES, rows * (stretch + 1) / STRETCHES);
-            (0..CHANNELS)
-                .flat_map(|channel| channel * rows + from..channel * rows + to)
-                .map(|at| left[at] * left[at] - rest[at] * rest[at])
-                .sum()
-        })
-        .collect();
+    let part = |stretch: usize| Part::of(left, &partialled, (stretch, positions_m));
+    let parts: Vec<Part> = (0..STRETCHES).map(part).collect();
+    let theta = DVector::from_column_slice(theta);
+    let gains: Vec<f64> = parts.iter().map(|part| part.gain(&theta)).collect();
     let total: f64 = gains.iter().sum();
     let helped = gains.iter().filter(|gain| **gain > 0.0).count();
-    helped >= LEAST_STRETCHES && gains.iter().all(|gain| *gain < 0.5 * total)
+    let spread = helped >= LEAST_STRETCHES && gains.iter().all(|gain| *gain < 0.5 * total);
+    spread && predicted(&parts, AWAY * (high - low)).is_some_and(|predicted| predicted > PREDICTED * total)
+}
+
+/// Energy of all parts that fits to other visits explain: without the part, its neighbours, and the parts before and after it until the
+/// vehicle was `away_m` away. A force that wanders by itself is the same as long as the vehicle stays, and only a force that belongs to the
+/// place is there again on another leg.
+fn predicted(parts: &[Part], away_m: f64) -> Option<f64> {
+    let is_away = |place: usize, other: usize| (parts[other].at_m - parts[place].at_m).abs() > away_m;
+    let of = |(place, part): (usize, &Part)| {
+        let mut from = place.saturating_sub(1);
+        while from > 0 && !is_away(place, from) {
+            from -= 1;
+        }
+        let mut to = place + 1;
+        while to < parts.len() && !is_away(place, to) {
+            to += 1;
+        }
+        let others = || parts.iter().enumerate().filter(|(other, _)| *other < from || *other > to);
+        let size = part.along.len();
+        let normal = others().fold(DMatrix::zeros(size, size), |sum, (_, of)| sum + &of.normal);
+        let along = others().fold(DVector::zeros(size), |sum, (_, of)| sum + &of.along);
+        // a place that no other visit has seen is predicted as nought
+        let ridge = UNSEEN * parts.iter().map(|part| part.normal.trace()).sum::<f64>() / size as f64;
+        let theta = (normal + DMatrix::identity(size, size) * ridge).cholesky()?.solve(&along);
+        Some(part.gain(&theta))
+    };
+    parts.iter().enumerate().map(of).sum()
+}
+
+/// Products of the columns and of what is left in one part of the flight.
+struct Part {
+    normal: DMatrix<f64>,
+    along: DVector<f64>,
+    /// m, mean position
+    at_m: f64,
+}
+
+impl Part {
+    fn of(left: &DVector<f64>, partialled: &DMatrix<f64>, (stretch, positions_m): (usize, &[f64])) -> Self {
+        let rows = left.len() / CHANNELS;
+        let (from, to) = (rows * stretch / STRETCHES, rows * (stretch + 1) / STRETCHES);
+        let size = partialled.ncols();
+        let at_m = positions_m[from..to].iter().sum::<f64>() / (to - from).max(1) as f64;
+        let mut part = Self { normal: DMatrix::zeros(size, size), along: DVector::zeros(size), at_m };
+        for channel in 0..CHANNELS {
+            let columns = partialled.rows(channel * rows + from, to - from);
+            part.normal += columns.tr_mul(&columns);
+            part.along += columns.tr_mul(&left.rows(channel * rows + from, to - from));
+        }
+        part
+    }
+
+    /// By how much these coefficients lower the energy that is left.
+    fn gain(&self, theta: &DVector<f64>) -> f64 {
+        2.0 * theta.dot(&self.along) - theta.dot(&(&self.normal * theta))
+    }
+}
+
+/// Position of each row along a world axis, m.
+fn positions(traces: &[Trace], axis: usize) -> Vec<f64> {
+    let of = |trace: &Trace, center: usize| trace.states[center].position_m[axis];
+    traces.iter().flat_map(|trace| trace.centers.iter().map(move |&center| of(trace, center))).collect()
 }
 
 /// Range of a world axis that contains 96 % of the rows, m.
 fn position_range(traces: &[Trace], axis: usize) -> (f64, f64) {
-    let mut values: Vec<f64> = traces
-        .iter()
-        .flat_map(|trace| trace.centers.iter().map(move |&center| trace.states[center].position_m[axis]))
-        .collect();
+    let mut values = positions(traces, axis);
     values.sort_by(f64::total_cmp);
     let at = |percent: usize| quantile(&values, (percent, 100)).unwrap_or(0.0);
     (at(2), at(98))
@@ -195,10 +263,7 @@ fn hats(traces: &[Trace], place: (usize, usize), (low, high): (f64, f64)) -> Vec
         let from = (at.clamp(low, high) - low - index as f64 * spacing) / spacing;
         if from.abs() < 1.0 { (0.5 * PI * from).cos().powi(2) } else { 0.0 }
     };
-    let positions: Vec<f64> = traces
-        .iter()
-        .flat_map(|trace| trace.centers.iter().map(move |&center| trace.states[center].position_m[place.1]))
-        .collect();
+    let positions = positions(traces, place.1);
     (1..HATS)
         .map(|index| {
             let mean =
@@ -263,10 +328,7 @@ fn taken(before: &Fitted, after: &Fitted, columns: &[Channels]) -> f64 {
 /// Named effects whose strength changes with the horizontal position.
 fn uneven(traces: &[Trace], after: &Fitted) -> Vec<Uneven> {
     let place = |axis: usize| -> Vec<f64> {
-        let values: Vec<f64> = traces
-            .iter()
-            .flat_map(|trace| trace.centers.iter().map(move |&center| trace.states[center].position_m[axis]))
-            .collect();
+        let values = positions(traces, axis);
         let count = values.len().max(1) as f64;
         let mean = values.iter().sum::<f64>() / count;
         let std = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count).sqrt().max(1e-6);

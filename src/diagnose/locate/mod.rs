@@ -15,7 +15,7 @@ mod time;
 mod view;
 
 pub use super::followed::Followed;
-pub use aperiodic::{Aperiodic, StateLack, Trend, aperiodic, mass_step_std_kg};
+pub use aperiodic::{Aperiodic, StateLack, StepBeside, Trend, aperiodic, mass_step_beside, mass_step_std_kg};
 pub use field::{FieldTest, Uneven, field_test};
 pub use frequency::{Band, Coherence};
 pub use gust::GustFound;

@@ -4,8 +4,12 @@ use super::super::fit::Fitted;
 use super::lateral_drag::{axial_drag_n_s_m, lateral_drag};
 use super::spectrum::{Ordinate, VELOCITY_SCALE_S2, noise_shapes, periodogram};
 use super::view::View;
-use crate::diagnose::materiality::{UNNAMED_FORCE, UNNAMED_SIDEWAYS, UNNAMED_TORQUE};
+use crate::diagnose::materiality::{
+    UNNAMED_FORCE, UNNAMED_SIDEWAYS, UNNAMED_TORQUE, UNNAMED_WANDERING, WANDERING_TORQUE,
+};
 use crate::stats::{Whittle, whittle};
+use crate::text::significant;
+use crate::vehicle::AXIS_NAMES;
 use std::f64::consts::TAU;
 
 /// Quantities that are looked at for trends and redness.
@@ -36,8 +40,32 @@ pub struct Redness {
     pub relative: f64,
     /// N, what the velocity's own slow error makes of the drag (rms)
     pub of_velocity_n: f64,
-    /// certain, large enough to matter, and more than the velocity's error makes
+    /// certain, large enough to be told, and more than the velocity's error makes
     pub certain: bool,
+}
+
+impl Redness {
+    /// Size, place and time of a force in words: `0.59 N rms (4.0 % of the weight) along world y over 12 s`.
+    #[must_use]
+    pub fn words(&self, weight_n: f64) -> String {
+        let along = match self.of {
+            Quantity::World(axis) => format!("world {}", AXIS_NAMES[axis]),
+            Quantity::Lift | Quantity::BodyZ | Quantity::Torque(_) => "body z".to_owned(),
+        };
+        format!(
+            "{} N rms ({} % of the weight) along {along} over {} s",
+            significant(self.rms, 2),
+            significant(100.0 * self.rms / weight_n, 2),
+            significant(self.correlation_s, 2)
+        )
+    }
+
+    /// Whether it is so large that something is missing: forces of wind and of rotors wander too.
+    #[must_use]
+    pub fn is_lacking(&self) -> bool {
+        let least = if matches!(self.of, Quantity::Torque(_)) { WANDERING_TORQUE } else { UNNAMED_WANDERING };
+        self.certain && self.relative > least
+    }
 }
 
 pub(super) fn red_quantities(view: &View) -> Vec<(Quantity, Vec<f64>)> {
@@ -49,8 +77,13 @@ pub(super) fn red_quantities(view: &View) -> Vec<(Quantity, Vec<f64>)> {
     out
 }
 
-/// Least size that matters without a name, as a share of what the quantity is measured by.
-pub(super) fn least_unnamed(of: Quantity) -> f64 {
+/// Least trend over a flight that matters without a name, as a share of what the quantity is measured by: the mean wind may change.
+pub(super) fn least_trend(of: Quantity) -> f64 {
+    if matches!(of, Quantity::World(_)) { UNNAMED_WANDERING } else { least_unnamed(of) }
+}
+
+/// Least size that is told without a name, as a share of what the quantity is measured by.
+fn least_unnamed(of: Quantity) -> f64 {
     match of {
         Quantity::Torque(_) => UNNAMED_TORQUE,
         Quantity::World(_) => UNNAMED_SIDEWAYS,

@@ -128,7 +128,7 @@ fn nothing(study: &ExplainStudy) -> String {
     let seen: Vec<String> = ranked(|words| words.told_if_absent)
         .iter()
         .filter_map(|id| detection_limit(study, id))
-        .filter(|limit| limit.usual.is_none_or(|usual| limit.limit < usual))
+        .filter(|limit| limit.is_possible() && limit.usual.is_none_or(|usual| limit.limit < usual))
         .map(|of| limit(&of))
         .take(3)
         .collect();

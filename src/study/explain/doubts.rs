@@ -4,6 +4,7 @@ use super::result::{BodyParameter, ExplainStudy};
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
 use crate::estimate::{Contradiction, Finding, FlightApart, NAMES, ThrustScale, stated};
+use crate::note::{About, Note};
 use crate::study::doubts::{TWO_VEHICLES, doubts};
 use crate::vehicle::Guessed;
 
@@ -37,6 +38,21 @@ impl ExplainStudy {
         let thrust_differs = self.names_thrust();
         let apart = self.given.contradicting.iter().map(|flight| flight.note(thrust_differs));
         self.notes.extend(apart);
+    }
+
+    /// A remark on the forces that wander by themselves.
+    pub(super) fn tell_wandering(&mut self) {
+        let weight_n = self.given.vehicle.body.mass_kg * self.given.vehicle.gravity_m_s2;
+        let told: Vec<String> =
+            self.explanation.aperiodic.wandering().map(|red| red.words(weight_n)).collect();
+        if !told.is_empty() {
+            let text = format!(
+                "a force that follows neither place nor motion is left: {}. Wind and real rotors make such forces, and no effect \
+                 is missing for it",
+                told.join(", ")
+            );
+            self.notes.push(Note::remark(About::Estimate, text));
+        }
     }
 
     /// Why the answer is doubtful, clause by clause; none where nothing speaks against it.

@@ -163,6 +163,7 @@ impl Task<'_> {
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
         study.tell_flights_apart();
+        study.tell_wandering();
         study.evaluate_explained(flights);
         if flights.signals.len() > 1 {
             study.tell_along(&flights.signals, self.winds_m_s.to_vec());
