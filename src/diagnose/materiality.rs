@@ -29,11 +29,11 @@ pub(super) const UNNAMED_FORCE: f64 = PLAIN.force;
 /// flights with an estimator in the loop (`cargo bench --bench blind -- --realistic --clean 600 --seed 20310000`) trends of up to
 /// 0.022 and forces of places of up to 0.02 were left.
 pub(super) const UNNAMED_SIDEWAYS: f64 = 0.025;
-/// Force that wanders by itself and follows neither place nor motion that matters, as a share of the weight. Real thrust wanders
-/// about its command and real wind about its mean: see `docs/src/figures-diagnosis.md`.
+/// Force that wanders by itself and follows neither place nor motion that matters, as a share of the weight, and its torque as a share of
+/// the weight on an arm. Real thrust wanders about its command and real wind about its mean: see `docs/src/figures-diagnosis.md`.
 pub(super) const UNNAMED_WANDERING: f64 = 0.05;
-/// The same of a torque, as a share of the rms of the torque that the motion needs: between two samples of telemetry the commands move, and
-/// on flights of an autopilot's simulator 0.2 to 0.4 of it was left.
+/// The same of a torque, also as a share of the rms of the torque that the motion needs: between two samples of telemetry the commands
+/// move, and on flights of an autopilot's simulator 0.2 to 0.4 of it was left.
 pub(super) const WANDERING_TORQUE: f64 = 0.5;
 /// Torque without a name that matters, as a share of the rms of the torque that the motion needs.
 pub(super) const UNNAMED_TORQUE: f64 = PLAIN.torque;

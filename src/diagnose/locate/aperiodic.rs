@@ -206,11 +206,12 @@ pub fn mass_step_beside(
     let mut squares = Vec::new();
     let mut time_s = first_s + back_s;
     while time_s < last_s - on_s {
-        squares.extend(step(time_s).filter(|_| (time_s - at_s).abs() > BESIDE_S).map(|step| step * step));
+        squares
+            .extend(step(time_s).filter(|_| (time_s - at_s).abs() > 2.0 * CHANGE_S).map(|step| step * step));
         time_s += ELSEWHERE_S;
     }
-    let count = squares.len().max(1) as f64;
-    Some(StepBeside { delta_kg: delta_kg - here, elsewhere_kg: (squares.iter().sum::<f64>() / count).sqrt() })
+    let elsewhere_kg = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    (!squares.is_empty()).then_some(StepBeside { delta_kg: delta_kg - here, elsewhere_kg })
 }
 
 /// Leaves out the time around a mass change, which is known only to some seconds: a step at a wrong time causes a large

@@ -369,3 +369,47 @@ fn uneven(traces: &[Trace], after: &Fitted) -> Vec<Uneven> {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+    use super::*;
+
+    const ROWS: usize = 240;
+
+    /// Share of what a bump at 1 m explains along a flight that other visits predict, of a force (N) by row.
+    fn share_predicted(at_m: impl Fn(f64) -> f64, force_n: impl Fn(f64) -> f64) -> f64 {
+        let of_rows = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            (0..ROWS).map(|row| of(row as f64 / ROWS as f64)).collect()
+        };
+        let positions_m = of_rows(&at_m);
+        let mut left = DVector::zeros(CHANNELS * ROWS);
+        left.rows_mut(0, ROWS).copy_from_slice(&of_rows(&force_n));
+        let mut columns = DMatrix::zeros(CHANNELS * ROWS, 2);
+        for (row, at) in positions_m.iter().enumerate() {
+            columns[(row, 0)] = (-0.5 * ((at - 1.0) / 0.4).powi(2)).exp();
+            columns[(row, 1)] = (-0.5 * ((at + 1.0) / 0.4).powi(2)).exp();
+        }
+        let parts: Vec<Part> =
+            (0..STRETCHES).map(|stretch| Part::of(&left, &columns, (stretch, &positions_m))).collect();
+        let normal = parts.iter().fold(DMatrix::zeros(2, 2), |sum, part| sum + &part.normal);
+        let along = parts.iter().fold(DVector::zeros(2), |sum, part| sum + &part.along);
+        let theta = normal.cholesky().unwrap().solve(&along);
+        let total: f64 = parts.iter().map(|part| part.gain(&theta)).sum();
+        predicted(&parts, AWAY * 3.0).unwrap() / total
+    }
+
+    #[test]
+    fn only_what_is_there_again_on_another_leg_belongs_to_the_place() {
+        let bump = |at: f64| (-0.5 * ((at - 1.0) / 0.4_f64).powi(2)).exp();
+        // three legs out and back
+        let legs = |share: f64| 1.5 * (3.0 * std::f64::consts::TAU * share).sin();
+        assert!(share_predicted(legs, |share| bump(legs(share))) > 0.9);
+        // one way, with a stay at each end: what blew in the second half is no place
+        let once = |share: f64| if share < 0.5 { -1.0 } else { 1.0 };
+        let wind = |share: f64| if share < 0.5 { 0.0 } else { 1.0 };
+        assert!(share_predicted(once, wind) < 0.5 * PREDICTED);
+        // the same wind over the legs
+        assert!(share_predicted(legs, wind) < PREDICTED);
+    }
+}

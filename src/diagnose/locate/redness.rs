@@ -9,6 +9,7 @@ use crate::diagnose::materiality::{
 };
 use crate::stats::{Whittle, whittle};
 use crate::text::significant;
+use crate::trim::mean_arm_m;
 use crate::vehicle::AXIS_NAMES;
 use std::f64::consts::TAU;
 
@@ -36,8 +37,10 @@ pub struct Redness {
     pub rms: f64,
     /// correlation time of the red part, s
     pub correlation_s: f64,
-    /// rms of the weight, or of the torque's rms
+    /// rms over the weight, or over the torque's rms
     pub relative: f64,
+    /// rms over the weight, of a torque over the weight at the end of a mean arm, or over its drag torque about body z
+    pub of_lift: f64,
     /// N, what the velocity's own slow error makes of the drag (rms)
     pub of_velocity_n: f64,
     /// certain, large enough to be told, and more than the velocity's error makes
@@ -60,11 +63,11 @@ impl Redness {
         )
     }
 
-    /// Whether it is so large that something is missing: forces of wind and of rotors wander too.
+    /// Whether it is so large that something is missing: forces of wind and of rotors wander too, and with them their torques.
     #[must_use]
     pub fn is_lacking(&self) -> bool {
-        let least = if matches!(self.of, Quantity::Torque(_)) { WANDERING_TORQUE } else { UNNAMED_WANDERING };
-        self.certain && self.relative > least
+        let is_beyond_motion = !matches!(self.of, Quantity::Torque(_)) || self.relative > WANDERING_TORQUE;
+        self.certain && self.of_lift > UNNAMED_WANDERING && is_beyond_motion
     }
 }
 
@@ -106,7 +109,8 @@ pub(super) fn redness(view: &View, fitted: &Fitted, of: Quantity, series: &[f64]
         && relative > least
         && rms > CONTRADICTED * of_velocity_n
         && !of_jitter;
-    Some(Redness { of, statistic, rms, correlation_s, relative, of_velocity_n, certain })
+    let of_lift = rms / lift_scale(fitted, of);
+    Some(Redness { of, statistic, rms, correlation_s, relative, of_lift, of_velocity_n, certain })
 }
 
 /// The correlation time that explains most, its fit, and the likelihood ratio against noise alone.
@@ -187,6 +191,17 @@ pub(super) fn scale(fitted: &Fitted, of: Quantity) -> f64 {
         Quantity::Torque(axis) => fitted.rows.torque_rms[axis],
         Quantity::BodyZ | Quantity::World(_) => fitted.weight_n(),
     }
+}
+
+/// What the rotors make of the weight: the weight, and its torques.
+fn lift_scale(fitted: &Fitted, of: Quantity) -> f64 {
+    let vehicle = &fitted.base.vehicle;
+    let arm_m = match of {
+        Quantity::Torque(2) => vehicle.propulsion.torque_per_thrust_m,
+        Quantity::Torque(_) => mean_arm_m(vehicle),
+        Quantity::Lift | Quantity::BodyZ | Quantity::World(_) => 1.0,
+    };
+    (arm_m * fitted.weight_n()).max(f64::MIN_POSITIVE)
 }
 
 /// Least likelihood ratio of a red spectrum against a white one. Set by judgement; measured only together with all

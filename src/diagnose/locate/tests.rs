@@ -2,13 +2,21 @@ use super::*;
 use crate::diagnose::{ExplainSettings, Explanation, Verdict, explain};
 use crate::physics::effects::by_id;
 use crate::physics::{ActiveEffect, Wrench};
+use crate::signals::Signals;
 use crate::signals::{ConditionSettings, condition};
 use crate::simulate::{
     Disturbance, FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight,
 };
+use crate::vehicle::{Guess, Guessed, Vehicle};
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 
 fn explained(seed: u64, conceal: impl Fn(&mut Truth, f64)) -> Explanation {
+    let (signals, vehicle) = flown(seed, conceal);
+    explain(&[signals], &vehicle, &ExplainSettings::default()).unwrap()
+}
+
+fn flown(seed: u64, conceal: impl Fn(&mut Truth, f64)) -> (Signals, Vehicle) {
     let pair = random_vehicle(seed.wrapping_mul(7919));
     let trajectory = RandomTrajectory::default().draw(seed.wrapping_mul(104_729)).unwrap();
     let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
@@ -19,7 +27,19 @@ fn explained(seed: u64, conceal: impl Fn(&mut Truth, f64)) -> Explanation {
     let flight = simulate_flight(truth, &pair.nominal, &reference, &settings).unwrap();
     let conditioning = ConditionSettings { transient_s: Some(1.0), ..ConditionSettings::default() };
     let signals = condition(&flight.recording, &pair.nominal, &conditioning).unwrap();
-    explain(&[signals], &pair.nominal, &ExplainSettings::default()).unwrap()
+    (signals, pair.nominal)
+}
+
+/// A force of `share` of the weight along a world axis that wanders within some seconds and never repeats.
+fn wandering(axis: usize, share: f64) -> impl Fn(&mut Truth, f64) {
+    move |truth, weight_n| {
+        truth.disturbance = Some(Disturbance::new(move |time_s, state| {
+            // no harmonic of the flown period, and none of each other
+            let turns = [0.0531, 0.0832, 0.1297, 0.2089].map(|hz| (TAU * hz * time_s + 9.0 * hz).sin());
+            let force = Vector3::ith(axis, share * weight_n / 2.0_f64.sqrt() * turns.iter().sum::<f64>());
+            Wrench { force_n: state.attitude.inverse_transform_vector(&force), torque_nm: Vector3::zeros() }
+        }));
+    }
 }
 
 fn effect(id: &str, values: &[f64]) -> ActiveEffect {
@@ -90,4 +110,46 @@ fn where_nothing_is_missing_nothing_is_located() {
     assert!(located.axes.iter().all(|axis| axis.excess == 0.0), "{:?}", located.axes);
     assert!(!found.field.unwrap().certain && !found.aperiodic.is_lacking());
     assert!(found.aperiodic.redness.len() == 6);
+}
+
+#[test]
+fn a_force_that_wanders_as_wind_does_is_told_and_nothing_is_missing_for_it() {
+    let found = explained(6005, wandering(0, 0.03));
+    assert_eq!(found.verdict, Verdict::NothingMissing, "{:?}", found.named);
+    let told: Vec<_> = found.aperiodic.wandering().collect();
+    assert!(told.iter().any(|red| red.of == Quantity::World(0)), "{:?}", found.aperiodic.redness);
+    assert!((0.015..0.05).contains(&told[0].relative), "{told:?}");
+    let words = told[0].words(10.0);
+    assert!(words.contains("of the weight) along world x over"), "{words}");
+    // three times as much is more than wind makes
+    assert_eq!(explained(6005, wandering(0, 0.09)).verdict, Verdict::Unexplained);
+}
+
+#[test]
+fn a_lift_that_wanders_is_no_change_of_the_mass_and_a_load_that_drops_is() {
+    let wanders = explained(6006, wandering(2, 0.02));
+    assert!(wanders.named.iter().all(|named| named.id != "mass_change"), "{:?}", wanders.named);
+    let drops = explained(6006, |truth, weight_n| {
+        truth.effects.push(effect("mass_change", &[22.0, -0.06 * weight_n / 9.81]));
+    });
+    assert_eq!(drops.named.iter().map(|named| named.id).collect::<Vec<_>>(), ["mass_change"]);
+}
+
+#[test]
+fn where_torques_are_averaged_a_guessed_balance_leaves_a_weak_rotor_uncertain() {
+    let (mut signals, mut vehicle) =
+        flown(6007, |truth, _| truth.effects.push(effect("weak_rotor", &[1.0, 0.9])));
+    signals.quality.torques = false;
+    let std = |vehicle: &Vehicle| {
+        let found = explain(std::slice::from_ref(&signals), vehicle, &ExplainSettings::default()).unwrap();
+        let weak = found.named.iter().find(|named| named.id == "weak_rotor").unwrap();
+        let factor = weak.get("factor").unwrap();
+        assert!((factor.value - 0.9).abs() < 3.0 * factor.std, "{factor:?}");
+        factor.std
+    };
+    let measured = std(&vehicle);
+    vehicle.guesses.push(Guess { of: Guessed::CenterOfMass, relative: 0.018, why: String::new() });
+    // the mean balance tells nothing any more, the balance over the thrust still does
+    let guessed = std(&vehicle);
+    assert!(guessed > 1.4 * measured, "{guessed} {measured}");
 }
