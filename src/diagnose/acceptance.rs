@@ -11,6 +11,7 @@ use super::tested::Tested;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::vehicle::VehicleSize;
+use std::ops::Range;
 
 /// A candidate with its sharpest values and the model with it; `None` where it is refused.
 pub(super) fn accepted(
@@ -87,8 +88,9 @@ fn at_bound(fitted: &Fitted, taken: &Tested) -> bool {
     })
 }
 
-/// Share of a mass change that the seconds before and after it must show: a slow drift shows little of itself there.
-const SHOWN_BESIDE: f64 = 0.4;
+/// Share of a mass change that the seconds before and after it may show: a slow drift shows little of itself there, and what comes and
+/// goes shows more. Set by judgement; measured only together with all conditions of a name (see `Gates`).
+const SHOWN_BESIDE: Range<f64> = 0.4..2.0;
 
 /// Whether a step of the mass could be a force that drifts by itself: its own seconds hardly show it, or other seconds show as much.
 fn wanders(flights: &[Trace], fitted: &Fitted, taken: &Tested) -> bool {
@@ -101,7 +103,8 @@ fn wanders(flights: &[Trace], fitted: &Fitted, taken: &Tested) -> bool {
         let beside = mass_step_beside(flights, fitted, (moment_s, delta_kg));
         tracing::debug!(moment_s, delta_kg, ?beside, "a change of mass is judged");
         let stands_out = beside.is_some_and(|beside| {
-            beside.delta_kg / delta_kg > SHOWN_BESIDE && delta_kg.abs() > NAME_Z * beside.elsewhere_kg
+            let share = beside.delta_kg / delta_kg;
+            SHOWN_BESIDE.contains(&share) && beside.delta_kg.abs() > NAME_Z * beside.elsewhere_kg
         });
         !stands_out || delta_kg.abs() < NAME_Z * mass_step_std_kg(flights, fitted, moment_s)
     })

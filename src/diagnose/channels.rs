@@ -49,7 +49,7 @@ pub enum Nuisance {
     Tilt(usize),
     /// N m/(m/s), about body x, y, of the air in averaged torques
     AirMoment(usize),
-    /// N m, about body x, y, z, of the flight's own balance in averaged torques
+    /// N m, about body x, y, z, of a balance that is a guess, in averaged torques
     Balance(usize),
     /// share of the commands' jitter that the rotors do not follow, less one half
     Jitter,

@@ -149,12 +149,17 @@ struct Beyond {
 fn beyond(traces: &[Trace], found: &Search) -> Beyond {
     let (located_before, located_after) =
         rayon::join(|| localise(traces, &found.before), || localise(traces, &found.after));
+    let aperiodic = located_after
+        .as_ref()
+        .map_or_else(Aperiodic::default, |located| aperiodic(traces, &found.after, located));
     Beyond {
         lack: lacks(traces, &found.after),
-        field: field_test(traces, (&found.before, &found.after), explained_energy(found)),
-        aperiodic: located_after
-            .as_ref()
-            .map_or_else(Aperiodic::default, |located| aperiodic(traces, &found.after, located)),
+        field: field_test(
+            traces,
+            (&found.before, &found.after),
+            (explained_energy(found), &aperiodic.redness),
+        ),
+        aperiodic,
         located_before,
         located_after,
     }

@@ -138,9 +138,9 @@ fn guessed_balance(trace: &Trace, vehicle: &Vehicle) -> Vec<NuisanceColumn> {
     // rotors that differ by chance turn the vehicle about body z by all of their torque, and across it by the cosine of their arms
     let about_z_nm = SQRT_2 * share_n * vehicle.propulsion.torque_per_thrust_m;
     let about = |(axis, std_nm): (usize, f64)| {
-        let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
-        values[3 + axis].fill(1.0);
-        column(Nuisance::Balance(axis), Some(std_nm), values)
+        let mut torque = nothing(trace);
+        torque[axis].fill(1.0);
+        column(Nuisance::Balance(axis), Some(std_nm), channels(trace, nothing(trace), torque))
     };
     [across_nm, across_nm, about_z_nm].into_iter().enumerate().map(about).collect()
 }

@@ -15,6 +15,7 @@ use super::price::Price;
 use super::pruning::{UNCHANGED_S, prune};
 use super::score::test_all;
 use super::signature::{EffectTerm, Signature};
+use super::signatures::signature_of;
 use super::substitution::one_for_several;
 use super::tested::{Search, Step, Tested};
 use super::trace::Trace;
@@ -52,6 +53,10 @@ pub fn search(
                     Some(step) => {
                         step.emit();
                         steps.push(step);
+                        // other moments had what this effect explains: what must stand out from them comes back
+                        refused.retain(|id| {
+                            signature_of(id).is_none_or(|signature| signature.role.moment.is_none())
+                        });
                     }
                     None => {
                         tracing::debug!(effect = id, "effect refused");

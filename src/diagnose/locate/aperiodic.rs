@@ -14,6 +14,7 @@ use super::redness::{
 };
 use super::view::View;
 use crate::diagnose::materiality::{UNNAMED_SIDEWAYS, UNNAMED_TORQUE};
+use crate::stats::median;
 use nalgebra::Vector3;
 
 /// A slow trend.
@@ -75,14 +76,20 @@ impl Aperiodic {
         }
     }
 
-    /// Forces that wander by themselves, certain, and too small to be missing: wind and real rotors do so. A gust has its own name.
+    /// Forces and torques that wander by themselves, certain, and too small to count as missing. A gust has its own name.
     pub fn wandering(&self) -> impl Iterator<Item = &Redness> {
-        let is_told = |of: Quantity| match of {
-            Quantity::World(_) => self.gust.is_none(),
-            Quantity::BodyZ => true,
-            Quantity::Lift | Quantity::Torque(_) => false,
+        let is_gust = |of: Quantity| self.gust.is_some() && matches!(of, Quantity::World(_));
+        self.redness.iter().filter(move |red| red.certain && !red.is_lacking() && !is_gust(red.of))
+    }
+
+    /// A horizontal force that changes over the flight, certain, and too little to count as missing.
+    #[must_use]
+    pub fn drifting(&self) -> Option<&Trend> {
+        let is_told = |trend: &&Trend| {
+            let matters = trend.z > TREND_Z && trend.relative > UNNAMED_SIDEWAYS;
+            matters && !trend.certain && matches!(trend.of, Quantity::World(_))
         };
-        self.redness.iter().filter(move |red| red.certain && !red.is_lacking() && is_told(red.of))
+        self.trend.as_ref().filter(is_told)
     }
 
     /// Emits what is certain as tracing events.
@@ -119,10 +126,18 @@ const TREND_Z: f64 = 5.5;
 const WANDERING: f64 = 12.0;
 /// Time around a mass change that is left out, s. It is the width of the kernels and of the search's step around it.
 const CHANGE_S: f64 = 2.5;
+/// Share of what is left that a state must explain beside a force that wanders by itself. A half is most of it.
+const MOST_OF_IT: f64 = 0.5;
 /// Time before and after a mass change in which it must show, s.
 const BESIDE_S: f64 = 10.0;
 /// Least time that is looked at before and after, beyond [`CHANGE_S`], s.
 const LEAST_BESIDE_S: f64 = 1.0;
+/// The same as a share of the flight, if that is less: a quarter leaves other moments to compare with.
+const BESIDE_SHARE: f64 = 0.25;
+/// Least share of these seconds that must be usable. With less, the mean would be that of a moment.
+const ENOUGH: f64 = 0.3;
+/// Median of the size of a standard normal variable.
+const MEDIAN_OF_NORMAL: f64 = 0.6745;
 /// Time between the other moments that are looked at, s. A grid.
 const ELSEWHERE_S: f64 = 1.0;
 /// p-value below which the residual depends on a state. Set by judgement; measured only together with all conditions
@@ -174,44 +189,53 @@ pub fn mass_step_std_kg(traces: &[Trace], fitted: &Fitted, at_s: f64) -> f64 {
 pub struct StepBeside {
     /// kg, by these seconds alone
     pub delta_kg: f64,
-    /// kg rms, what the same seconds show at other times of the flight
+    /// kg, standard deviation of what the same seconds show at other moments of the flight
     pub elsewhere_kg: f64,
 }
 
-/// What the seconds before and after a mass change of a fit show of it; `None` where the flight has too few of them.
+/// What the seconds before and after a mass change `delta_kg` in the fit of one flight show of it; `None` where it is too near to an end of the
+/// flight, and for several flights.
 #[must_use]
 pub fn mass_step_beside(
     traces: &[Trace],
     fitted: &Fitted,
     (at_s, delta_kg): (f64, f64),
 ) -> Option<StepBeside> {
+    let [_] = traces else { return None };
     let view = View::new(traces, fitted)?;
+    beside(&view, (at_s, delta_kg), fitted.base.vehicle.gravity_m_s2)
+}
+
+fn beside(view: &View, (at_s, delta_kg): (f64, f64), gravity_m_s2: f64) -> Option<StepBeside> {
     let (first_s, last_s) = (*view.time_s.first()?, *view.time_s.last()?);
-    let (back_s, on_s) = ((at_s - first_s).min(BESIDE_S), (last_s - at_s).min(BESIDE_S));
+    let most_s = BESIDE_S.min(BESIDE_SHARE * (last_s - first_s));
+    let (back_s, on_s) = ((at_s - first_s).min(most_s), (last_s - at_s).min(most_s));
     if back_s.min(on_s) < CHANGE_S + LEAST_BESIDE_S {
         return None;
     }
     let mean = |from_s: f64, to_s: f64| {
         let from = view.time_s.partition_point(|time_s| *time_s < from_s);
-        let rows = &view.residual[2][from..view.time_s.partition_point(|time_s| *time_s < to_s)];
-        let enough = rows.len() as f64 * view.step_s > 0.5 * (to_s - from_s);
-        enough.then(|| rows.iter().sum::<f64>() / rows.len() as f64)
+        let to = view.time_s.partition_point(|time_s| *time_s < to_s);
+        // the moment is known only to some seconds
+        let known = (from..to).filter(|row| (view.time_s[*row] - at_s).abs() >= CHANGE_S);
+        let (sum, count) = known.fold((0.0, 0usize), |(sum, n), row| (sum + view.residual[2][row], n + 1));
+        let enough = count as f64 * view.step_s > ENOUGH * (to_s - from_s);
+        enough.then(|| sum / count as f64)
     };
-    let of_weight = fitted.base.vehicle.gravity_m_s2.recip();
-    let step = |at_s: f64| {
+    // a force that is missing upwards is a mass that is not there
+    let step_kg = |at_s: f64| {
         let before_n = mean(at_s - back_s, at_s - CHANGE_S)?;
-        Some(of_weight * (mean(at_s + CHANGE_S, at_s + on_s)? - before_n))
+        Some((before_n - mean(at_s + CHANGE_S, at_s + on_s)?) / gravity_m_s2)
     };
-    let here = step(at_s)?;
-    let mut squares = Vec::new();
-    let mut time_s = first_s + back_s;
-    while time_s < last_s - on_s {
-        squares
-            .extend(step(time_s).filter(|_| (time_s - at_s).abs() > 2.0 * CHANGE_S).map(|step| step * step));
-        time_s += ELSEWHERE_S;
-    }
-    let elsewhere_kg = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
-    (!squares.is_empty()).then_some(StepBeside { delta_kg: delta_kg - here, elsewhere_kg })
+    let here_kg = step_kg(at_s)?;
+    let count = ((last_s - first_s - back_s - on_s) / ELSEWHERE_S).max(0.0);
+    let moments =
+        (0..).take_while(|n| f64::from(*n) <= count).map(|n| first_s + back_s + f64::from(n) * ELSEWHERE_S);
+    let other = |moment_s: &f64| (moment_s - at_s).abs() > CHANGE_S + LEAST_BESIDE_S;
+    let mut sizes: Vec<f64> = moments.filter(other).filter_map(step_kg).map(f64::abs).collect();
+    // a second load that drops does not hide the first
+    let elsewhere_kg = median(&mut sizes) / MEDIAN_OF_NORMAL;
+    elsewhere_kg.is_finite().then_some(StepBeside { delta_kg: delta_kg + here_kg, elsewhere_kg })
 }
 
 /// Leaves out the time around a mass change, which is known only to some seconds: a step at a wrong time causes a large
@@ -288,7 +312,7 @@ fn trend_column(traces: &[Trace], view: &View, of: Quantity) -> Channels {
 }
 
 /// The state on which the residual depends with the smallest p-value, if no flight is periodic. A controller answers a force that
-/// wanders by itself, so the motion follows that force: what a state explains has to be larger.
+/// wanders by itself, so the motion follows that force: beside one, a state has to explain most of what is left.
 fn state_lack(
     view: &View,
     fitted: &Fitted,
@@ -301,9 +325,9 @@ fn state_lack(
         .follows
         .iter()
         .filter(|follow| {
-            // the commands' own noise is in the torques
-            let of_torque = (3..AXES).contains(&follow.channel);
-            !(follow.state.is_slow() || of_torque && follow.state.is_commanded())
+            // the commands' own noise is in the torques, and a controller answers a force across the rotors' axis by them
+            let of_lift = follow.channel == 2;
+            !(follow.state.is_slow() || !of_lift && follow.state.is_commanded())
         })
         .collect();
     let count = tested.len() as f64;
@@ -322,14 +346,15 @@ fn state_lack(
             Quantity::Torque(axis) => channel == 3 + axis,
             Quantity::Lift => false,
         };
-        redness.iter().filter(|red| red.certain && of_channel(red.of)).map(|red| red.rms).fold(0.0, f64::max)
+        redness.iter().any(|red| red.certain && of_channel(red.of))
     };
     tested
         .into_iter()
         .map(|follow| {
             let rms = follow.share.sqrt() * located.axes[follow.channel % AXES].rms;
             let p_value = (follow.p_value * count).min(1.0);
-            let certain = p_value < STATE_P && rms > least(follow.channel).max(wanders(follow.channel));
+            let is_most = follow.share > MOST_OF_IT || !wanders(follow.channel);
+            let certain = p_value < STATE_P && rms > least(follow.channel) && is_most;
             StateLack { channel: follow.channel, state: follow.state, p_value, rms, certain }
         })
         .max_by(|a, b| a.certain.cmp(&b.certain).then(b.p_value.total_cmp(&a.p_value)))

@@ -13,6 +13,7 @@ mod spectrum;
 mod states;
 mod time;
 mod view;
+mod visits;
 
 pub use super::followed::Followed;
 pub use aperiodic::{Aperiodic, StateLack, StepBeside, Trend, aperiodic, mass_step_beside, mass_step_std_kg};

@@ -5,7 +5,7 @@ use super::lateral_drag::{axial_drag_n_s_m, lateral_drag};
 use super::spectrum::{Ordinate, VELOCITY_SCALE_S2, noise_shapes, periodogram};
 use super::view::View;
 use crate::diagnose::materiality::{
-    UNNAMED_FORCE, UNNAMED_SIDEWAYS, UNNAMED_TORQUE, UNNAMED_WANDERING, WANDERING_TORQUE,
+    UNNAMED_FORCE, UNNAMED_SIDEWAYS, UNNAMED_TORQUE, UNNAMED_WANDERING, WANDERING_ON_ARM, WANDERING_TORQUE,
 };
 use crate::stats::{Whittle, whittle};
 use crate::text::significant;
@@ -39,7 +39,7 @@ pub struct Redness {
     pub correlation_s: f64,
     /// rms over the weight, or over the torque's rms
     pub relative: f64,
-    /// rms over the weight, of a torque over the weight at the end of a mean arm, or over its drag torque about body z
+    /// rms over the weight; of a torque, over the weight on a mean arm (about z: over the weight times the torque per thrust)
     pub of_lift: f64,
     /// N, what the velocity's own slow error makes of the drag (rms)
     pub of_velocity_n: f64,
@@ -48,17 +48,21 @@ pub struct Redness {
 }
 
 impl Redness {
-    /// Size, place and time of a force in words: `0.59 N rms (4.0 % of the weight) along world y over 12 s`.
+    /// Size, axis and time in words: `0.59 N rms (4.0 % of the weight) along world y over 12 s`.
     #[must_use]
-    pub fn words(&self, weight_n: f64) -> String {
-        let along = match self.of {
-            Quantity::World(axis) => format!("world {}", AXIS_NAMES[axis]),
-            Quantity::Lift | Quantity::BodyZ | Quantity::Torque(_) => "body z".to_owned(),
+    pub fn words(&self) -> String {
+        let (unit, scale, along) = match self.of {
+            Quantity::World(axis) => ("N", "the weight", format!("along world {}", AXIS_NAMES[axis])),
+            Quantity::Lift | Quantity::BodyZ => ("N", "the weight", "along body z".to_owned()),
+            Quantity::Torque(2) => ("N m", "the weight's drag torque", "about body z".to_owned()),
+            Quantity::Torque(axis) => {
+                ("N m", "the weight on an arm", format!("about body {}", AXIS_NAMES[axis]))
+            }
         };
         format!(
-            "{} N rms ({} % of the weight) along {along} over {} s",
+            "{} {unit} rms ({} % of {scale}) {along} over {} s",
             significant(self.rms, 2),
-            significant(100.0 * self.rms / weight_n, 2),
+            significant(100.0 * self.of_lift, 2),
             significant(self.correlation_s, 2)
         )
     }
@@ -66,8 +70,11 @@ impl Redness {
     /// Whether it is so large that something is missing: forces of wind and of rotors wander too, and with them their torques.
     #[must_use]
     pub fn is_lacking(&self) -> bool {
-        let is_beyond_motion = !matches!(self.of, Quantity::Torque(_)) || self.relative > WANDERING_TORQUE;
-        self.certain && self.of_lift > UNNAMED_WANDERING && is_beyond_motion
+        let is_lacking = match self.of {
+            Quantity::Torque(_) => self.of_lift > WANDERING_ON_ARM && self.relative > WANDERING_TORQUE,
+            Quantity::Lift | Quantity::BodyZ | Quantity::World(_) => self.of_lift > UNNAMED_WANDERING,
+        };
+        self.certain && is_lacking
     }
 }
 

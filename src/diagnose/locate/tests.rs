@@ -119,7 +119,7 @@ fn a_force_that_wanders_as_wind_does_is_told_and_nothing_is_missing_for_it() {
     let told: Vec<_> = found.aperiodic.wandering().collect();
     assert!(told.iter().any(|red| red.of == Quantity::World(0)), "{:?}", found.aperiodic.redness);
     assert!((0.015..0.05).contains(&told[0].relative), "{told:?}");
-    let words = told[0].words(10.0);
+    let words = told[0].words();
     assert!(words.contains("of the weight) along world x over"), "{words}");
     // three times as much is more than wind makes
     assert_eq!(explained(6005, wandering(0, 0.09)).verdict, Verdict::Unexplained);

@@ -1,6 +1,7 @@
 //! Why an explanation is doubtful.
 
 use super::result::{BodyParameter, ExplainStudy};
+use crate::diagnose::locate::Redness;
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
 use crate::estimate::{Contradiction, Finding, FlightApart, NAMES, ThrustScale, stated};
@@ -40,15 +41,19 @@ impl ExplainStudy {
         self.notes.extend(apart);
     }
 
-    /// A remark on the forces that wander by themselves.
+    /// A remark on forces and torques that wander by themselves.
     pub(super) fn tell_wandering(&mut self) {
-        let weight_n = self.given.vehicle.body.mass_kg * self.given.vehicle.gravity_m_s2;
-        let told: Vec<String> =
-            self.explanation.aperiodic.wandering().map(|red| red.words(weight_n)).collect();
+        let aperiodic = &self.explanation.aperiodic;
+        let mut told: Vec<String> = aperiodic.wandering().map(Redness::words).collect();
+        told.extend(aperiodic.drifting().map(|trend| {
+            format!(
+                "a horizontal force that changes by {:.1} % of the weight over the flight",
+                100.0 * trend.relative
+            )
+        }));
         if !told.is_empty() {
             let text = format!(
-                "a force that follows neither place nor motion is left: {}. Wind and real rotors make such forces, and no effect \
-                 is missing for it",
+                "something is left that does not repeat: {}. Wind and real rotors make as much, so it does not count as missing",
                 told.join(", ")
             );
             self.notes.push(Note::remark(About::Estimate, text));
