@@ -6,7 +6,7 @@ use std::time::Instant;
 use mavid::config::{parse_vehicle, read_vehicle};
 use mavid::fly::Record;
 use mavid::link::Address;
-use mavid::study::check_given;
+use mavid::study::{ExplainStudy, check_given};
 use mavid::vehicle::Vehicle;
 
 use super::ask::Ask;
@@ -181,10 +181,7 @@ fn nothing_flown() -> CommandError {
 }
 
 /// Whether a further flight is wanted.
-fn wants_next_flight(
-    context: &Context<'_>,
-    study: &mavid::study::ExplainStudy,
-) -> Result<bool, CommandError> {
+fn wants_next_flight(context: &Context<'_>, study: &ExplainStudy) -> Result<bool, CommandError> {
     answer(study).lines().for_each(output::message);
     context.ask.agreed("Fly it?", true)
 }
