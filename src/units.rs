@@ -13,6 +13,14 @@ pub const GRAVITY_M_S2: f64 = 9.81;
 /// Density of air at sea level, 15 degrees Celsius (ISO 2533), kg/m^3.
 pub const AIR_DENSITY_KG_M3: f64 = 1.225;
 
+/// Density of the standard atmosphere (ISO 2533) over that at sea level, at a height above the sea (m) below 11 km. Weather
+/// changes it by a few percent.
+#[must_use]
+pub fn air_density_ratio(altitude_m: f64) -> f64 {
+    // 6.5 K/km from 288.15 K; g M / (R L) - 1
+    (1.0 - 2.255_77e-5 * altitude_m).max(0.0).powf(4.255_9)
+}
+
 /// Milliseconds to seconds.
 #[must_use]
 pub fn seconds_from_ms(ms: f64) -> f64 {

@@ -126,6 +126,9 @@ pub struct ExportArgs {
     /// the simulator, or the autopilot of the aircraft
     #[arg(long, value_enum)]
     pub to: ExportFormat,
+    /// with px4-params and ardupilot-params: height of the flight's place above the sea, m, for the density of its air
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub altitude: Option<f64>,
     /// file to write; without it standard output
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,

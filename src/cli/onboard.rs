@@ -76,7 +76,7 @@ pub struct LogFetchArgs {
     /// the vehicle
     #[command(flatten)]
     pub link: VehicleLinkArgs,
-    /// the last log; so it is without --id
+    /// the last log; so it is without --id, unless the folder holds a part of another: the rest of that is fetched
     #[arg(long, conflicts_with = "id")]
     pub last: bool,
     /// the log of this number of the list

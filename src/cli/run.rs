@@ -52,6 +52,9 @@ pub struct RunArgs {
     /// before each flight, set what the autopilot logs so that an identification can use it; it is put back after the flight
     #[arg(long)]
     pub set_logging: bool,
+    /// with --set-logging: restart the autopilot where the setting counts only then (PX4), before the first flight
+    #[arg(long, requires = "set_logging")]
+    pub restart: bool,
     /// distance to the reference at which a flight is aborted, m [default: 1]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub tracking_max: Option<f64>,

@@ -13,6 +13,10 @@ use serde::Serialize;
 use super::{CommandError, Outcome, output};
 use crate::cli::{ExportArgs, ExportFormat};
 
+/// Heights above the sea at which multirotors fly, m.
+const LOWEST_M: f64 = -500.0;
+const HIGHEST_M: f64 = 9000.0;
+
 #[derive(Debug, Serialize)]
 struct Document {
     schema: u32,
@@ -109,8 +113,24 @@ pub struct Made {
     warnings: Vec<Note>,
 }
 
+/// The altitude is one, and counts for the format.
+fn checked(args: &ExportArgs) -> Result<(), CommandError> {
+    let Some(altitude_m) = args.altitude else { return Ok(()) };
+    let expected = match Target::from(args.to) {
+        Target::Simulator(_) => {
+            "px4-params or ardupilot-params beside it: a simulator has its own air".to_owned()
+        }
+        Target::Aircraft(_) if !(LOWEST_M..=HIGHEST_M).contains(&altitude_m) => {
+            format!("a height above the sea of {LOWEST_M} to {HIGHEST_M} m")
+        }
+        Target::Aircraft(_) => return Ok(()),
+    };
+    Err(CommandError::Input(format!("--altitude: expected {expected}, got {altitude_m}")))
+}
+
 /// Exports, and writes the file that is asked for.
 pub fn make(args: &ExportArgs) -> Result<Made, CommandError> {
+    checked(args)?;
     let (loaded, origin) = args.draft.given(args.model.as_ref()).alone()?;
     let refuse =
         |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&origin)));
@@ -124,7 +144,7 @@ pub fn make(args: &ExportArgs) -> Result<Made, CommandError> {
         }
         Target::Aircraft(autopilot) => {
             let AircraftParameters { parameters, left_out, text } =
-                aircraft_parameters(&loaded.vehicle, &active, identified, autopilot)
+                aircraft_parameters(&loaded.vehicle, &active, identified, (autopilot, args.altitude))
                     .map_err(|error| refuse(&error))?;
             (text, left_out, parameters.into_iter().map(ParameterLine::from).collect(), None)
         }

@@ -16,6 +16,8 @@ const ROTOR: &str = "rotor";
 pub(super) struct Source<'a> {
     pub(super) vehicle: &'a Vehicle,
     pub(super) airframe: Airframe,
+    /// height of the flight's place above the sea, m, if it is known
+    pub(super) altitude_m: Option<f64>,
     effects: &'a [ActiveEffect],
     costs: Costs<'a>,
     taken: Vec<&'static str>,
@@ -34,6 +36,7 @@ impl<'a> Source<'a> {
         Ok(Self {
             vehicle,
             airframe,
+            altitude_m: None,
             effects,
             costs,
             taken: Vec::new(),

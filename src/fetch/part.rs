@@ -109,17 +109,28 @@ fn failed(path: &Path) -> impl Fn(io::Error) -> PartError + '_ {
     move |source| PartError::Write { path: text::path(&path), source }
 }
 
+/// The name of a log in a folder.
+fn name_of(log: &RemoteLog, ending: &str) -> String {
+    match &log.place {
+        Place::Path(path) => local_name(path),
+        Place::Number(number) => format!("log_{number:05}{ending}"),
+    }
+}
+
 impl Part {
+    /// Whether the folder holds a part of this log, by its name.
+    #[must_use]
+    pub fn is_begun(folder: &Path, log: &RemoteLog, ending: &str) -> bool {
+        folder.join(format!("{}.part", name_of(log, ending))).is_file()
+    }
+
     /// Begins, or goes on with what an earlier download of the same log of the same vehicle left in the folder. `ending` is
     /// that of logs which have no name of their own.
     ///
     /// # Errors
     /// The folder cannot be written to.
     pub fn open(folder: &Path, vehicle: &str, log: &RemoteLog, ending: &str) -> Result<Self, PartError> {
-        let name = match &log.place {
-            Place::Path(path) => local_name(path),
-            Place::Number(number) => format!("log_{number:05}{ending}"),
-        };
+        let name = name_of(log, ending);
         let path = folder.join(format!("{name}.part"));
         let beside = folder.join(format!("{name}.part.toml"));
         let identity = Identity {

@@ -78,7 +78,7 @@ impl Roster {
                 let ids: Vec<String> =
                     several.iter().map(|listed| listed.vehicle.system.to_string()).collect();
                 Choice::Refuse(format!(
-                    "expected one vehicle, heard systems {}; name the one to fly",
+                    "expected one vehicle, heard systems {}; name the one to fly (--system-id)",
                     ids.join(", ")
                 ))
             }

@@ -84,6 +84,13 @@ fn ending(autopilot: Autopilot) -> &'static str {
     if autopilot == Autopilot::Px4 { ".ulg" } else { ".bin" }
 }
 
+/// The log of which the folder holds a part; the last of them.
+#[must_use]
+pub fn begun<'a>(session: &Session, logs: &'a [RemoteLog], folder: &Path) -> Option<&'a RemoteLog> {
+    let ending = ending(session.vehicle.autopilot);
+    logs.iter().rfind(|log| Part::is_begun(folder, log, ending))
+}
+
 /// Fetches a log into a folder, which is there: by the protocol that listed it if one was asked for, by the faster one
 /// otherwise. `None` where `watch` had enough: what came stays beside its place.
 ///

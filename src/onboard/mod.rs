@@ -22,7 +22,7 @@ mod restart;
 mod session;
 mod setting;
 
-pub use download::{Download, Listed, Progress, fetch, list};
+pub use download::{Download, Listed, Progress, begun, fetch, list};
 pub use error::OnboardError;
 pub use loading::{Loaded, Loading, ParameterComparison, compare, load};
 pub use logging::{ChangedSince, LoggingState, PutBack, change, look, needs_restart, put_back};

@@ -325,7 +325,7 @@ fn an_aircraft_gets_what_was_identified_and_nothing_else() {
          cy = { value = 0.001, std = 0.001 }\n[effects.thrust_curve]\ncurvature = { value = -0.2, std = 0.02 }\n",
     )
     .unwrap();
-    let written = aircraft_parameters(&vehicle, &effects, Some(&identified), Autopilot::Px4).unwrap();
+    let written = aircraft_parameters(&vehicle, &effects, Some(&identified), (Autopilot::Px4, None)).unwrap();
     let of = |name: &str| written.parameters.iter().find(|parameter| parameter.name == name).unwrap();
     let mass = vehicle.body.mass_kg;
     // d / m, and its error: of drag and of mass
@@ -351,7 +351,20 @@ fn an_aircraft_gets_what_was_identified_and_nothing_else() {
     assert!((elasticity(&bent) - elasticity(&curve)).abs() < 1e-6, "{factor}");
     let hover = of("MPC_THR_HOVER");
     assert!((hover.value - curve(command)).abs() < 1e-9 && hover.std.unwrap() > 0.01 * hover.value);
+    // thinner air: the same drag at sea level is more, and ArduPilot scales the throttle by the density itself
+    let of_ardupilot = |altitude_m| {
+        let autopilot = (Autopilot::ArduPilot, altitude_m);
+        aircraft_parameters(&vehicle, &effects, Some(&identified), autopilot).unwrap().parameters
+    };
+    let (low, high) = (of_ardupilot(None), of_ardupilot(Some(584.0)));
+    let ratios: Vec<f64> = low.iter().zip(&high).map(|(low, high)| high.value / low.value).collect();
+    for (name, ratio) in [("MOT_THST_HOVER", 0.945), ("EK3_DRAG_MCOEF", 1.0287), ("EK3_DRAG_BCOEF_X", 0.945)]
+    {
+        let at = low.iter().position(|parameter| parameter.name == name).unwrap();
+        assert!((ratios[at] - ratio).abs() < 5e-4, "{name}: {}", ratios[at]);
+        assert!(high[at].why.contains("1.158 kg/m^3"), "{}", high[at].why);
+    }
     // without standard errors nothing follows
-    let none = aircraft_parameters(&vehicle, &effects, None, Autopilot::ArduPilot);
+    let none = aircraft_parameters(&vehicle, &effects, None, (Autopilot::ArduPilot, None));
     assert!(none.unwrap_err().to_string().contains("standard errors"));
 }

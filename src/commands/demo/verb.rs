@@ -59,6 +59,7 @@ fn run_demo(out: (bool, &StandardError), args: &DemoArgs, work: &Work) -> Result
         arm: false,
         rehearse: false,
         set_logging: false,
+        restart: false,
         tracking_max: None,
         system_id: None,
         plain: args.plain,

@@ -12,6 +12,7 @@ use super::documents::checked_words;
 use super::hint;
 use super::link::open_as;
 use crate::cli::{FlyArgs, VehicleLinkArgs};
+use crate::commands::leftover::STATION;
 use crate::commands::live::Work;
 use crate::commands::progress::DownloadLines;
 use crate::commands::words::Word;
@@ -56,7 +57,8 @@ pub fn after_flight(
     let link = link_of(args, system.map(|system| system.0));
     let station = SystemId(args.station_id);
     work.fetches();
-    let fetched = network::block_on(fetched((&link, station), &args.out, fetching, tell));
+    let how = (fetching, LogSelection::Last);
+    let fetched = network::block_on(fetched((&link, station), &args.out, how, tell));
     let is_ended = matches!(fetched, Err(CommandError::Ended(_)));
     work.fetched(is_ended);
     fetched.unwrap_or_else(|error| {
@@ -69,6 +71,16 @@ pub fn after_flight(
         }
         None
     })
+}
+
+/// Fetches the rest of the vehicle's own log into the folder of a flight that is over.
+///
+/// # Errors
+/// The vehicle does not answer, or a signal ended it.
+pub fn fetched_now(link: &VehicleLinkArgs, folder: &Path) -> Result<(), CommandError> {
+    let mut tell = |word: Word| word.say();
+    let how = (Fetching::IfFast, LogSelection::All);
+    network::block_on(fetched((link, STATION), folder, how, &mut tell)).map(|_| ())
 }
 
 fn later(link: &VehicleLinkArgs, folder: &Path) -> String {
@@ -97,15 +109,15 @@ fn judged(progress: &Progress, bytes_s: f64, fetching: Fetching) -> Result<Strin
 async fn fetched(
     (link, station): (&VehicleLinkArgs, SystemId),
     folder: &Path,
-    fetching: Fetching,
+    (fetching, selection): (Fetching, LogSelection),
     tell: &mut impl FnMut(Word),
 ) -> Result<Option<PathBuf>, CommandError> {
     let mut session = open_as(link, station, AFTER).await?;
     let offer = session.offer().await?;
-    let logs = onboard::list(&mut session, (&offer, None), LogSelection::Last).await?.logs;
+    let logs = onboard::list(&mut session, (&offer, None), selection).await?.logs;
     output::folder(folder)?;
     let mut path = None;
-    match logs.last() {
+    match onboard::begun(&session, &logs, folder).or(logs.last()) {
         None => tell(Word::Message("the vehicle wrote no log of its own".to_owned())),
         Some(log) => {
             let (mut told, mut lines) = (false, DownloadLines::new(Instant::now()));

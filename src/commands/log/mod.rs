@@ -13,7 +13,7 @@ mod state;
 mod verb;
 
 pub use before::{before_flight, link_of, put_back};
-pub use flown::{Fetching, after_flight};
+pub use flown::{Fetching, after_flight, fetched_now};
 pub use hint::link_options;
 pub use link::{Answered, open, parameters_of_vehicle};
 pub use logging_needs::{LoggingNeeds, logging_needs};

@@ -48,11 +48,12 @@ async fn fetch(json: bool, stderr: &StandardError, args: &LogFetchArgs) -> Resul
     let mut session = open(&args.link).await?;
     let offer = session.offer().await?;
     remind(&args.link, &session, &offer);
-    let wanted = if args.id.is_some() { LogSelection::All } else { LogSelection::Last };
+    let wanted = if args.last { LogSelection::Last } else { LogSelection::All };
     let asked = args.protocol.map(Into::into);
     let logs = onboard::list(&mut session, (&offer, asked), wanted).await?.logs;
     output::folder(&args.out)?;
-    let log = chosen(&logs, args.id)?;
+    let begun = onboard::begun(&session, &logs, &args.out).filter(|_| !args.last && args.id.is_none());
+    let log = begun.map_or_else(|| chosen(&logs, args.id), Ok)?;
     let bar = stderr.bar(bytes_bar(log.size));
     // where no bar can be drawn
     let mut lines = (!stderr.can_draw()).then(|| DownloadLines::new(Instant::now()));

@@ -14,8 +14,16 @@ use crate::commands::{CommandError, leftover, output};
 pub const COMMANDS: &str = "commands.txt";
 /// Endings of the logs that a vehicle writes itself.
 const ONBOARD: [&str; 2] = ["ulg", "bin"];
+/// Endings of logs of which only a part is there.
+const UNFINISHED: &str = "part";
 /// The phase of a flight from which on there is something to explain.
 const TRAJECTORY: &str = "trajectory";
+/// The phase after which nothing more is recorded, ...
+const OVER: &str = "over";
+/// ... the one in which a vehicle stays in the air, ...
+const HOLD: &str = "hold";
+/// ... and those in which it comes down, or somebody else flies it.
+const LEFT: [&str; 3] = ["land", "return", "hands off"];
 
 /// The folder of a run.
 #[derive(Debug, Clone)]
@@ -28,6 +36,17 @@ pub struct Recorded {
     pub radio: PathBuf,
     /// the vehicle's own log, if it was fetched
     pub onboard: Option<PathBuf>,
+}
+
+/// How far the recording of a flight goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Extent {
+    /// it never reached its trajectory
+    Before,
+    /// the recording ends in the air: the program ended before the flight
+    CutOff,
+    /// until the flight was over
+    Whole,
 }
 
 impl Folder {
@@ -88,10 +107,26 @@ impl Folder {
         self.of("next.toml")
     }
 
-    /// Flights that reached their trajectory, in their order.
+    /// Flights that reached their trajectory and were recorded until they were over, in their order.
     pub fn flights(&self) -> Vec<Recorded> {
+        self.flown(Extent::Whole).map(|folder| Recorded::of(&folder)).collect()
+    }
+
+    /// Folders of flights that reached their trajectory, and in which the program ended before the flight.
+    pub fn cut_off(&self) -> Vec<PathBuf> {
+        self.flown(Extent::CutOff).collect()
+    }
+
+    /// Folders of whole flights of which the vehicle's own log was not fetched to its end.
+    pub fn half_fetched(&self) -> Vec<PathBuf> {
+        self.flown(Extent::Whole)
+            .filter(|folder| Recorded::of(folder).onboard.is_none() && has_ending(folder, &[UNFINISHED]))
+            .collect()
+    }
+
+    fn flown(&self, extent: Extent) -> impl Iterator<Item = PathBuf> {
         let folders = (1..).map(|number| self.flight(number)).take_while(|folder| folder.exists());
-        folders.filter(|folder| reached_trajectory(folder)).map(|folder| Recorded::of(&folder)).collect()
+        folders.filter(move |folder| extent_of(folder) == extent)
     }
 
     /// The folder of the next flight: the first that holds no recording of a vehicle.
@@ -107,15 +142,24 @@ impl Folder {
 
 impl Recorded {
     fn of(folder: &Path) -> Self {
-        let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-        let is_log = |path: &PathBuf| {
-            let ending = path.extension().and_then(|ending| ending.to_str());
-            ending.is_some_and(|ending| ONBOARD.iter().any(|known| ending.eq_ignore_ascii_case(known)))
-        };
-        let mut logs: Vec<PathBuf> = entries.filter(is_log).collect();
+        let mut logs = with_ending(folder, &ONBOARD);
         logs.sort();
         Self { radio: folder.join(TLOG), onboard: logs.pop() }
     }
+}
+
+/// Files in a folder whose names have one of these endings.
+fn with_ending(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let is_one = |path: &PathBuf| {
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        ending.is_some_and(|ending| endings.iter().any(|known| ending.eq_ignore_ascii_case(known)))
+    };
+    entries.filter(is_one).collect()
+}
+
+fn has_ending(folder: &Path, endings: &[&str]) -> bool {
+    !with_ending(folder, endings).is_empty()
 }
 
 /// A line of a flight's events.
@@ -131,8 +175,15 @@ fn phases(folder: &Path) -> Vec<String> {
     events.filter(|event| event.kind == "phase").map(|event| event.text).collect()
 }
 
-fn reached_trajectory(folder: &Path) -> bool {
-    folder.join(TLOG).is_file() && phases(folder).iter().any(|phase| phase == TRAJECTORY)
+fn extent_of(folder: &Path) -> Extent {
+    let phases = phases(folder);
+    let reached =
+        phases.iter().rposition(|phase| phase == TRAJECTORY).filter(|_| folder.join(TLOG).is_file());
+    let Some(reached) = reached else { return Extent::Before };
+    let after: Vec<&str> = phases.iter().skip(reached + 1).map(String::as_str).collect();
+    // one that is over while it holds was left in the air
+    let is_over = after.ends_with(&[OVER]) && !after.ends_with(&[HOLD, OVER]);
+    if is_over || after.iter().any(|phase| LEFT.contains(phase)) { Extent::Whole } else { Extent::CutOff }
 }
 
 #[cfg(test)]
@@ -165,14 +216,29 @@ mod tests {
         flown(&folder.of("flight1"), &["connect", "check", "over"]);
         assert_eq!((folder.flights().len(), folder.new_flight()), (0, folder.of("flight2")));
         flown(&folder.of("flight2"), &["connect", "check", "take off", "trajectory", "land", "over"]);
-        fs::write(folder.of("flight2/log_3.ulg"), "").unwrap();
         fs::write(folder.of("flight2/log_4.ulg.part"), "").unwrap();
+        assert_eq!(folder.half_fetched(), [folder.of("flight2")]);
+        fs::write(folder.of("flight2/log_3.ulg"), "").unwrap();
         let flights = folder.flights();
-        assert_eq!(flights.len(), 1);
+        assert_eq!((flights.len(), folder.half_fetched(), folder.cut_off()), (1, vec![], vec![]));
         assert_eq!(flights[0].onboard, Some(folder.of("flight2/log_3.ulg")));
         fs::create_dir_all(folder.of("flight3")).unwrap();
         fs::write(folder.of("flight3").join(TLOG), "").unwrap();
         assert_eq!(folder.new_flight(), folder.of("flight3"), "nobody was there");
+        fs::remove_dir_all(folder.path()).unwrap();
+    }
+
+    #[test]
+    fn a_flight_in_which_the_program_ended_is_not_taken_for_a_whole_one() {
+        let folder = made("cut");
+        for (number, end) in [(1, &["trajectory"][..]), (2, &["trajectory", "hold", "over"])] {
+            let flight = folder.of(&format!("flight{number}"));
+            flown(&flight, &[&["connect", "check", "take off"], end].concat());
+            assert_eq!((folder.flights(), folder.cut_off().pop()), (vec![], Some(flight)), "{end:?}");
+        }
+        flown(&folder.of("flight3"), &["take off", "trajectory", "hold", "land", "over"]);
+        assert_eq!((folder.flights().len(), folder.cut_off().len()), (1, 2));
+        assert_eq!(folder.new_flight(), folder.of("flight4"));
         fs::remove_dir_all(folder.path()).unwrap();
     }
 

@@ -58,48 +58,52 @@ fn offer(needs: &LoggingNeeds) -> Offer {
 /// A signal ended it, or there is no answer that can be used.
 pub fn decided(context: &Context<'_>, target: &Target) -> Result<Logging, CommandError> {
     let wanted = context.args.set_logging;
-    if target.embedded.is_some() || wanted && !context.ask.is_person() {
-        let further = context.flights_max() > 1 && target.embedded.is_none();
-        return Ok(match (wanted, further) {
-            (false, _) => Logging::Left,
-            (true, false) => Logging::EachFlight,
-            (true, true) => Logging::UntilTheEnd,
-        });
+    if target.embedded.is_some() {
+        return Ok(if wanted { Logging::EachFlight } else { Logging::Left });
     }
-    let Some(needs) = looked_up(context, target)? else { return Ok(Logging::Left) };
+    // where nobody is there, a flight whose logging cannot be set as it was said is not flown: its step says why
+    let unasked = if wanted && !context.ask.is_person() { of_flights(context) } else { Logging::Left };
+    let Some(needs) = looked_up(context, target)? else { return Ok(unasked) };
     told(&needs).iter().for_each(Word::say);
     let change = match needs.changes.as_str() {
         "" => "what was set before",
         changes => changes,
     };
     match offer(&needs) {
-        Offer::Nothing => Ok(Logging::Left),
+        Offer::Nothing => Ok(unasked),
         Offer::Own => {
             output::message(
                 "this was set by mavid: it stays for the flights of this run, and is put back after the last one",
             );
             Ok(if needs.own_restarts { Logging::UntilTheEnd } else { Logging::EachFlight })
         }
+        Offer::Set if wanted => Ok(of_flights(context)),
         Offer::Set if !context.ask.is_person() => {
             output::message(&format!("--set-logging would set {change}, and put it back after the flight"));
             Ok(Logging::Left)
         }
         Offer::Set => {
             let question = format!("For a better log: set {change}, and put it back after the flight?");
-            let agreed = wanted || context.ask.agreed(&question, false)?;
+            let agreed = context.ask.agreed(&question, false)?;
             Ok(if agreed { Logging::EachFlight } else { Logging::Left })
         }
         Offer::Restart => {
             let question = format!(
                 "For a better log: set {change} and restart the autopilot now? It is put back after the last flight"
             );
-            if context.ask.agreed_expressly(&question)? {
+            if context.args.restart || context.ask.agreed_expressly(&question)? {
                 return restarted(context, target);
             }
-            output::message(&without(&needs, &step(target).line()));
+            output::message(&without(&needs, &step(target).line(), wanted));
             Ok(Logging::Left)
         }
     }
+}
+
+/// What is set for every flight: before each of them, or once where there may be several.
+fn of_flights(context: &Context<'_>) -> Logging {
+    let further = context.flights_max() > 1 && !context.ask.is_person();
+    if further { Logging::UntilTheEnd } else { Logging::EachFlight }
 }
 
 /// How the vehicle logs; `None` of one that does not say it: it flies all the same, and the link's recording is there.
@@ -142,7 +146,10 @@ fn restarted(context: &Context<'_>, target: &Target) -> Result<Logging, CommandE
         Ok(()) => Ok(Logging::UntilTheEnd),
         Err(error @ CommandError::Ended(_)) => Err(error),
         Err(error) => {
-            output::warning(&format!("{error}; the flight goes on with the log as it was"));
+            let by_hand = of_vehicle(target).word("--set-logging").line();
+            output::warning(&format!(
+                "{error}; the flight goes on with the log as it was. To restart it by hand before another flight: {by_hand}"
+            ));
             put_back(context, target);
             Ok(Logging::Left)
         }
@@ -164,15 +171,20 @@ pub fn put_back(context: &Context<'_>, target: &Target) {
     }
 }
 
-/// What a flight lacks without the restart, and what brings it.
-fn without(needs: &LoggingNeeds, step: &str) -> String {
+/// What a flight lacks without the restart, and what brings it: to whoever asked for it in this run, the option.
+fn without(needs: &LoggingNeeds, step: &str, wanted: bool) -> String {
     let brings = match needs.would_log.as_slice() {
         [] => String::new(),
         logs => format!(" ({})", text::listed(logs.iter())),
     };
+    let wants = if wanted {
+        "the setting counts only after a restart of the autopilot, which --restart beside --set-logging orders: nothing is set, and "
+    } else {
+        ""
+    };
     format!(
-        "the flight goes on with the log as it is, and with the recording of the link. A better log{brings} for the next flight: \
-         {step}"
+        "{wants}the flight goes on with the log as it is, and with the recording of the link. A better log{brings} for the next \
+         flight: {step}"
     )
 }
 
@@ -221,11 +233,14 @@ mod tests {
     #[test]
     fn without_a_restart_it_is_said_what_the_next_flight_would_bring() {
         let would_log = vec!["motor commands at their full rate".to_owned()];
-        let said = without(&LoggingNeeds { would_log, ..needs() }, "mavid log prepare");
+        let needs = LoggingNeeds { would_log, ..needs() };
+        let said = without(&needs, "mavid log prepare", false);
         assert!(
             said.contains("(motor commands at their full rate) for the next flight: mavid log prepare"),
             "{said}"
         );
+        let asked = without(&needs, "mavid log prepare", true);
+        assert!(asked.contains("--restart beside --set-logging") && asked.ends_with(&said), "{asked}");
     }
 
     #[test]

@@ -2,9 +2,11 @@
 //!
 //! ```text
 //! target       the vehicle: at an address, or embedded
+//! taken_up     what an earlier run left unfinished
 //! vehicle      its file, from its parameters and what a person knows
 //! room         limits that a person confirms
 //! planned      the trajectory of each flight
+//! follows      the same within what the autopilot follows
 //! rehearsal    the same flight on the embedded twin
 //! flying       the flight
 //! explained    what all flights say together, and whether a further one would bring more
@@ -22,6 +24,7 @@ mod explained;
 mod finish;
 mod flying;
 mod folder;
+mod follows;
 mod logging;
 mod page;
 mod planned;
@@ -29,6 +32,7 @@ mod progress;
 mod rehearsal;
 mod room;
 mod step;
+mod taken_up;
 mod target;
 mod vehicle;
 mod verb;

@@ -8,12 +8,16 @@ use mavid::text;
 use mavid::vehicle::Vehicle;
 
 use super::context::Context;
+use super::follows;
 use super::room;
 use super::step::Step;
 use crate::commands::{CommandError, output, plan};
 
 /// The demo's flight is short.
 const SHORT: [&str; 6] = ["--period", "6", "--repeats", "4", "--starts", "8"];
+
+/// A trajectory is made calmer at most so often until the autopilot follows it.
+const CALMER: u32 = 4;
 
 /// Products of inertia are near zero: their relative errors say nothing.
 const PRODUCTS: [&str; 3] = ["ixy", "ixz", "iyz"];
@@ -30,7 +34,18 @@ pub fn first(context: &Context<'_>, vehicle: &Vehicle) -> Result<PathBuf, Comman
     }
     let step = begun(context, vehicle)?.option("--criterion", "d-opt");
     let step = if context.recipe.is_demo { SHORT.iter().fold(step, Step::word) } else { step };
-    let study = made(context, step.option("--out", &path), &path)?;
+    let step = step.option("--out", &path);
+    let mut study = made(context, step.clone(), &path)?;
+    let mut calmer = None;
+    for _ in 0..CALMER {
+        let shortfalls = follows::calmed(context, vehicle, &path)?;
+        if shortfalls.is_empty() {
+            break;
+        }
+        calmer.get_or_insert(follows::words(&shortfalls));
+        study = made(context, step.clone(), &path)?;
+    }
+    calmer.iter().for_each(|words| output::message(words));
     let flight_s = study.series.period_s * f64::from(study.repeats);
     let shown = |(name, _): &&(&str, f64)| !PRODUCTS.contains(name);
     let one = |(name, relative): &(&str, f64)| format!("{name} {:.2} %", 100.0 * relative);

@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use mavid::config::{read_limits, read_trajectory};
-use mavid::fly::{Around, Course};
 use mavid::plan::{Extremes, Reach};
 use mavid::report::explanation_answer;
 use mavid::text;
@@ -13,6 +11,7 @@ use super::context::Context;
 use super::embedded::Embedded;
 use super::explained;
 use super::flying::{fly, step_of};
+use super::follows::course;
 use super::logging::Logging;
 use super::step::Step;
 use super::target::{Target, WARM_UP_S};
@@ -81,16 +80,7 @@ fn reserve(
     trajectory: &Path,
     off_m: f64,
 ) -> Result<String, CommandError> {
-    let stored = read_trajectory(trajectory)?;
-    let limits = read_limits(&context.folder.limits())?;
-    let around = stored.transitions.map(|stored| Around {
-        takeoff: stored.takeoff,
-        landing: stored.landing,
-        to_start_s: stored.to_start_s,
-        to_landing_s: stored.to_landing_s,
-    });
-    let course = Course::new(&stored.series, stored.repeats, around.as_ref(), &limits, vehicle);
-    let course = course.map_err(|error| CommandError::Failure(error.to_string()))?;
+    let (course, limits) = course(context, vehicle, trajectory)?;
     let (extremes, reach) = (Extremes::of(course.path(), vehicle), Reach::of(vehicle));
     let side = |wall: Option<f64>, axis: usize| {
         wall.map(|wall_m| wall_m - extremes.high_m[axis].max(-extremes.low_m[axis]) - reach.side_m - off_m)

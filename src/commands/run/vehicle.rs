@@ -1,6 +1,7 @@
 //! The vehicle's file: the one that is there, a given one, or a draft from the vehicle's parameters.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::iter;
 use std::path::Path;
 
 use mavid::autopilot::{Autopilot, Stack};
@@ -42,6 +43,10 @@ pub fn of_folder(context: &Context<'_>, target: &mut Target) -> Result<Vehicle, 
         let text = std::fs::read(file);
         let copied = text.and_then(|text| write_whole(&path, &text));
         copied.map_err(|error| CommandError::Input(format!("cannot copy {}: {error}", text::path(file))))?;
+        if target.embedded.is_none() {
+            let mass_kg = read_vehicle(&path)?.vehicle.body.mass_kg;
+            asked(context, target, &args.shape.given(mass_kg))?;
+        }
     } else if target.embedded.is_some() && args.mass.is_none() {
         output::file(&path, DEFAULT_VEHICLE)?;
     } else {
@@ -106,7 +111,11 @@ pub fn asked(context: &Context<'_>, target: &mut Target, given: &Given) -> Resul
         let of_flight =
             requested_parameters(stack.autopilot, ROTORS).into_iter().flat_map(|wanted| wanted.names);
         let rehearsed = context.args.rehearse.then_some(of_flight).into_iter().flatten();
-        parameters_of(stack, given, known).into_iter().chain(rehearsed).collect()
+        // a plan keeps to them
+        let newer = |name| stack.parameters.renames_of(name).map(|renamed| renamed.new);
+        let limits = stack.limits.iter().flat_map(|(_, name)| iter::once(*name).chain(newer(name)));
+        let limits = limits.map(str::to_owned);
+        parameters_of(stack, given, known).into_iter().chain(rehearsed).chain(limits).collect()
     };
     let link = target.link();
     context.work.ends_itself();

@@ -6,7 +6,7 @@ use std::time::Instant;
 use mavid::config::{parse_vehicle, read_vehicle};
 use mavid::fly::Record;
 use mavid::link::Address;
-use mavid::study::check_given;
+use mavid::study::{ExplainStudy, check_given};
 use mavid::vehicle::Vehicle;
 
 use super::ask::Ask;
@@ -18,7 +18,7 @@ use super::folder::{Folder, Recorded};
 use super::logging::{self, Logging};
 use super::page::{Document, Made, places};
 use super::target::Target;
-use super::{finish, flying, planned, rehearsal, room, vehicle};
+use super::{finish, flying, planned, rehearsal, room, taken_up, vehicle};
 use crate::cli::RunArgs;
 use crate::commands::fly::{TRACKING_MOST_M, within};
 use crate::commands::live::{self, Work};
@@ -115,9 +115,10 @@ struct FlownFlights {
 
 /// Flies until every name is certain, or nobody wants a further flight.
 fn all_flights(context: &Context<'_>) -> Result<FlownFlights, CommandError> {
+    context.stage("Vehicle");
+    taken_up::take_up(context)?;
     let flights = context.folder.flights();
     let is_over = flights.len() >= context.flights_max();
-    context.stage("Vehicle");
     let mut target = if is_over { None } else { Some(Target::of(context)?) };
     let vehicle = match &mut target {
         Some(target) => vehicle::of_folder(context, target)?,
@@ -180,10 +181,7 @@ fn nothing_flown() -> CommandError {
 }
 
 /// Whether a further flight is wanted.
-fn wants_next_flight(
-    context: &Context<'_>,
-    study: &mavid::study::ExplainStudy,
-) -> Result<bool, CommandError> {
+fn wants_next_flight(context: &Context<'_>, study: &ExplainStudy) -> Result<bool, CommandError> {
     answer(study).lines().for_each(output::message);
     context.ask.agreed("Fly it?", true)
 }

@@ -10,8 +10,8 @@ use super::determined::Determined;
 use super::parameter::AircraftParameter;
 use super::table::{DragNames, Table};
 use crate::export::source::Source;
-use crate::text::with_error;
-use crate::units::AIR_DENSITY_KG_M3;
+use crate::text::{significant, with_error};
+use crate::units::{AIR_DENSITY_KG_M3, air_density_ratio};
 
 /// Largest coefficient of momentum drag that both autopilots document, 1/s.
 const MOST_MOMENTUM: f64 = 1.0;
@@ -72,7 +72,8 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
     let (mass_kg, mass_std) = mass(source, determined);
     // what x and y have in common is not known: as if it were all
     let (mean, mean_std) = (f64::midpoint(dx, dy), f64::midpoint(std_x, std_y));
-    let value = mean / mass_kg;
+    let (air_ratio, air) = air(source);
+    let value = mean / mass_kg / air_ratio.sqrt();
     if mean < TOLD * mean_std || value < LEAST_MOMENTUM {
         return Coefficient::Absent;
     }
@@ -90,9 +91,9 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
         ));
         return Coefficient::Beyond;
     }
-    let std = (mean_std / mass_kg).hypot(value * mass_std);
+    let std = value * (mean_std / mean).hypot(mass_std);
     let why = format!(
-        "drag at hover of {} N per m/s over the mass of {mass_kg:.4} kg, taken as in air of {AIR_DENSITY_KG_M3} kg/m^3; wind was \
+        "drag at hover of {} N per m/s over the mass of {mass_kg:.4} kg, {air}; wind was \
          estimated with it where there was one",
         with_error(mean, mean_std)
     );
@@ -110,7 +111,8 @@ fn bluff(
     let (mass_kg, mass_std) = mass(source, determined);
     let Some(std) = determined.std("quadratic_drag", axis) else { return Coefficient::Absent };
     let drag = source.take("quadratic_drag", axis);
-    let value = 0.5 * AIR_DENSITY_KG_M3 * mass_kg / drag;
+    let (air_ratio, air) = air(source);
+    let value = 0.5 * AIR_DENSITY_KG_M3 * air_ratio * mass_kg / drag;
     // so slight that the autopilot has no number for it
     if drag < TOLD * std || value > names.most_ballistic {
         return Coefficient::Absent;
@@ -122,16 +124,22 @@ fn bluff(
         ));
         return Coefficient::Beyond;
     }
-    let why = format!(
-        "drag of {} N per (m/s)^2 at the mass of {mass_kg:.4} kg, taken as in air of {AIR_DENSITY_KG_M3} kg/m^3",
-        with_error(drag, std)
-    );
+    let why =
+        format!("drag of {} N per (m/s)^2 at the mass of {mass_kg:.4} kg, {air}", with_error(drag, std));
     Coefficient::Found(AircraftParameter::number(
         name,
         (value, value * (std / drag).hypot(mass_std)),
         "kg/m^2",
         why,
     ))
+}
+
+/// Density of the air of the flight over that at sea level, and what is said of it.
+fn air(source: &Source<'_>) -> (f64, String) {
+    let ratio = source.altitude_m.map(air_density_ratio);
+    let density = AIR_DENSITY_KG_M3 * ratio.unwrap_or(1.0);
+    let taken = if ratio.is_some() { "in" } else { "taken as in" };
+    (ratio.unwrap_or(1.0), format!("{taken} air of {} kg/m^3", significant(density, 4)))
 }
 
 /// Tells where the autopilot's law of the quadratic drag is not the model's.

@@ -21,6 +21,8 @@ pub(super) struct ThrustNames {
     pub(super) curve_bounds: (f64, f64),
     pub(super) hover: &'static str,
     pub(super) hover_bounds: (f64, f64),
+    /// the autopilot divides the throttle by the density of the air over that at sea level, and holds what is before that
+    pub(super) by_density: bool,
 }
 
 /// Names of the parameters of the estimator's drag, and its law.
@@ -46,6 +48,7 @@ static TABLES: [Table; 2] = [
             curve_bounds: (0.0, 1.0),
             hover: "MPC_THR_HOVER",
             hover_bounds: (0.1, 0.8),
+            by_density: false,
         },
         drag: DragNames {
             control: Some("EKF2_DRAG_CTRL"),
@@ -66,6 +69,7 @@ static TABLES: [Table; 2] = [
             curve_bounds: (-1.0, 1.0),
             hover: "MOT_THST_HOVER",
             hover_bounds: (0.125, 0.6875),
+            by_density: true,
         },
         drag: DragNames {
             control: None,

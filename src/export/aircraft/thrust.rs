@@ -8,6 +8,7 @@ use super::parameter::AircraftParameter;
 use super::table::{Table, ThrustNames};
 use crate::export::source::Source;
 use crate::text::with_error;
+use crate::units::{AIR_DENSITY_KG_M3, air_density_ratio};
 use crate::vehicle::ThrustLaw;
 
 /// A rotor's thrust about hover: its command there, and by how many per cent the thrust grows with one per cent of command.
@@ -108,7 +109,8 @@ fn hover(
         ));
         return None;
     };
-    let value = share(factor, command);
+    let (air_ratio, air) = air(source.altitude_m, names.by_density);
+    let value = air_ratio * share(factor, command);
     let (least, most) = names.hover_bounds;
     if !(least..=most).contains(&value) {
         source.note(format!(
@@ -117,17 +119,38 @@ fn hover(
         ));
         return None;
     }
-    let by_curve = factor_std * command * (1.0 - command);
+    let by_curve = air_ratio * factor_std * command * (1.0 - command);
     let voltage = source.value("battery_sag", "full_voltage");
     let voltage = voltage.map_or_else(
         || "at the battery voltages of the flight".to_owned(),
         |full_v| format!("at {full_v:.2} V"),
     );
     let why = format!(
-        "weight of {:.4} kg over full thrust of all rotors {voltage}, with {} = {factor:.3}",
+        "weight of {:.4} kg over full thrust of all rotors {voltage}, with {} = {factor:.3}; {air}",
         source.vehicle.body.mass_kg, names.curve
     );
     Some(AircraftParameter::number(names.hover, (value, (value * load_std).hypot(by_curve)), "-", why))
+}
+
+/// What a hover throttle is multiplied by for the air of the flight's place, and the reason.
+fn air(altitude_m: Option<f64>, by_density: bool) -> (f64, String) {
+    match (by_density, altitude_m) {
+        (false, _) => (1.0, "it belongs to the air of the flight: denser air needs less".to_owned()),
+        (true, None) => {
+            let told = "as in air of 1.225 kg/m^3, by which the autopilot scales it: 5 % too high if the flight was at 540 m above \
+                        the sea, 10 % at 1100 m, unless --altitude states the height";
+            (1.0, told.to_owned())
+        }
+        (true, Some(altitude_m)) => {
+            let ratio = air_density_ratio(altitude_m);
+            let told = format!(
+                "in air of {:.3} kg/m^3 ({altitude_m:.0} m above the sea), for the {AIR_DENSITY_KG_M3} kg/m^3 by which the autopilot \
+                 scales it",
+                AIR_DENSITY_KG_M3 * ratio
+            );
+            (ratio, told)
+        }
+    }
 }
 
 /// ArduPilot's compensation of the voltage; PX4's has a law of its own.
@@ -164,6 +187,18 @@ fn battery(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_hover_in_thin_air_is_told_for_sea_level() {
+        let (ratio, told) = air(Some(584.0), true);
+        assert!((ratio - 0.945).abs() < 5e-4 && told.contains("1.158 kg/m^3 (584 m"), "{ratio} {told}");
+        assert!(air(None, true).1.contains("--altitude"));
+        assert_eq!(air(Some(584.0), false).0, 1.0);
+        // the heights that are told without one
+        assert!(
+            (air_density_ratio(540.0) - 0.95).abs() < 2e-3 && (air_density_ratio(1100.0) - 0.9).abs() < 2e-3
+        );
+    }
 
     #[test]
     fn the_factor_of_a_curve_is_found_from_its_slope() {

@@ -21,7 +21,8 @@ const REAL: u8 = 9;
 const WHOLE: u8 = 6;
 
 /// The parameters of the aircraft's autopilot that follow from a model; `identified` is the table of that name in its file.
-/// What has no standard error there has no parameter.
+/// What has no standard error there has no parameter. `altitude_m`: height of the flight's place above the sea, m; without it,
+/// what an autopilot takes for the air at sea level is that of the flight.
 ///
 /// # Errors
 /// [`ExportError`] where the vehicle is not physical, the parameters of the autopilot are not known, or where nothing follows from the model.
@@ -29,7 +30,7 @@ pub fn aircraft_parameters(
     vehicle: &Vehicle,
     effects: &[ActiveEffect],
     identified: Option<&Table>,
-    autopilot: Autopilot,
+    (autopilot, altitude_m): (Autopilot, Option<f64>),
 ) -> Result<AircraftParameters, ExportError> {
     let table = table::Table::of(autopilot).ok_or_else(|| ExportError::Unfit {
         format: "a parameter file",
@@ -38,6 +39,7 @@ pub fn aircraft_parameters(
     })?;
     let determined = Determined::of(identified);
     let mut source = Source::new(vehicle, effects, identified)?;
+    source.altitude_m = altitude_m;
     let mut parameters = thrust(&mut source, &determined, table);
     parameters.extend(drag(&mut source, &determined, table));
     parameters.extend(geometry(&mut source, &determined, table));

@@ -7,13 +7,21 @@ use crate::fly::parameters::{Parameters, has_bit};
 use crate::plan::Extremes;
 use crate::units::deg_from_rad;
 
-/// One limit: the bounded quantity, its parameter (older name), the number of its units in one unit of the quantity,
-/// and the demand of the path.
-struct Limit {
-    bounded: Bounded,
-    name: &'static str,
-    per_base: f64,
-    needed: f64,
+/// A limit of the autopilot that a path does not keep.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LimitShortfall {
+    /// what is bounded
+    pub bounded: Bounded,
+    /// the limit, in the unit of what is bounded
+    pub limit: f64,
+    /// the demand of the path, in the same unit
+    pub needed: f64,
+    /// its parameter, as this autopilot calls it
+    pub name: String,
+    /// the parameter's value, in its own unit
+    pub value: f64,
+    /// the value with which a controller follows the path, in its own unit
+    pub advised: f64,
 }
 
 const SUBJECT: &str = "autopilot limits";
@@ -21,23 +29,34 @@ const SUBJECT: &str = "autopilot limits";
 const NOT_FOLLOWED: &[(u32, &str)] = &[(4, "position"), (5, "velocity")];
 /// Factor between the limit that a controller needs and the demand of the trajectory. With less the controller would
 /// sit at its limit in wind.
-const RESERVE: f64 = 1.3;
+pub const LIMIT_RESERVE: f64 = 1.3;
+
+/// The autopilot's limits that a path does not keep, of those whose parameters are known.
+#[must_use]
+pub fn limit_shortfalls(parameters: &Parameters, extremes: &Extremes) -> Vec<LimitShortfall> {
+    let Some(stack) = parameters.autopilot.stack() else { return Vec::new() };
+    let one = |(bounded, name): &(Bounded, &'static str)| {
+        let per_base = stack.parameters.find(name).map_or(1.0, |entry| entry.unit.per_base);
+        let (value, needed) = (parameters.get(name)?, needed(*bounded, extremes));
+        // zero or below stands for no limit
+        (value > 0.0 && value < per_base * needed).then(|| LimitShortfall {
+            bounded: *bounded,
+            limit: value / per_base,
+            needed,
+            name: parameters.name_of(name).to_owned(),
+            value: parameters.in_own_unit(name, value),
+            advised: parameters.in_own_unit(name, per_base * needed * LIMIT_RESERVE),
+        })
+    };
+    stack.limits.iter().filter_map(one).collect()
+}
 
 pub(super) fn findings(parameters: &Parameters, extremes: &Extremes) -> Vec<Finding> {
     let Some(stack) = parameters.autopilot.stack() else { return Vec::new() };
-    let (mut findings, mut silent) = (Vec::from_iter(not_followed(parameters)), Vec::new());
-    for (bounded, name) in stack.limits {
-        let per_base = stack.parameters.find(name).map_or(1.0, |entry| entry.unit.per_base);
-        let limit = Limit { bounded: *bounded, name, per_base, needed: needed(*bounded, extremes) };
-        match parameters.get(name) {
-            None => silent.push(parameters.name_of(name)),
-            // zero or below stands for no limit
-            Some(value) if value > 0.0 && value < per_base * limit.needed => {
-                findings.push(too_low(parameters, &limit, value));
-            }
-            Some(_) => {}
-        }
-    }
+    let mut findings = Vec::from_iter(not_followed(parameters));
+    findings.extend(limit_shortfalls(parameters, extremes).iter().map(too_low));
+    let silent = stack.limits.iter().filter(|(_, name)| parameters.get(name).is_none());
+    let silent: Vec<&str> = silent.map(|(_, name)| parameters.name_of(name)).collect();
     if !silent.is_empty() {
         findings.push(Finding::warning(
             SUBJECT,
@@ -75,20 +94,15 @@ fn not_followed(parameters: &Parameters) -> Option<Finding> {
     })
 }
 
-fn too_low(parameters: &Parameters, limit: &Limit, value: f64) -> Finding {
-    let name = parameters.name_of(limit.name);
-    let advice = parameters.in_own_unit(limit.name, limit.per_base * limit.needed * RESERVE);
+fn too_low(shortfall: &LimitShortfall) -> Finding {
+    let LimitShortfall { bounded, limit, needed, name, value, advised } = shortfall;
+    let unit = bounded.unit();
     Finding::warning(
         SUBJECT,
-        format!("{} of at least {:.2} {}", limit.bounded.name(), limit.needed, limit.bounded.unit()),
+        format!("{} of at least {needed:.2} {unit}", bounded.name()),
+        format!("{limit:.2} {unit} ({name} = {value:.4})"),
         format!(
-            "{:.2} {} ({name} = {:.4})",
-            value / limit.per_base,
-            limit.bounded.unit(),
-            parameters.in_own_unit(limit.name, value)
-        ),
-        format!(
-            "the vehicle will miss the trajectory, by metres if this is far too low: set {name} to {advice:.2} \
+            "the vehicle will miss the trajectory, by metres if this is far too low: set {name} to {advised:.2} \
              or more, or plan for lower limits"
         ),
     )

@@ -18,6 +18,7 @@ mod room;
 mod situation;
 mod stopping;
 
+pub use autopilot::{LIMIT_RESERVE, LimitShortfall, limit_shortfalls};
 pub use energy::{BatteryState, SPARE_FACTOR};
 pub use fence::Fence;
 pub use fence_download::{FenceDownload, FenceOutcome};

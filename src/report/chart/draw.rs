@@ -132,6 +132,9 @@ fn line_path(sheet: &Sheet, line: &Line, colour: &str) -> Markup {
     }
 }
 
+/// A dot in the legend.
+const DOT: &str = "M5 0a3 3 0 1 0 6 0a3 3 0 1 0 -6 0";
+
 /// The pattern of a broken line.
 fn dashes(stroke: Stroke) -> Option<&'static str> {
     (stroke == Stroke::Dashed).then_some("5 3")
@@ -141,8 +144,9 @@ fn legend(panel: &Panel) -> Markup {
     let lines = panel.lines.iter().enumerate().filter(|(_, line)| !line.label.is_empty());
     let mut entries: Vec<(Markup, &str)> = lines
         .map(|(index, line)| {
+            let shape = if line.stroke == Stroke::Dots { DOT } else { "M0 0h16" };
             let mark = html! {
-                path d="M0 0h16" stroke=(colour(line.colour.unwrap_or(index))) stroke-width="2"
+                path d=(shape) fill="none" stroke=(colour(line.colour.unwrap_or(index))) stroke-width="2"
                     stroke-dasharray=[dashes(line.stroke)] {}
             };
             (mark, line.label.as_str())

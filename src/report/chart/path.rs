@@ -81,6 +81,7 @@ impl Path3 {
         let colours = thin.values.first().map_or(&[][..], |(_, values)| values);
         html! {
             text x="8" y="16" font-weight="bold" { (self.title) }
+            text x="8" y="33" { (self.spans()) }
             @for (pair, value) in flat.windows(2).zip(colours) {
                 @let ((x, y), (to_x, to_y)) = (at(pair[0]), at(pair[1]));
                 path d={ "M" (tenths(x)) " " (tenths(y)) "L" (tenths(to_x)) " " (tenths(to_y)) }
@@ -92,6 +93,17 @@ impl Path3 {
             }
             text x=(tenths(8.0 + 90.0 * RAMP.len() as f64)) y=(HEIGHT - 13.0) { (self.unit) }
         }
+    }
+
+    /// How far it goes along each axis: a drawing that nobody turns shows no lengths.
+    fn spans(&self) -> String {
+        let one = |axis: usize| {
+            let places = self.position_m.iter().map(|at| at[axis]);
+            let (low, high) =
+                places.fold((f64::MAX, f64::MIN), |(low, high), place| (low.min(place), high.max(place)));
+            format!("{} {} m", self.axes[axis], significant((high - low).max(0.0), 2))
+        };
+        format!("spans {}", [0, 1, 2].map(one).join(", "))
     }
 
     fn colour(&self, value: f64) -> &'static str {

@@ -65,7 +65,7 @@ pub(super) fn places(study: &ExplainStudy, numbers: &Figures) -> Markup {
             (figure(&figures::path(of, after).inline(), ""))
         }
         @if let Some(of) = &numbers.heat {
-            (figure(&figures::heat(of).inline(), "Dark: at least five times the residual after."))
+            (figure(&figures::heat(of).inline(), "Full colour: at least five times the residual after."))
         }
     };
     section("Where", &content)
