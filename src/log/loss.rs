@@ -93,6 +93,17 @@ pub enum Loss {
     },
 }
 
+/// Bytes of the longest message of a log that a vehicle writes: a ULog's, with its head.
+const LONGEST_MESSAGE: u64 = 65_538;
+
+impl Loss {
+    /// Whether it is no more than the record that was being written when the file was read.
+    #[must_use]
+    pub fn is_unfinished_record(&self) -> bool {
+        matches!(self, Self::CutOff { bytes, .. } if *bytes <= LONGEST_MESSAGE)
+    }
+}
+
 /// Where in a file something is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Position {

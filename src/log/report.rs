@@ -15,8 +15,6 @@ use crate::wire::{SystemId, Vehicle};
 const DAMAGED: f64 = 0.1;
 /// See [`DAMAGED`].
 const MOSTLY: f64 = 0.5;
-/// Bytes of the longest message of a log that a vehicle writes: a ULog's, with its head.
-const LONGEST_MESSAGE: u64 = 65_538;
 /// Steps back of a log's stamps that nothing but another order explains. A single damaged stamp makes one step back;
 /// five in one log are no chance.
 const OUT_OF_ORDER: u64 = 5;
@@ -144,8 +142,7 @@ impl ReadReport {
     fn passed_share(&self) -> f64 {
         let passed = |loss: &Loss| match loss {
             Loss::Skipped { bytes, .. } => *bytes,
-            // less is an end that was cut off within a message
-            Loss::CutOff { bytes, .. } if *bytes > LONGEST_MESSAGE => *bytes,
+            Loss::CutOff { bytes, .. } if !loss.is_unfinished_record() => *bytes,
             _ => 0,
         };
         self.share_of(passed)

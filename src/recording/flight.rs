@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use super::leaps::{leave_out, leave_out_strays};
+use super::quantity::Quantity;
 use super::stream::{Stream, StreamKey};
 use crate::autopilot::Autopilot;
 
@@ -64,6 +65,15 @@ impl Recording {
         self.parameter_changes.retain(|change| change.time_s < time_s);
     }
 
+    /// Whether the vehicle said last that it is disarmed.
+    #[must_use]
+    pub fn ends_disarmed(&self) -> bool {
+        let said = self.streams.iter().filter(|(key, _)| key.quantity == Quantity::Armed);
+        said.filter_map(|(_, stream)| Some((*stream.time_s.last()?, *stream.values.last()?)))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .is_some_and(|(_, armed)| armed < 0.5)
+    }
+
     /// Adds the streams of another log of the same flight, its stamps brought to this recording's clock by `to_own_s` (s to s).
     /// Of streams and parameters that both have, its own stay. Times of resets are in order, those of both logs.
     pub fn add_log(&mut self, other: Recording, to_own_s: impl Fn(f64) -> f64) {
@@ -111,5 +121,23 @@ mod tests {
         own.add_log(with([11.0, 61.0], [21.0]), |time_s| time_s - 1.0);
         assert_eq!(own.clock_resets_s, [5.0, 10.0, 40.0, 60.0]);
         assert_eq!(own.estimator_resets_s, [20.0, 30.0]);
+    }
+
+    #[test]
+    fn the_last_word_of_all_streams_says_whether_the_vehicle_is_disarmed() {
+        let said = |source, samples: [(f64, f64); 2]| {
+            let (time_s, values) = samples.into_iter().unzip();
+            (
+                StreamKey { quantity: Quantity::Armed, source, instance: 0 },
+                Stream { time_s, width: 1, values },
+            )
+        };
+        let of = |streams: &[(StreamKey, Stream)]| Recording {
+            streams: streams.iter().cloned().collect(),
+            ..Recording::default()
+        };
+        let (armed, disarmed) = (said("EV", [(1.0, 0.0), (3.0, 1.0)]), said("ARM", [(1.0, 1.0), (9.0, 0.0)]));
+        assert!(of(&[armed.clone(), disarmed]).ends_disarmed());
+        assert!(!of(&[armed]).ends_disarmed() && !of(&[]).ends_disarmed());
     }
 }

@@ -120,13 +120,22 @@ fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, 
     refuse_other_kinds(path, &opened)?;
     refuse_no_flight(path, &opened)?;
     let about = || About::File(text::path(&path));
-    let losses = opened.report.losses.iter().map(ToString::to_string);
+    // what a vehicle still writes after it has disarmed is no part of a flight
+    let disarmed = opened.flights.flights.last().is_some_and(|flight| flight.recording.ends_disarmed());
+    let (after, losses): (Vec<_>, Vec<_>) =
+        opened.report.losses.iter().partition(|loss| disarmed && loss.is_unfinished_record());
+    let after = after.into_iter().map(|loss| format!("{loss}, after the vehicle had disarmed"));
+    let losses = losses.into_iter().map(ToString::to_string);
     let oddities = opened.report.oddities.iter().map(ToString::to_string);
     let mut input = InputFile::of(path)?;
     input.notes.extend(losses.map(|text| Note::loss(about(), text)));
-    input
-        .notes
-        .extend(whose(&opened.report).into_iter().chain(oddities).map(|text| Note::remark(about(), text)));
+    input.notes.extend(
+        whose(&opened.report)
+            .into_iter()
+            .chain(oddities)
+            .chain(after)
+            .map(|text| Note::remark(about(), text)),
+    );
     Ok(of_log(opened.flights.flights, &input, LoggedBy::of(&opened.report)))
 }
 
