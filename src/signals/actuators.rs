@@ -38,7 +38,7 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
             .unwrap_or_else(|| no_actuators(recording, vehicle))
     })?;
     let (channels, _) = read_as(key);
-    refuse_still_rotors(key.source, raw, channels)?;
+    refuse_still_rotors(recording, (key.source, raw), channels)?;
     let expo = thrust_model(recording);
     let normalized = |value: f64| match key.source {
         MOTORS => output_of_thrust(value, expo),
@@ -95,7 +95,7 @@ pub fn thrusts_from_speeds(recording: &Recording, vehicle: &Vehicle) -> Option<R
     let rotors = vehicle.rotors.len();
     let all: Vec<usize> = (0..rotors).collect();
     let (key, raw) = best(recording, Quantity::RotorSpeed, |stream| stream.width >= rotors)?;
-    refuse_still_rotors(key.source, raw, &all).ok()?;
+    refuse_still_rotors(recording, (key.source, raw), &all).ok()?;
     let mut stream = Stream { time_s: Vec::with_capacity(raw.len()), width: rotors, values: Vec::new() };
     stream.values.reserve(raw.len() * rotors);
     for index in 0..raw.len() {

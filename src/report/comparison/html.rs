@@ -1,11 +1,11 @@
 //! `report.html` of `compare`: each section is one function, and one call in [`comparison_html`].
 
 use super::drawing::drawing;
-use super::words::{FLIGHTS_OWN_ERRORS, answer, name, open, returned, sentence, size, spaced};
+use super::words::{FLIGHTS_OWN_ERRORS, answer, name, open, returned, sentence, size};
 use crate::change::interval_95;
 use crate::diagnose::Owner;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
-use crate::report::number::{significant, with_error};
+use crate::report::number::{interval, significant, with_error};
 use crate::report::page::page;
 use crate::study::{Change, CompareStudy};
 use maud::{Markup, html};
@@ -41,8 +41,8 @@ fn changed(study: &CompareStudy) -> Markup {
     let Some(compared) = &study.compared else { return Markup::default() };
     let rows: Vec<Vec<Cell>> = compared.changes.iter().map(|change| row(study, change)).collect();
     let undecided: Vec<Vec<Cell>> = compared.undecided.iter().map(|(change, _)| row(study, change)).collect();
-    let heads = ["", "before|", "after|", "difference|", "standard deviations|", "shown alone by"];
-    let caption = "Before and after, with standard errors and intervals of 95 %";
+    let heads = ["", "unit", "before", "after", "difference", "standard deviations|", "shown alone by"];
+    let caption = "Before and after, with standard errors and, in brackets, intervals of 95 %";
     html! {
         @if !rows.is_empty() { (section("What changed", &table(caption, &heads, &rows))) }
         @if !undecided.is_empty() {
@@ -55,18 +55,18 @@ fn changed(study: &CompareStudy) -> Markup {
 }
 
 fn row(study: &CompareStudy, change: &Change) -> Vec<Cell> {
-    let unit = spaced(change.unit);
     let of = |(value, std): (f64, f64)| {
-        let [low, high] = interval_95((value, std)).map(|end| significant(end, 3));
-        let interval = if std > 0.0 { format!(", {low} to {high}") } else { String::new() };
-        format!("{}{unit}{interval}", with_error(value, std))
+        let ends = || format!(" ({})", interval(interval_95((value, std)), std));
+        let ends = if std > 0.0 { ends() } else { String::new() };
+        format!("{}{ends}", with_error(value, std))
     };
     let parts =
         change.moved.map_or_else(Default::default, |moved| [of(moved.before), of(moved.after), of(moved.by)]);
     let say: Vec<&str> =
         change.carried_by.iter().map(|&flight| study.flights[flight].input.path.as_str()).collect();
-    let mut cells = vec![text(name(study, change.what))];
-    cells.extend(parts.map(number));
+    let mut cells = vec![text(name(study, change.what)), text(change.unit)];
+    // words, so that they are broken where there is no room
+    cells.extend(parts.map(text));
     cells.extend([number(significant(change.sigmas, 2)), text(say.join(", "))]);
     cells
 }

@@ -28,7 +28,7 @@ fn changes(page: &mut String, study: &CompareStudy, compared: &Compared) {
     for change in &compared.changes {
         change_line(page, study, change);
     }
-    if !compared.changes.is_empty() && !compared.undecided.is_empty() {
+    if !compared.undecided.is_empty() {
         page.push_str("\n  not decided\n");
         for of in &compared.undecided {
             let _ = writeln!(page, "    {}", open(study, of));

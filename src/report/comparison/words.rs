@@ -17,12 +17,10 @@ pub(super) fn answer(study: &CompareStudy) -> String {
                 flights(groups.after.len())
             );
             if compared.changes.is_empty() {
-                let open: Vec<String> =
-                    compared.undecided.iter().map(|of| format!(" {}", open(study, of))).collect();
                 return format!(
                     "Nothing changed {between} that these flights could show. {}{}",
                     unseen(compared),
-                    open.concat()
+                    all_open(study, compared)
                 );
             }
             let all: Vec<String> = compared.changes.iter().map(|change| sentence(study, change)).collect();
@@ -92,6 +90,28 @@ pub(in crate::report) fn sentence(study: &CompareStudy, change: &Change) -> Stri
     } else {
         format!("{told}; a change of {} would look the same to these flights", rivals.join(" or of "))
     }
+}
+
+/// All that is not decided, in a sentence or two; empty where nothing is.
+fn all_open(study: &CompareStudy, compared: &Compared) -> String {
+    let Some(most) = compared.undecided.iter().map(|(_, why)| why.flights).max() else {
+        return String::new();
+    };
+    let one = |(change, _): &(Change, Undecided)| {
+        let by = change.moved.map_or_else(String::new, |moved| with_error(moved.by.0, moved.by.1));
+        let sigmas = significant(change.sigmas, 2);
+        format!(
+            "{} moved by {by}{} ({sigmas} standard deviations)",
+            name(study, change.what),
+            spaced(change.unit)
+        )
+    };
+    let all: Vec<String> = compared.undecided.iter().map(one).collect();
+    format!(
+        " Not decided: {}; {NAMED_SIGMAS} make a change. Fly {} on each side to decide.",
+        all.join("; "),
+        flights(most)
+    )
 }
 
 /// A parameter that moved by more than chance and less than is certain, and what decides it, as a sentence.
