@@ -7,8 +7,11 @@ use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, Schema};
 use serde_json::{Value, json};
 
+/// A verb, and how the schema of its document is made.
+type Document = (&'static str, fn() -> Schema);
+
 /// Documents by the verb that writes them.
-const DOCUMENTS: [(&str, fn() -> Schema); 2] =
+const DOCUMENTS: [Document; 2] =
     [("compare", schema_of::<ComparisonDocument>), ("explain", schema_of::<ExplanationDocument>)];
 
 /// The verbs whose documents have a schema.
