@@ -10,6 +10,7 @@ pub struct Comparison {
     pub pooled: Pooled,
     pub cut_propellers: CutPropellers,
     pub simulators: Simulators,
+    pub sessions: Sessions,
 }
 
 /// `--compared`: pairs of flights of one vehicle each.
@@ -102,6 +103,28 @@ pub struct SimulatedPair {
     pub name: String,
     pub by_telemetry: Answer,
     pub on_board: Answer,
+}
+
+/// `recorded`: real flights of small quadrotors in three sessions.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Sessions {
+    /// the command line that makes this section
+    pub command: String,
+    pub sessions: Vec<Session>,
+    /// pairs of flights of one session, and of these called changed
+    pub within: (usize, usize),
+    /// pairs of flights of two sessions, and of these called changed
+    pub between: (usize, usize),
+}
+
+/// Flights that belong together.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Session {
+    pub flights: Vec<String>,
+    /// what the accelerometer reads along x before the motors turn, m/s^2, each flight
+    pub at_rest_m_s2: Vec<f64>,
+    /// balance along x, along y (arms) and about z, mean of the flights
+    pub balance: [f64; 3],
 }
 
 /// What `compare` answered.

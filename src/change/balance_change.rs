@@ -49,7 +49,7 @@ pub struct BalanceChange {
 pub struct BalanceFound {
     /// the most likely; `None`: nothing known accounts for it alone
     pub what: Option<What>,
-    /// of a rotor: thrust for the same command over that before
+    /// of a rotor: thrust for the same command over that before, which is 1 without an error
     pub factor: Option<Moved>,
     /// of the centre of mass: how far it moved along body x and y, arms, with standard errors
     pub offset: Option<[(f64, f64); 2]>,
@@ -83,7 +83,7 @@ pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> B
     let scale = scatter(balance, groups);
     let pair = Pair { balance, groups, scale };
     let moved: [Moved; AXES] = std::array::from_fn(|axis| pair.moved(axis));
-    let (by, variances) = (difference(&moved), variances_of(&moved, |moved| moved.by));
+    let (by, variances) = (difference(&moved), variances_of(&moved));
     let before = Vector3::from(moved.map(|moved| moved.before.0));
     let known = explanations(vehicle, &before);
     let strength = by.component_mul(&by).component_div(&variances).sum();
@@ -105,8 +105,8 @@ fn difference(moved: &[Moved; AXES]) -> Vector3<f64> {
     Vector3::from(moved.map(|moved| moved.by.0))
 }
 
-fn variances_of(moved: &[Moved; AXES], of: fn(&Moved) -> (f64, f64)) -> Vector3<f64> {
-    Vector3::from(moved.map(|moved| of(&moved).1.powi(2)))
+fn variances_of(moved: &[Moved; AXES]) -> Vector3<f64> {
+    Vector3::from(moved.map(|moved| moved.by.1.powi(2)))
 }
 
 /// What accounts for a move, if anything has to.
@@ -116,7 +116,7 @@ fn found(
     shares: &[f64],
     strength: f64,
 ) -> Option<BalanceFound> {
-    let (by, variances) = (&difference(moved), &variances_of(moved, |moved| moved.by));
+    let (by, variances) = (&difference(moved), &variances_of(moved));
     let mut accounts: Vec<(Account, f64)> = known
         .iter()
         .map(|explanation| {
@@ -147,13 +147,8 @@ fn found(
         what: fits.then_some(best.what),
         factor: match best.what {
             What::Rotor(rotor) if fits => {
-                let rotors = known.iter().find(|explanation| explanation.what == best.what);
-                let alone = |of: fn(&Moved) -> (f64, f64)| {
-                    rotors.map_or(f64::NAN, |known| known.std(&variances_of(moved, of)) / shares[rotor])
-                };
                 let (after, std) = factor(amounts[0], shares[rotor]);
-                let errors = [alone(|moved| moved.before), alone(|moved| moved.after)];
-                Some(Moved { before: (1.0, errors[0]), after: (after, errors[1]), by: (after - 1.0, std) })
+                Some(Moved { before: (1.0, 0.0), after: (after, std), by: (after - 1.0, std) })
             }
             _ => None,
         },
@@ -171,7 +166,7 @@ fn carriers(pair: &Pair, found: &BalanceFound, known: &[Explanation]) -> Vec<usi
         let groups = Groups { before: pair.groups.before.clone(), after: vec![**flight] };
         let one = Pair { groups: &groups, ..*pair };
         let moved: [Moved; AXES] = std::array::from_fn(|axis| one.moved(axis));
-        let (by, variances) = (difference(&moved), variances_of(&moved, |moved| moved.by));
+        let (by, variances) = (difference(&moved), variances_of(&moved));
         let Some(explanation) = known.iter().find(|known| Some(known.what) == found.what) else {
             return by.component_mul(&by).component_div(&variances).sum() >= NAMED;
         };

@@ -1,6 +1,6 @@
 //! Whether one parameter moved between two groups of flights.
 
-use super::balance_change::NAMED;
+use super::balance_change::{NAMED, NAMED_SIGMAS};
 use super::groups::{Groups, Moved};
 use super::pooled::PRIOR;
 
@@ -20,11 +20,26 @@ pub struct ParameterChange {
     pub moved: Moved,
     /// the difference is certain
     pub changed: bool,
+    /// more than chance, and less than certain
+    pub undecided: Option<Undecided>,
     /// the smallest difference that would have been, the parameter's unit
     pub least: f64,
     /// later flights that each show it alone
     pub carried_by: Vec<usize>,
 }
+
+/// A difference that chance hardly explains, and that is not certain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Undecided {
+    /// flights on each side from which on a difference of this size would be certain, where they scatter like these
+    pub flights: usize,
+    /// most of the error is the spread between flights of one vehicle, and not that of the flights themselves
+    pub by_spread: bool,
+}
+
+/// A difference is told as undecided from so many standard errors on. Of ten parameters of an unchanged vehicle, one in 40 pairs of
+/// flights is.
+const UNDECIDED: f64 = 3.0;
 
 /// Later flights say the same from so many standard errors on.
 const SAYS: f64 = 2.0;
@@ -58,12 +73,36 @@ pub fn judge_parameter(
         let std = (variance * scale * scale + first.1 * first.1).sqrt();
         ((by > 0.0) == (moved.by.0 > 0.0) && by.abs() > SAYS * std).then_some(*flight)
     };
+    let changed = moved.sigmas().powi(2) >= NAMED;
+    let tells = !changed && moved.sigmas().abs() >= UNDECIDED;
     Some(ParameterChange {
-        changed: moved.sigmas().powi(2) >= NAMED,
+        changed,
+        undecided: tells.then(|| undecided(&moved, [&before, &after], (values, scale))),
         least: NAMED.sqrt() * by.1,
         carried_by: after.iter().filter_map(alone).collect(),
         moved,
     })
+}
+
+/// What would decide a difference that is not certain.
+fn undecided(
+    moved: &Moved,
+    groups: [&[(usize, f64, f64)]; 2],
+    (values, scale): (&[Option<(f64, f64)>], f64),
+) -> Undecided {
+    // errors of so many times the flights are smaller by the root of it
+    let most = groups.map(<[_]>::len).into_iter().fold(1, usize::max);
+    let needed = (NAMED_SIGMAS / moved.sigmas()).powi(2);
+    let flights = (1..).find(|flights| *flights as f64 >= needed * most as f64).unwrap_or(usize::MAX);
+    let own = |group: &[(usize, f64, f64)]| {
+        let weights: f64 = group.iter().map(|(.., variance)| variance.recip()).sum();
+        let of = |(flight, _, variance): &(usize, f64, f64)| {
+            let std = values[*flight].map_or(0.0, |(_, std)| std);
+            (std / (variance * weights)).powi(2)
+        };
+        scale * scale * group.iter().map(of).sum::<f64>()
+    };
+    Undecided { flights, by_spread: 2.0 * groups.map(own).iter().sum::<f64>() < moved.by.1.powi(2) }
 }
 
 fn mean(group: &[(usize, f64, f64)], scale: f64) -> (f64, f64) {
@@ -97,7 +136,26 @@ mod tests {
         // where one vehicle's flights differ by a third, this says nothing
         let wide = Spread { relative: 0.33, absolute: 0.0 };
         let found = judge_parameter(&values, &groups, &wide).unwrap();
-        assert!(!found.changed && found.least > 1.0);
+        assert!(!found.changed && found.least > 1.0 && found.undecided.is_none());
         assert!(judge_parameter(&[None, None, Some((1.0, 0.1)), None], &groups, &exact).is_none());
+    }
+
+    #[test]
+    fn a_difference_that_is_not_certain_says_how_many_flights_would_decide() {
+        let spread = Spread { relative: 0.12, absolute: 0.0 };
+        let pair = |flights: usize| {
+            let values = [vec![Some((0.5, 0.02)); flights], vec![Some((1.0, 0.03)); flights]].concat();
+            judge_parameter(&values, &Groups::split(2 * flights, flights), &spread).unwrap()
+        };
+        let found = pair(1);
+        let undecided = found.undecided.unwrap();
+        assert!(!found.changed && undecided.by_spread && undecided.flights == 2, "{found:?}");
+        let decided = pair(undecided.flights);
+        assert!(decided.changed && decided.undecided.is_none());
+        // where each flight hardly determines it, its own error is why
+        let blurred = [Some((0.5, 0.1)), Some((1.0, 0.1))];
+        let exact = Spread { relative: 0.0, absolute: 0.0 };
+        let found = judge_parameter(&blurred, &Groups::split(2, 1), &exact).unwrap();
+        assert!(found.undecided.is_some_and(|undecided| !undecided.by_spread));
     }
 }

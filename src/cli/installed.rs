@@ -1,7 +1,9 @@
 //! Arguments of the verbs for what is installed beside the program.
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use clap_complete::Shell;
+use mavid::report::verbs_with_schema;
 use std::path::PathBuf;
 
 /// Arguments of `mavid completions`.
@@ -18,4 +20,12 @@ pub struct ManArgs {
     /// folder for a page a command
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
+}
+
+/// Arguments of `mavid schema`.
+#[derive(Debug, Args)]
+pub struct SchemaArgs {
+    /// the verb that writes the document
+    #[arg(value_parser = PossibleValuesParser::new(verbs_with_schema()))]
+    pub verb: String,
 }

@@ -28,7 +28,7 @@ pub use fleet::{
 };
 pub use flight::{CheckName, FlyArgs, OriginName};
 pub use given::ShapeArgs;
-pub use installed::{CompletionsArgs, ManArgs};
+pub use installed::{CompletionsArgs, ManArgs, SchemaArgs};
 pub use live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 pub use model::{ExportArgs, ExportFormat, InitArgs, LoadArgs, SimulateArgs, VehicleArgs, VehicleVerb};
 pub use onboard::{LogArgs, LogFetchArgs, LogListArgs, LogPrepareArgs, LogVerb, VehicleLinkArgs};

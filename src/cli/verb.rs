@@ -10,7 +10,7 @@ use super::csv_map::CsvMapArgs;
 use super::effects::EffectsArgs;
 use super::fleet::{FleetArgs, FleetLogArgs};
 use super::flight::FlyArgs;
-use super::installed::{CompletionsArgs, ManArgs};
+use super::installed::{CompletionsArgs, ManArgs, SchemaArgs};
 use super::live::{DemoArgs, RecordArgs, ReplayArgs, SitlArgs};
 use super::model::{ExportArgs, SimulateArgs, VehicleArgs};
 use super::onboard::LogArgs;
@@ -137,6 +137,9 @@ pub enum Verb {
     /// Propose what the columns of a CSV table mean, as a file for --csv-map
     #[command(after_help = "Example:\n  mavid csv-map flight.csv --out map.toml")]
     CsvMap(CsvMapArgs),
+    /// Print the JSON Schema of the document that a verb writes with --json
+    #[command(after_help = "Example:\n  mavid schema compare > compare.schema.json")]
+    Schema(SchemaArgs),
     /// Print the completions of a shell
     #[command(
         after_help = "Example:\n  mavid completions bash > ~/.local/share/bash-completion/completions/mavid"

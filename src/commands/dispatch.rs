@@ -33,6 +33,7 @@ pub fn run(cli: &Cli, stderr: &StandardError) -> Result<Outcome, CommandError> {
         Verb::Redact(args) => redact::run(cli.json, args),
         Verb::Effects(args) => effects::run(cli.json, args),
         Verb::CsvMap(args) => csv_map::run(cli.json, args),
+        Verb::Schema(args) => installed::schema(args),
         Verb::Completions(args) => installed::completions(args),
         Verb::Man(args) => installed::man(cli.json, args),
     }

@@ -1,18 +1,25 @@
-//! `mavid completions SHELL` and `mavid man DIR`: what is installed beside the program.
+//! `mavid completions SHELL`, `mavid man DIR` and `mavid schema VERB`: what is installed beside the program.
 
 use std::path::Path;
 
 use clap::CommandFactory;
 use clap_mangen::Man;
+use mavid::report::document_schema;
 
 use super::{CommandError, Outcome, output};
-use crate::cli::{Cli, CompletionsArgs, ManArgs};
+use crate::cli::{Cli, CompletionsArgs, ManArgs, SchemaArgs};
 
 /// Prints completions.
 pub fn completions(args: &CompletionsArgs) -> Result<Outcome, CommandError> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "mavid", &mut script);
     output::document(String::from_utf8_lossy(&script).trim_end())?;
+    Ok(Outcome::Done)
+}
+
+/// Prints the schema of a document.
+pub fn schema(args: &SchemaArgs) -> Result<Outcome, CommandError> {
+    output::json(&document_schema(&args.verb))?;
     Ok(Outcome::Done)
 }
 

@@ -110,8 +110,11 @@ impl Evidence<'_> {
 
     /// The log has actuator outputs, and they are not those of the vehicle.
     pub(super) fn has_other_actuators(&self) -> bool {
-        matches!(self.assessment.refusal, Some(SignalsError::NoActuators { .. }))
-            && self.actuator_hz().is_some()
+        let others = matches!(
+            self.assessment.refusal,
+            Some(SignalsError::NoActuators { .. } | SignalsError::OtherRotors { .. })
+        );
+        others && self.actuator_hz().is_some()
     }
 
     /// Why it is no flight, where the vehicle tells that.

@@ -16,6 +16,7 @@ mod page;
 mod plan;
 mod proof;
 mod quality;
+mod schema;
 mod thrust_source;
 mod validation;
 mod value;
@@ -37,6 +38,7 @@ pub use inspection::{InspectionDocument, inspection_text};
 pub use number::{significant, spoken, with_error};
 pub use plan::{PlanDocument, plan_text};
 pub use proof::proof_text;
+pub use schema::{document_schema, verbs_with_schema};
 pub use validation::{
     ValidationDocument, closed_loop_charts, error_table_text, validation_html, validation_text,
 };

@@ -3,7 +3,7 @@
 use crate::diagnose::holdout::Interval;
 use crate::text::rounded;
 
-pub use crate::text::{chance, significant, spoken, with_error};
+pub use crate::text::{chance, interval, significant, spoken, with_error};
 
 /// `49 % (44 to 53 %)`.
 #[must_use]

@@ -1,11 +1,12 @@
 //! Identified values in JSON.
 
 use crate::estimate::{Finding, MethodResult, ThrustScale};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// A number with its standard error, or the reason why there is none.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Value {
     value: Option<f64>,
     std: Option<f64>,
@@ -32,7 +33,7 @@ fn value(finding: &Finding, unit: &'static str) -> Value {
     }
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Thrust {
     name: &'static str,
     #[serde(flatten)]

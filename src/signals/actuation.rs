@@ -1,6 +1,7 @@
 //! Actuation of the body: rotors, or force and torque of the log.
 
 use super::actuators::{thrusts_from_commands, thrusts_from_speeds};
+use super::rotor_count::{channels_that_move, refuse_stated_count};
 use super::rotor_thrusts::{RotorThrusts, ThrustSource};
 use super::select::{best, too_short};
 use super::stated_rotors::rotor_difference;
@@ -10,17 +11,6 @@ use crate::note::{About, Note};
 use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector4;
-
-/// Number of command channels that vary. PX4 reports its whole row of outputs; those without a motor stay at the value
-/// of a disarmed one.
-fn channels_that_move(commands: &Stream) -> usize {
-    let moves = |channel: &usize| {
-        let mut values = commands.values.iter().skip(*channel).step_by(commands.width.max(1));
-        let first = values.find(|value| value.is_finite());
-        first.is_some_and(|first| values.any(|value| value.is_finite() && value != first))
-    };
-    (0..commands.width).filter(moves).count()
-}
 
 /// Commands or measured rotor speeds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -88,6 +78,7 @@ impl Actuation {
         if let Some((key, stream)) = best(recording, Quantity::Wrench, |s| s.width == 4) {
             return Ok(Self::Wrench(key.source, stream.clone()));
         }
+        refuse_stated_count(recording, vehicle)?;
         rotor_thrusts(recording, vehicle, preference).map(Self::Rotors).map_err(|error| match error {
             SignalsError::NoActuators { .. } => too_short(recording, Quantity::Wrench, |_, s| s.width == 4)
                 .or_else(|| {
@@ -198,18 +189,4 @@ pub(super) struct Felt {
     pub(super) rotor_thrust_n: Vec<f64>,
     pub(super) wrench: Vec<Vector4<f64>>,
     pub(super) jitter_wrench: Option<Vec<Vector4<f64>>>,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_output_that_stays_where_it_is_drives_nothing() {
-        let rows =
-            [[f64::NAN, 1500.0, 900.0, 0.0], [1400.0, 1510.0, 900.0, 0.0], [1420.0, 1490.0, 900.0, 0.0]];
-        let commands = Stream { time_s: vec![0.0, 0.1, 0.2], width: 4, values: rows.concat() };
-        assert_eq!(channels_that_move(&commands), 2);
-        assert_eq!(channels_that_move(&Stream::default()), 0);
-    }
 }

@@ -7,7 +7,8 @@
 use super::SignalsError;
 use super::grid::LARGEST_VALUE;
 use super::rebuilt::rebuilt;
-use super::rotor_thrusts::{RotorThrusts, ThrustSource};
+use super::rotor_count::refuse_still_rotors;
+use super::rotor_thrusts::{RotorThrusts, ThrustSource, jitter_thrust};
 use super::select::{LEAST_SAMPLES, MOTORS, best, best_of, is_live, too_short};
 use crate::autopilot::{MOST_OUTPUTS, Outputs};
 use crate::note::{About, Note};
@@ -18,7 +19,8 @@ use crate::vehicle::{Actuator, Propulsion, PwmRange, ThrustLaw, Vehicle};
 ///
 /// # Errors
 /// [`SignalsError::NoActuators`] where no stream has a channel for every rotor in the vehicle's unit and moves,
-/// [`SignalsError::TooFewSamples`] where one has, but hardly a sample with a value for every rotor.
+/// [`SignalsError::OtherRotors`] where those of a rotor never move, [`SignalsError::TooFewSamples`] where hardly a sample has a value
+/// for every rotor.
 pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result<RotorThrusts, SignalsError> {
     let (propulsion, mut notes) = propulsion_from_log(recording, &vehicle.propulsion);
     let outputs = motor_channels(recording, vehicle.rotors.len(), &mut notes);
@@ -36,6 +38,7 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
             .unwrap_or_else(|| no_actuators(recording, vehicle))
     })?;
     let (channels, _) = read_as(key);
+    refuse_still_rotors(recording, (key.source, raw), channels)?;
     let expo = thrust_model(recording);
     let normalized = |value: f64| match key.source {
         MOTORS => output_of_thrust(value, expo),
@@ -84,13 +87,15 @@ fn output_of_thrust(share: f64, expo: f64) -> f64 {
     ((linear * linear + 4.0 * expo * share.max(0.0)).sqrt() - linear) / (2.0 * expo)
 }
 
-/// Rotor thrusts from measured speeds. `None` if no speeds, or hardly a sample with all rotors, are recorded, or if no
-/// thrust coefficient is known.
+/// Rotor thrusts from measured speeds. `None` if no speeds, hardly a sample with all rotors, or a rotor that never moves are recorded,
+/// or if no thrust coefficient is known.
 #[must_use]
 pub fn thrusts_from_speeds(recording: &Recording, vehicle: &Vehicle) -> Option<RotorThrusts> {
     let coefficient = vehicle.propulsion.thrust_coefficient?;
     let rotors = vehicle.rotors.len();
+    let all: Vec<usize> = (0..rotors).collect();
     let (key, raw) = best(recording, Quantity::RotorSpeed, |stream| stream.width >= rotors)?;
+    refuse_still_rotors(recording, (key.source, raw), &all).ok()?;
     let mut stream = Stream { time_s: Vec::with_capacity(raw.len()), width: rotors, values: Vec::new() };
     stream.values.reserve(raw.len() * rotors);
     for index in 0..raw.len() {
@@ -106,23 +111,6 @@ pub fn thrusts_from_speeds(recording: &Recording, vehicle: &Vehicle) -> Option<R
     }
     let (source, message) = (ThrustSource::MeasuredSpeed, key.source);
     Some(RotorThrusts { stream, command: None, jitter: None, source, message, notes: Vec::new() })
-}
-
-/// Thrust of the commands' jitter, N. A thrust curve is convex, so a command with jitter gives more thrust than its
-/// mean: `1/2 T'' sigma^2`. A rotor averages an unknown part of the jitter. The local sigma^2 is the squared fourth
-/// difference divided by 70, which is exact for white jitter.
-fn jitter_thrust(command: &Stream, curvature_n: f64) -> Stream {
-    let width = command.width;
-    let mut out = Stream { time_s: command.time_s.clone(), width, values: vec![0.0; command.values.len()] };
-    for index in 2..command.len().saturating_sub(2) {
-        for rotor in 0..width {
-            let at = |i: usize| command.sample(i)[rotor];
-            let fourth =
-                at(index - 2) - 4.0 * at(index - 1) + 6.0 * at(index) - 4.0 * at(index + 1) + at(index + 2);
-            out.values[index * width + rotor] = 0.5 * curvature_n * fourth * fourth / 70.0;
-        }
-    }
-    out
 }
 
 fn no_actuators(recording: &Recording, vehicle: &Vehicle) -> SignalsError {

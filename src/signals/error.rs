@@ -19,6 +19,17 @@ pub enum SignalsError {
         /// what the recording has, and what to do
         found: String,
     },
+    /// the log is that of a vehicle with another number of rotors
+    #[error(
+        "expected the log of a vehicle with {rotors} rotors, as the vehicle file has, got {came}: give the file of the vehicle that \
+         flew (`mavid vehicle init` drafts one from its log), or correct its [[rotor]] entries"
+    )]
+    OtherRotors {
+        /// rotors of the vehicle
+        rotors: usize,
+        /// what the recording has
+        came: String,
+    },
     /// a needed stream has too few samples
     #[error(
         "{message} holds {count} usable sample{} of {}: at least {needed} are needed",

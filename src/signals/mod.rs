@@ -24,6 +24,7 @@ mod rebuilt;
 mod reference;
 mod reported_state;
 mod resolution;
+mod rotor_count;
 mod rotor_thrusts;
 mod select;
 mod spectrum;

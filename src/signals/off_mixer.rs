@@ -2,6 +2,7 @@
 
 use super::actuators::LONGEST_PULSE_US;
 use super::reported_state::ReportedState;
+use super::rotor_count::motors;
 use super::select::{best, is_live};
 use crate::recording::{Quantity, Recording, Stream};
 use std::fmt;
@@ -18,8 +19,6 @@ const AT_BOUND: f64 = 0.03;
 const STOPPED: f64 = 0.02;
 /// Mean of the others, share of the range, from which on they carry the vehicle. Below it nothing is in the air.
 const CARRYING: f64 = 0.15;
-/// Samples of an output that must move for it to be a motor's, of ten. A servo or an unused output moves less often.
-const MOVES_OF_TEN: usize = 3;
 
 /// An output that left the mixer in the air.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -97,17 +96,6 @@ fn range_of(recording: &Recording, stream: &Stream) -> Option<(f64, f64)> {
     let stated = stack.and_then(|stack| stack.outputs.pulses.ends_us(parameter));
     let ends = stated.filter(|(low, high)| high > low).unwrap_or((1000.0, 2000.0));
     (most <= LONGEST_PULSE_US).then_some(ends)
-}
-
-/// Channels that move in the air as motors do.
-fn motors(stream: &Stream, said: &ReportedState) -> Vec<usize> {
-    let in_air: Vec<usize> = (1..stream.len()).filter(|&index| said.may_fly(stream.time_s[index])).collect();
-    let moves = |channel: &usize| {
-        let moved = |index: &&usize| stream.sample(**index)[*channel] != stream.sample(**index - 1)[*channel];
-        let count = in_air.iter().filter(moved).count();
-        in_air.len() > 20 && 10 * count >= MOVES_OF_TEN * in_air.len()
-    };
-    (0..stream.width).filter(moves).collect()
 }
 
 /// The outputs of a flight.

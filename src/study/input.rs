@@ -4,8 +4,10 @@ use std::path::Path;
 
 use crate::note::{Note, Severity};
 use crate::text;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Serialize, Serializer};
 use sha2::{Digest, Sha256};
+use std::borrow::Cow;
 use std::fmt::Write;
 
 use super::StudyError;
@@ -64,23 +66,40 @@ impl InputFile {
 }
 
 /// `{"path", "sha256", "other_logs", "losses", "notes"}`, the third and the last only where there are some.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "InputFile")]
+struct Written<'a> {
+    path: &'a str,
+    sha256: &'a str,
+    /// of the same flight
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    other_logs: Vec<OtherLog<'a>>,
+    /// what of it was not read or not used: sentence by sentence
+    losses: Vec<&'a str>,
+    /// what else is to be known of it
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    notes: Vec<&'a str>,
+}
+
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "OtherLog")]
+struct OtherLog<'a> {
+    path: &'a str,
+    sha256: &'a str,
+}
+
+impl JsonSchema for InputFile {
+    fn schema_name() -> Cow<'static, str> {
+        Written::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Written::json_schema(generator)
+    }
+}
+
 impl Serialize for InputFile {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct OtherLog<'a> {
-            path: &'a str,
-            sha256: &'a str,
-        }
-        #[derive(Serialize)]
-        struct Written<'a> {
-            path: &'a str,
-            sha256: &'a str,
-            #[serde(skip_serializing_if = "Vec::is_empty")]
-            other_logs: Vec<OtherLog<'a>>,
-            losses: Vec<&'a str>,
-            #[serde(skip_serializing_if = "Vec::is_empty")]
-            notes: Vec<&'a str>,
-        }
         let (losses, notes) = (self.losses(), self.remarks());
         let other_logs = self.other_logs.iter().map(|(path, sha256)| OtherLog { path, sha256 }).collect();
         Written { path: &self.path, sha256: &self.sha256, other_logs, losses, notes }.serialize(serializer)

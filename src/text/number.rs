@@ -44,6 +44,14 @@ pub fn with_error(value: f64, std: f64) -> String {
     format!("{} +- {}", rounded(value, places), rounded(std, places))
 }
 
+/// `0.78 to 0.84`: the ends of an interval, rounded to the standard error that it is of.
+#[must_use]
+pub fn interval([low, high]: [f64; 2], std: f64) -> String {
+    let places = decimals(std);
+    let end = |end: f64| if places > 5 { significant(end, 3) } else { rounded(end, places) };
+    format!("{} to {}", end(low), end(high))
+}
+
 /// At most four significant digits, without zeros at the end.
 #[must_use]
 pub fn compact(value: f64) -> String {
@@ -106,6 +114,13 @@ pub fn spoken(unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_ends_of_an_interval_are_rounded_as_their_error_is() {
+        assert_eq!(interval([0.77664, 0.83936], 0.016), "0.777 to 0.839");
+        assert_eq!(interval([-0.021, 0.0301], 0.03), "-0.02 to 0.03");
+        assert_eq!(interval([2.04e-7, 3.96e-7], 5e-8), "2.04e-7 to 3.96e-7");
+    }
 
     #[test]
     fn values_are_rounded_to_their_standard_error() {

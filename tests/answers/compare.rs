@@ -1,6 +1,7 @@
 //! `mavid compare`: a rotor that became weak between simulated flights, real propellers that were cut, and outputs that left the mixer.
 
 use crate::support;
+use crate::support::schema::differences;
 
 use mavid::config::load_vehicle;
 use mavid::diagnose::{ExplainSettings, each_with_model_of_all, explain};
@@ -71,6 +72,14 @@ fn a_rotor_that_became_weak_is_found_and_an_unchanged_vehicle_is_not_called_chan
     );
     let (after, std) = (change["after"]["value"].as_f64().unwrap(), change["by"]["std"].as_f64().unwrap());
     assert!((after - 0.95).abs() < 2.0 * std && std < 0.01, "{after} +- {std}");
+    // one value has one error
+    assert_eq!(
+        (&change["after"]["std"], &change["before"]),
+        (&std.into(), &serde_json::json!({ "value": 1.0, "std": 0.0 }))
+    );
+    let schema = mavid(&["schema", "compare"]);
+    let schema: Value = serde_json::from_slice(&schema.stdout).unwrap();
+    assert_eq!(differences(&said, &schema), Vec::<String>::new());
     // the same along the row
     assert_eq!(said["history"][0]["from"], 2);
     let report = std::fs::read_to_string(folder.join("out/report.html")).unwrap();
@@ -84,6 +93,13 @@ fn a_rotor_that_became_weak_is_found_and_an_unchanged_vehicle_is_not_called_chan
     assert_eq!(same.status.code(), Some(0), "{}", String::from_utf8_lossy(&same.stderr));
     let said: Value = serde_json::from_slice(&same.stdout).unwrap();
     assert_eq!((&said["verdict"], &said["changes"]), (&"nothing_changed".into(), &serde_json::json!([])));
+    assert_eq!(differences(&said, &schema), Vec::<String>::new());
+    // and a document that is otherwise is seen
+    let mut wrong = said.clone();
+    wrong["verdict"] = "perhaps".into();
+    wrong["flights"][0]["legs"] = (-1).into();
+    wrong["more"] = 1.into();
+    assert_eq!(differences(&wrong, &schema).len(), 3, "{:?}", differences(&wrong, &schema));
     // and what would have shown is told
     let least = said["smallest_changes"].as_array().unwrap();
     assert!(
@@ -99,6 +115,34 @@ fn logs_of_different_autopilots_are_not_of_one_vehicle() {
     assert_eq!(refused.status.code(), Some(2));
     let why = String::from_utf8_lossy(&refused.stderr);
     assert!(why.contains("ap_baseline_70_79s.tlog: expected flights of one vehicle, got a log of"), "{why}");
+}
+
+#[test]
+fn a_vehicle_file_with_another_number_of_rotors_is_refused() {
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+    let folder = folder("six");
+    let six = folder.join("six.toml");
+    // the frame of the file, with two rotors more
+    let four = std::fs::read_to_string(fixtures.join("px4-sih.toml")).unwrap();
+    let more = "\n[[rotor]]\nname = \"left\"\nposition = [0.0, 0.3, 0.0]\nspin = \"cw\"\n";
+    let other = more.replace("left", "right").replace("0.3", "-0.3").replace("\"cw", "\"ccw");
+    std::fs::write(&six, format!("{four}{more}{other}")).unwrap();
+    let six = six.display().to_string();
+    let [log, other] =
+        ["px4_flight.ulg", "px4_baseline_40_46s.tlog"].map(|name| fixtures.join(name).display().to_string());
+    for arguments in [
+        vec!["identify", &log],
+        vec!["explain", &log],
+        vec!["validate", &log],
+        vec!["compare", &log, "--with", &other],
+    ] {
+        let which = if arguments[0] == "validate" { "--model" } else { "--vehicle" };
+        let refused = mavid(&[&arguments[..], &[which, &six]].concat());
+        let why = String::from_utf8_lossy(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(2), "{arguments:?}: {why}");
+        assert!(why.contains("expected the log of a vehicle with 6 rotors"), "{arguments:?}: {why}");
+        assert!(why.contains("give the file of the vehicle that flew"), "{arguments:?}: {why}");
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::Value;
+use support::schema::differences;
 use support::shared_case;
 
 fn mavid(arguments: &[&str]) -> Output {
@@ -40,6 +41,8 @@ fn a_complete_rigid_body_has_nothing_missing_and_says_what_it_would_have_seen() 
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(stderr(&output).contains("--next: nothing written: ") && !next.exists(), "{}", stderr(&output));
     let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let schema: Value = serde_json::from_slice(&mavid(&["schema", "explain"]).stdout).unwrap();
+    assert_eq!(differences(&document, &schema), Vec::<String>::new());
     assert_eq!(document["schema"], 1);
     assert_eq!(document["verdict"], "nothing_missing");
     assert_eq!(document["effects"].as_array().unwrap().len(), 0);

@@ -2,7 +2,7 @@
 
 use super::blocks::{command, paragraph, table};
 use super::comparison_figures::{
-    Answer, Comparison, Cut, CutPropellers, FoundChange, Pairs, Pooled, PooledParameter, Simulators,
+    Answer, Comparison, Cut, CutPropellers, FoundChange, Pairs, Pooled, PooledParameter, Sessions, Simulators,
 };
 use mavid::text::{significant, with_error};
 
@@ -13,6 +13,7 @@ pub fn blocks(measured: &Comparison) -> Vec<(&'static str, String)> {
         ("pooled", pooled(&measured.pooled)),
         ("cut propellers", cut_propellers(&measured.cut_propellers)),
         ("simulators", simulators(&measured.simulators)),
+        ("sessions", sessions(&measured.sessions)),
     ]
 }
 
@@ -153,4 +154,24 @@ fn simulators(of: &Simulators) -> String {
         .map(|pair| vec![pair.name.clone(), cell(&pair.by_telemetry), cell(&pair.on_board)])
         .collect();
     table(&["pair", "by telemetry", "by on-board log"], &rows)
+}
+
+fn sessions(of: &Sessions) -> String {
+    let rows: Vec<Vec<String>> = of
+        .sessions
+        .iter()
+        .map(|session| {
+            let each = |values: &[f64], digits: i32| {
+                values.iter().map(|value| significant(*value, digits)).collect::<Vec<_>>().join(", ")
+            };
+            vec![session.flights.join(", "), each(&session.at_rest_m_s2, 2), each(&session.balance, 2)]
+        })
+        .collect();
+    let head =
+        ["flights", "accelerometer along x before the motors turn, m/s^2", "balance: x, y (arms), about z"];
+    let text = format!(
+        "Pairs of one group: {} of {} called changed. Pairs of two groups: {} of {}.",
+        of.within.1, of.within.0, of.between.1, of.between.0
+    );
+    format!("{}\n\n{}\n\n{}", command(&of.command), table(&head, &rows), paragraph(&text))
 }

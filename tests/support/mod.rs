@@ -4,6 +4,7 @@
 
 pub mod dataflash;
 pub mod require;
+pub mod schema;
 
 use std::path::{Path, PathBuf};
 

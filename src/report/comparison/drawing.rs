@@ -1,6 +1,7 @@
 //! The vehicle from above, with what changed of it.
 
 use crate::change::What;
+use crate::report::number::with_error;
 use crate::report::vehicle_drawing::{MEANT, Mark, RIVAL, vehicle_drawing};
 use crate::study::{Changed, CompareStudy};
 use maud::Markup;
@@ -33,6 +34,6 @@ fn of_centre(study: &CompareStudy) -> bool {
 /// What is left of a rotor's thrust, percent.
 fn factor(study: &CompareStudy, place: usize) -> Option<String> {
     let change = changes(study).find(|change| change.what == Changed::Rotor(place))?;
-    let (after, std) = (change.moved?.after.0, change.moved?.by.1);
-    Some(format!("{:.0} +- {:.0} %", 100.0 * after, (100.0 * std).max(1.0)))
+    let (after, std) = change.moved?.after;
+    Some(format!("{} %", with_error(100.0 * after, 100.0 * std)))
 }

@@ -1,11 +1,11 @@
 //! `report.html` of `compare`: each section is one function, and one call in [`comparison_html`].
 
 use super::drawing::drawing;
-use super::words::{answer, name, returned, sentence, size, spaced};
+use super::words::{FLIGHTS_OWN_ERRORS, answer, name, open, returned, sentence, size};
 use crate::change::interval_95;
 use crate::diagnose::Owner;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
-use crate::report::number::{significant, with_error};
+use crate::report::number::{interval, significant, with_error};
 use crate::report::page::page;
 use crate::study::{Change, CompareStudy};
 use maud::{Markup, html};
@@ -38,31 +38,36 @@ fn vehicle(study: &CompareStudy) -> Markup {
 }
 
 fn changed(study: &CompareStudy) -> Markup {
-    let Some(compared) = study.compared.as_ref().filter(|compared| !compared.changes.is_empty()) else {
-        return Markup::default();
-    };
+    let Some(compared) = &study.compared else { return Markup::default() };
     let rows: Vec<Vec<Cell>> = compared.changes.iter().map(|change| row(study, change)).collect();
-    let heads =
-        ["", "before|", "after|", "difference|", "95 % interval|", "standard deviations|", "shown alone by"];
-    section("What changed", &table("Before and after, with standard errors", &heads, &rows))
+    let undecided: Vec<Vec<Cell>> = compared.undecided.iter().map(|(change, _)| row(study, change)).collect();
+    let heads = ["", "unit", "before", "after", "difference", "standard deviations|", "shown alone by"];
+    let caption = "Before and after, with standard errors and, in brackets, intervals of 95 %";
+    html! {
+        @if !rows.is_empty() { (section("What changed", &table(caption, &heads, &rows))) }
+        @if !undecided.is_empty() {
+            (section("Not decided", &html! {
+                (table(caption, &heads, &undecided))
+                @for of in &compared.undecided { (note(&open(study, of))) }
+            }))
+        }
+    }
 }
 
 fn row(study: &CompareStudy, change: &Change) -> Vec<Cell> {
-    let of = |(value, std)| with_error(value, std);
-    let (parts, interval) = change.moved.map_or_else(Default::default, |moved| {
-        let [low, high] = interval_95((moved.after.0, moved.by.1)).map(|end| significant(end, 3));
-        ([of(moved.before), of(moved.after), of(moved.by)], format!("{low} to {high}"))
-    });
+    let of = |(value, std): (f64, f64)| {
+        let ends = || format!(" ({})", interval(interval_95((value, std)), std));
+        let ends = if std > 0.0 { ends() } else { String::new() };
+        format!("{}{ends}", with_error(value, std))
+    };
+    let parts =
+        change.moved.map_or_else(Default::default, |moved| [of(moved.before), of(moved.after), of(moved.by)]);
     let say: Vec<&str> =
         change.carried_by.iter().map(|&flight| study.flights[flight].input.path.as_str()).collect();
-    let unit = spaced(change.unit);
-    let mut cells = vec![text(name(study, change.what))];
-    cells.extend(parts.map(|part| number(format!("{part}{unit}"))));
-    cells.extend([
-        number(format!("{interval}{unit}")),
-        number(significant(change.sigmas, 2)),
-        text(say.join(", ")),
-    ]);
+    let mut cells = vec![text(name(study, change.what)), text(change.unit)];
+    // words, so that they are broken where there is no room
+    cells.extend(parts.map(text));
+    cells.extend([number(significant(change.sigmas, 2)), text(say.join(", "))]);
     cells
 }
 
@@ -133,7 +138,8 @@ fn tracks(study: &CompareStudy) -> Markup {
     let mut heads = vec!["parameter".to_owned(), "unit".to_owned(), "whose".to_owned()];
     heads.extend((0..study.flights.len()).map(|place| format!("flight {}|", place + 1)));
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    section("Parameters along the flights", &table("With standard errors", &heads, &rows.collect::<Vec<_>>()))
+    let caption = format!("With {FLIGHTS_OWN_ERRORS}");
+    section("Parameters along the flights", &table(&caption, &heads, &rows.collect::<Vec<_>>()))
 }
 
 fn history(study: &CompareStudy) -> Markup {

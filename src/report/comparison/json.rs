@@ -1,94 +1,178 @@
 //! The JSON document of `compare`.
 
-use super::words::{answer, rival_name, sentence};
-use crate::change::Moved;
+use super::words::{answer, open, rival_name, sentence};
+use crate::change::{Moved, Undecided};
 use crate::diagnose::Owner;
 use crate::note::Note;
 use crate::study::{Change, Changed, CompareStudy, InputFile, LeastChange, Track};
+use schemars::JsonSchema;
 use serde::Serialize;
 
-/// The JSON document of `compare`.
-#[derive(Debug, Clone, Serialize)]
+/// The JSON document of `compare`. Flights are named by their places, from 0, in the order in which they were given.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct ComparisonDocument {
+    /// version of the document
+    #[schemars(extend("const" = 1))]
     schema: u32,
-    verdict: &'static str,
+    /// between the flights before and after; along all flights where no groups were given
+    verdict: Verdict,
+    /// the answer in a sentence or two
     answer: String,
-    /// mass and lengths are known; otherwise lengths are in arms
+    /// false: neither a vehicle nor a mass was given, and lengths are in arms
     known_vehicle: bool,
-    /// between the flights before and after; none where no groups were given
+    /// what changed between the flights before and after, the strongest first; null where no groups were given
     changes: Option<Vec<ChangeEntry>>,
+    /// parameters that moved by 3 to 4.5 standard deviations: no changes; null where no groups were given
+    undecided: Option<Vec<UndecidedEntry>>,
+    /// the smallest changes that would have been named; null where no groups were given
     smallest_changes: Option<Vec<LeastEntry>>,
+    /// one entry a flight
     flights: Vec<FlightEntry>,
+    /// each parameter along the flights; empty where the balance alone was compared
     parameters: Vec<TrackEntry>,
+    /// where along all flights something changed
     history: Vec<StepEntry>,
+    /// warnings and remarks, a sentence each, with what they are about
     notes: Vec<String>,
 }
 
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum Verdict {
+    NothingChanged,
+    Changed,
+}
+
+/// What changed.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum Kind {
+    /// a rotor's thrust for the same command over that before
+    Rotor,
+    /// where the centre of mass is along one axis of the body
+    CenterOfMass,
+    /// the torque about the vertical, over that of all rotors turning one way
+    YawTorque,
+    /// the balance, by nothing known alone: more than one thing changed
+    Balance,
+    /// a parameter of the vehicle
+    Parameter,
+}
+
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum Group {
+    Before,
+    After,
+}
+
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum OwnerName {
+    /// the same in every flight
+    Vehicle,
+    /// of the day: load, battery, wind; never a change
+    Flight,
+}
+
+/// A value with its standard error.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 struct Estimate {
     value: f64,
     std: f64,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// A value before and after.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct ChangeEntry {
-    what: &'static str,
+    what: Kind,
     /// rotor's name, axis or parameter
     of: Option<String>,
-    /// rotor's place, from 0
+    /// rotor's place in the vehicle's file, from 0
     rotor: Option<usize>,
     /// the same by the autopilot's number, from 1
     motor: Option<usize>,
+    /// it in words
     sentence: String,
+    /// of a rotor: 1, without an error
     before: Option<Estimate>,
+    /// of a rotor: its thrust for the same command over that before
     after: Option<Estimate>,
+    /// after less before
     by: Option<Estimate>,
+    /// of the values; `-`: none
     unit: &'static str,
+    /// standard deviations of the difference
     sigmas: f64,
     /// places of the later flights that each show it alone
     carried_by: Vec<usize>,
+    /// what else it may be
     may_be: Vec<String>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// A parameter that moved by more than chance and less than is certain.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct UndecidedEntry {
+    #[serde(flatten)]
+    change: ChangeEntry,
+    /// flights on each side from which on a difference of this size would be certain
+    flights_each_side: usize,
+    /// most of the error is the spread between flights of one vehicle, not that of the flights themselves
+    by_spread: bool,
+}
+
+/// The smallest change that would have been named.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct LeastEntry {
-    what: &'static str,
+    what: Kind,
+    /// rotor's name, axis or parameter
     of: Option<String>,
     size: f64,
+    /// of the size; `-`: none
     unit: &'static str,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct FlightEntry {
     input: InputFile,
-    group: Option<&'static str>,
-    /// shares of thrust: along x and y in arms, about z
+    /// null where no groups were given
+    group: Option<Group>,
+    /// in still air, shares of the thrust: where it acts along x and y (arms), the torque about z; the standard errors hold what wanders
+    /// from flight to flight
     balance: [Estimate; 3],
+    /// legs of 2 s that it rests on
     legs: usize,
+    /// the air's push along body x and y, over the weight
     felt: [f64; 2],
     own: OwnEntry,
+    /// why its motion was not compared, only its balance; null: it was
     balance_only: Option<String>,
 }
 
 /// Of the day, never a change of the vehicle.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 struct OwnEntry {
     full_thrust_over_weight: Option<Estimate>,
     voltage_v: Option<f64>,
     power_w: Option<f64>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// A parameter along the flights.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct TrackEntry {
     name: String,
     unit: &'static str,
-    owner: &'static str,
+    owner: OwnerName,
+    /// standard deviation between flights of one vehicle beside their errors, share of the value: `changes` have it in their errors
+    spread: f64,
+    /// of each flight alone; null where it does not determine it
     values: Vec<Option<Estimate>>,
-    /// of all flights, where nothing changed of it
+    /// of all flights, as of a vehicle that did not change
     together: Option<Estimate>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// A place in the row of flights from which on something is otherwise.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct StepEntry {
     /// place of the first flight that is otherwise
     from: usize,
@@ -106,10 +190,12 @@ impl ComparisonDocument {
             |changes: &[Change]| changes.iter().map(|change| entry(study, change)).collect::<Vec<_>>();
         Self {
             schema: 1,
-            verdict: if study.has_changed() { "changed" } else { "nothing_changed" },
+            verdict: if study.has_changed() { Verdict::Changed } else { Verdict::NothingChanged },
             answer: answer(study),
             known_vehicle: study.is_known,
             changes: compared.map(|compared| entries(&compared.changes)),
+            undecided: compared
+                .map(|compared| compared.undecided.iter().map(|of| undecided_entry(study, of)).collect()),
             smallest_changes: compared
                 .map(|compared| compared.least.iter().map(|least| least_entry(study, least)).collect()),
             flights: (0..study.flights.len()).map(|place| flight(study, place)).collect(),
@@ -133,13 +219,17 @@ fn estimate((value, std): (f64, f64)) -> Estimate {
 }
 
 /// Kind, and which of it.
-fn kind(study: &CompareStudy, what: Changed) -> (&'static str, Option<String>) {
+fn kind(study: &CompareStudy, what: Changed) -> (Kind, Option<String>) {
     match what {
-        Changed::Rotor(place) => ("rotor", Some(study.rotor(place).to_owned())),
-        Changed::CentreOfMass(axis) => ("center_of_mass", Some(if axis == 0 { "x" } else { "y" }.to_owned())),
-        Changed::YawTorque => ("yaw_torque", None),
-        Changed::Balance => ("balance", None),
-        Changed::Parameter(place) => ("parameter", study.tracks.get(place).map(|track| track.name.clone())),
+        Changed::Rotor(place) => (Kind::Rotor, Some(study.rotor(place).to_owned())),
+        Changed::CentreOfMass(axis) => {
+            (Kind::CenterOfMass, Some(if axis == 0 { "x" } else { "y" }.to_owned()))
+        }
+        Changed::YawTorque => (Kind::YawTorque, None),
+        Changed::Balance => (Kind::Balance, None),
+        Changed::Parameter(place) => {
+            (Kind::Parameter, study.tracks.get(place).map(|track| track.name.clone()))
+        }
     }
 }
 
@@ -163,6 +253,15 @@ fn entry(study: &CompareStudy, change: &Change) -> ChangeEntry {
     }
 }
 
+fn undecided_entry(study: &CompareStudy, of: &(Change, Undecided)) -> UndecidedEntry {
+    let (change, why) = of;
+    UndecidedEntry {
+        change: ChangeEntry { sentence: open(study, of), ..entry(study, change) },
+        flights_each_side: why.flights,
+        by_spread: why.by_spread,
+    }
+}
+
 fn least_entry(study: &CompareStudy, least: &LeastChange) -> LeastEntry {
     let (what, of) = kind(study, least.what);
     LeastEntry { what, of, size: least.size, unit: least.unit }
@@ -173,7 +272,10 @@ fn flight(study: &CompareStudy, place: usize) -> FlightEntry {
     let is_before = |groups: &crate::change::Groups| groups.before.contains(&place);
     FlightEntry {
         input: of.input.clone(),
-        group: study.groups.as_ref().map(|groups| if is_before(groups) { "before" } else { "after" }),
+        group: study
+            .groups
+            .as_ref()
+            .map(|groups| if is_before(groups) { Group::Before } else { Group::After }),
         balance: std::array::from_fn(|axis| estimate(study.balance.lean(place, axis))),
         legs: balance.legs,
         felt: balance.felt,
@@ -190,7 +292,8 @@ fn track(of: &Track) -> TrackEntry {
     TrackEntry {
         name: of.name.clone(),
         unit: of.unit,
-        owner: if of.owner == Owner::Flight { "flight" } else { "vehicle" },
+        owner: if of.owner == Owner::Flight { OwnerName::Flight } else { OwnerName::Vehicle },
+        spread: of.spread.relative,
         values: of.values.iter().map(|value| value.map(estimate)).collect(),
         together: of.pooled().map(estimate),
     }

@@ -1,6 +1,6 @@
 //! The page of `compare` for the terminal.
 
-use super::words::{answer, name, returned, sentence, size, spaced};
+use super::words::{FLIGHTS_OWN_ERRORS, answer, name, open, returned, sentence, size, spaced};
 use crate::diagnose::Owner;
 use crate::report::number::{significant, with_error};
 use crate::study::{Change, CompareStudy, Compared};
@@ -27,6 +27,12 @@ fn changes(page: &mut String, study: &CompareStudy, compared: &Compared) {
     }
     for change in &compared.changes {
         change_line(page, study, change);
+    }
+    if !compared.undecided.is_empty() {
+        page.push_str("\n  not decided\n");
+        for of in &compared.undecided {
+            let _ = writeln!(page, "    {}", open(study, of));
+        }
     }
     page.push_str("\n  the smallest change that would have been named\n");
     for least in &compared.least {
@@ -88,7 +94,7 @@ fn tracks(page: &mut String, study: &CompareStudy) {
     if study.tracks.is_empty() {
         return;
     }
-    page.push_str("\n  parameters along the flights, in their order\n");
+    let _ = writeln!(page, "\n  parameters along the flights, in their order; {FLIGHTS_OWN_ERRORS}");
     for track in &study.tracks {
         let values = track
             .values

@@ -1,8 +1,11 @@
 //! A comparison in words.
 
-use crate::change::{Step, What};
+use crate::change::{NAMED_SIGMAS, Step, Undecided, What};
 use crate::report::number::{significant, with_error};
 use crate::study::{Change, Changed, CompareStudy, Compared, LeastChange};
+
+/// What the errors of parameters along the flights hold.
+pub(super) const FLIGHTS_OWN_ERRORS: &str = "errors of each flight alone; those of before and after hold the spread between flights of one vehicle as well";
 
 /// The answer in a sentence or two.
 pub(super) fn answer(study: &CompareStudy) -> String {
@@ -15,8 +18,9 @@ pub(super) fn answer(study: &CompareStudy) -> String {
             );
             if compared.changes.is_empty() {
                 return format!(
-                    "Nothing changed {between} that these flights could show. {}",
-                    unseen(compared)
+                    "Nothing changed {between} that these flights could show. {}{}",
+                    unseen(compared),
+                    all_open(study, compared)
                 );
             }
             let all: Vec<String> = compared.changes.iter().map(|change| sentence(study, change)).collect();
@@ -68,10 +72,8 @@ pub(in crate::report) fn sentence(study: &CompareStudy, change: &Change) -> Stri
     let (before, after, by) = moved.unwrap_or_default();
     let unit = spaced(change.unit);
     let told = match change.what {
-        // what is compared errs in both
         Changed::Rotor(_) => {
-            let whole = change.moved.map_or_else(String::new, |moved| with_error(moved.after.0, moved.by.1));
-            format!("{} gives {whole} of the thrust that it gave for the same command", name(study, change.what))
+            format!("{} gives {after} of the thrust that it gave for the same command", name(study, change.what))
         }
         Changed::CentreOfMass(_) => {
             format!("{} moved by {by}{unit} (a load or a battery that sits elsewhere does the same)", name(study, change.what))
@@ -88,6 +90,53 @@ pub(in crate::report) fn sentence(study: &CompareStudy, change: &Change) -> Stri
     } else {
         format!("{told}; a change of {} would look the same to these flights", rivals.join(" or of "))
     }
+}
+
+/// All that is not decided, in a sentence or two; empty where nothing is.
+fn all_open(study: &CompareStudy, compared: &Compared) -> String {
+    let Some(most) = compared.undecided.iter().map(|(_, why)| why.flights).max() else {
+        return String::new();
+    };
+    let one = |(change, _): &(Change, Undecided)| {
+        let by = change.moved.map_or_else(String::new, |moved| with_error(moved.by.0, moved.by.1));
+        let sigmas = significant(change.sigmas, 2);
+        format!(
+            "{} moved by {by}{} ({sigmas} standard deviations)",
+            name(study, change.what),
+            spaced(change.unit)
+        )
+    };
+    let all: Vec<String> = compared.undecided.iter().map(one).collect();
+    format!(
+        " Not decided: {}; {NAMED_SIGMAS} make a change. Fly {} on each side to decide.",
+        all.join("; "),
+        flights(most)
+    )
+}
+
+/// A parameter that moved by more than chance and less than is certain, and what decides it, as a sentence.
+pub(super) fn open(study: &CompareStudy, (change, why): &(Change, Undecided)) -> String {
+    let by = change.moved.map_or_else(String::new, |moved| with_error(moved.by.0, moved.by.1));
+    let spread = match change.what {
+        Changed::Parameter(place) => study.tracks.get(place).map_or(0.0, |track| track.spread.relative),
+        _ => 0.0,
+    };
+    let because = if why.by_spread {
+        format!(
+            "most of this error is the spread between flights of one vehicle, {} % of the value",
+            significant(100.0 * spread, 2)
+        )
+    } else {
+        "most of this error is that of the flights themselves".to_owned()
+    };
+    format!(
+        "{} moved by {by}{}, {} standard deviations: below the {NAMED_SIGMAS} that make a change; {because}. Fly {} on each side to \
+         decide.",
+        name(study, change.what),
+        spaced(change.unit),
+        significant(change.sigmas, 2),
+        flights(why.flights)
+    )
 }
 
 /// What a change is of.

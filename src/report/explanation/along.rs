@@ -5,12 +5,13 @@ use crate::report::html::{Cell, note, number, section, table, text};
 use crate::report::number::with_error;
 use crate::study::{AlongFlights, ExplainStudy, Track};
 use maud::{Markup, html};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Several flights in JSON.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(super) struct AlongValue {
     parameters: Vec<TrackValue>,
     /// places of the flights that each show a named effect alone
@@ -19,7 +20,7 @@ pub(super) struct AlongValue {
     winds_m_s: Vec<Option<[f64; 2]>>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct TrackValue {
     name: String,
     unit: &'static str,
@@ -28,7 +29,7 @@ struct TrackValue {
     values: Vec<Option<EstimateValue>>,
 }
 
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 struct EstimateValue {
     value: f64,
     std: f64,

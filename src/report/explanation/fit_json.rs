@@ -5,11 +5,12 @@ use crate::diagnose::holdout::{AtEnd, Compared, HoldoutFit, OpenLoop};
 use crate::diagnose::{AXES, CHANNEL_NAMES};
 use crate::note::Note;
 use crate::study::{ExplainStudy, Predicted, QUANTITIES, ValidationData};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The `fit` of the JSON document.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(super) struct FitValues {
     identify: PairValue,
     holdout: PairValue,
@@ -21,7 +22,7 @@ pub(super) struct FitValues {
 }
 
 /// Over windows of 0.5 s, then everything.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct PairValue {
     /// by a state that does not change
     unchanged: Option<FitValue>,
@@ -40,7 +41,7 @@ struct PairValue {
     shown: Option<ShownValue>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct FitValue {
     position_m: Option<f64>,
     velocity_m_s: Option<f64>,
@@ -48,7 +49,7 @@ struct FitValue {
     rates_rad_s: Option<f64>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct WindowValue {
     window_s: f64,
     windows: usize,
@@ -56,7 +57,7 @@ struct WindowValue {
 }
 
 /// Values of hold-out flights only.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct ShownValue {
     weak_residual: BTreeMap<&'static str, ComparedValue>,
     /// `None` where it was not flown, or left the flight
@@ -70,7 +71,7 @@ struct ShownValue {
 }
 
 /// Root mean square errors with 95 % bootstrap intervals over blocks of the flight.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct ComparedValue {
     #[serde(skip_serializing_if = "Option::is_none")]
     unchanged: Option<f64>,
@@ -87,7 +88,7 @@ struct ComparedValue {
 }
 
 /// Mean size of the error at the end of the windows.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct AtEndValue {
     unchanged: f64,
     before: f64,
@@ -95,7 +96,7 @@ struct AtEndValue {
 }
 
 /// A parameter as identified and from the hold-out alone.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct OwnValue {
     identified: f64,
     identified_std: f64,

@@ -9,12 +9,15 @@ use crate::note::Note;
 use crate::report::thrust_source::thrust_name;
 use crate::report::value::{Thrust, thrust};
 use crate::study::{AxisFit, BodyParameter, ExplainStudy, InputFile, Located};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The JSON document of `explain`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct ExplanationDocument {
+    /// version of the document
+    #[schemars(extend("const" = 1))]
     schema: u32,
     verdict: &'static str,
     answer: String,
@@ -43,7 +46,7 @@ pub struct ExplanationDocument {
     warnings: Vec<String>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct EffectValue {
     id: &'static str,
     sentence: String,
@@ -55,7 +58,7 @@ struct EffectValue {
 }
 
 /// Certain, and too small to matter.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct TraceValue {
     id: &'static str,
     parameters: Vec<ParameterOf>,
@@ -69,7 +72,7 @@ struct TraceValue {
     of_misfit_percent: Option<f64>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct ParameterOf {
     name: &'static str,
     value: f64,
@@ -77,7 +80,7 @@ struct ParameterOf {
     unit: &'static str,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct EvidenceValue {
     z: f64,
     gain_percent: f64,
@@ -86,7 +89,7 @@ struct EvidenceValue {
 }
 
 /// A term without a mechanism: linear between the knots, zero outside.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct EmpiricalValue {
     variable: &'static str,
     unit: &'static str,
@@ -97,7 +100,7 @@ struct EmpiricalValue {
 }
 
 /// How the rates move in open loop, body x y z.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 struct RateLawValue {
     /// of the model's torque that acts, 0..1
     share: [f64; 3],
@@ -105,7 +108,7 @@ struct RateLawValue {
     offset_rad_s2: [f64; 3],
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct ParameterValue {
     value: Option<f64>,
     std: Option<f64>,
@@ -115,7 +118,7 @@ struct ParameterValue {
     reason: Option<String>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct Moved {
     nominal: f64,
     before: f64,
@@ -123,7 +126,7 @@ struct Moved {
     unit: &'static str,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct LatencyValue {
     total_s: Option<f64>,
     std_s: Option<f64>,
@@ -132,7 +135,7 @@ struct LatencyValue {
     named: bool,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct LackValue {
     period_s: f64,
     periods: usize,
@@ -140,14 +143,14 @@ struct LackValue {
     p_value_by_axis: BTreeMap<&'static str, f64>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct ResidualValue {
     before: f64,
     after: f64,
     unit: &'static str,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct LimitValue {
     id: &'static str,
     parameter: &'static str,
@@ -157,14 +160,14 @@ struct LimitValue {
     unit: &'static str,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct DataQuality {
     inputs: Vec<InputFile>,
     holdout: Vec<InputFile>,
     flights: Vec<FlightValue>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct FlightValue {
     usable_s: f64,
     total_s: f64,
@@ -173,7 +176,7 @@ struct FlightValue {
     notes: Vec<String>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct NextValue {
     /// the reason why there is none
     reason: Option<String>,
@@ -184,7 +187,7 @@ struct NextValue {
     inseparable: Vec<String>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct NextPair {
     named: &'static str,
     /// null: the distance is from zero

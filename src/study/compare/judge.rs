@@ -61,25 +61,30 @@ impl Judge<'_> {
         let balance = judge_balance(self.balance, groups, self.vehicle);
         let mut changes = self.of_balance(&balance);
         let mut least = self.least_of_balance(&balance);
+        let mut undecided = Vec::new();
         for (place, track) in
             self.tracks.iter().enumerate().filter(|(_, track)| track.owner == Owner::Vehicle)
         {
             let Some(judged) = judge_parameter(&track.values, groups, &track.spread) else { continue };
             let (what, unit) = (Changed::Parameter(place), track.unit);
             least.push(LeastChange { what, size: judged.least, unit });
-            if judged.changed {
-                changes.push(Change {
-                    what,
-                    moved: Some(judged.moved),
-                    unit,
-                    sigmas: judged.moved.sigmas().abs(),
-                    carried_by: judged.carried_by,
-                    rivals: Vec::new(),
-                });
+            let change = Change {
+                what,
+                moved: Some(judged.moved),
+                unit,
+                sigmas: judged.moved.sigmas().abs(),
+                carried_by: judged.carried_by,
+                rivals: Vec::new(),
+            };
+            match judged.undecided {
+                _ if judged.changed => changes.push(change),
+                Some(why) => undecided.push((change, why)),
+                None => {}
             }
         }
         changes.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
-        Compared { balance, changes, least }
+        undecided.sort_by(|(a, _), (b, _)| b.sigmas.total_cmp(&a.sigmas));
+        Compared { balance, changes, undecided, least }
     }
 
     /// Length of an arm and its unit: one arm where lengths are not known.

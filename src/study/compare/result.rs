@@ -1,6 +1,6 @@
 //! The result of comparing: every flight, what changed, and what could not have been seen.
 
-use crate::change::{BalanceChange, Groups, Moved, NAMED, Step, What};
+use crate::change::{BalanceChange, Groups, Moved, NAMED, Step, Undecided, What};
 use crate::note::Note;
 use crate::study::{InputFile, Track};
 use crate::trim::{Balance, mean_arm_m};
@@ -47,6 +47,8 @@ pub struct Compared {
     pub balance: BalanceChange,
     /// the strongest first; empty: nothing that these flights could show
     pub changes: Vec<Change>,
+    /// parameters that moved by more than chance and less than is certain: no changes
+    pub undecided: Vec<(Change, Undecided)>,
     /// the smallest changes that would have been named
     pub least: Vec<LeastChange>,
 }

@@ -26,6 +26,11 @@ pub(in crate::study) const UNKNOWN: Given = Given { mass_kg: 1.0, size_m: None, 
 /// What is said then.
 const SHARES: &str = "neither mass nor lengths were given: thrusts are compared as shares, lengths in arms";
 
+/// Why the balance alone is compared, and not the motion: asked for so, or nothing is known of the vehicle.
+const UNASKED: &str = "the motion was not asked for";
+/// See [`UNASKED`].
+const UNWEIGHED: &str = "neither a vehicle nor a mass was given";
+
 /// Says what changed of a vehicle between flights, and where along a row of them.
 ///
 /// # Errors
@@ -69,10 +74,13 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     notes.extend(doubts(&flights));
     let balance = balance(&legs_of(&flights, &vehicle)?);
     progress.stage(Stage::Explaining);
-    let (tracks, reasons) = if request.balance_only || request.vehicle.is_none() {
-        (Vec::new(), vec![Some("not asked for".to_owned()); flights.signals.len()])
-    } else {
-        tracks(&flights.signals, &vehicle, progress)
+    let why_not = match &request.vehicle {
+        None => Some(UNWEIGHED),
+        Some(_) => request.balance_only.then_some(UNASKED),
+    };
+    let (tracks, reasons) = match why_not {
+        Some(why) => (Vec::new(), vec![Some(why.to_owned()); flights.signals.len()]),
+        None => tracks(&flights.signals, &vehicle, progress),
     };
     if draft.is_none() {
         notes.extend(contradictions(&tracks, &vehicle).iter().map(Contradiction::note));

@@ -3,10 +3,11 @@
 use crate::diagnose::locate::{Follow, Localisation};
 use crate::diagnose::{AXES, CHANNEL_NAMES, Explanation, SECOND, Verdict};
 use crate::vehicle::AXIS_NAMES;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// An axis' share of the misfit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct AxisShare {
     /// as in [`CHANNEL_NAMES`]
     pub axis: &'static str,
@@ -15,7 +16,7 @@ pub struct AxisShare {
 }
 
 /// What a variable of the state explains of the misfit of one axis.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct StateShare {
     /// name
     pub variable: String,
@@ -28,7 +29,7 @@ pub struct StateShare {
 }
 
 /// A force that belongs to the room.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Field {
     /// world axis of the force
     pub force_along: &'static str,
@@ -43,7 +44,7 @@ pub struct Field {
 }
 
 /// The misfit by axis, time, state and frequency.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Located {
     /// largest share first; none where nothing is missing
     pub axes: Vec<AxisShare>,
