@@ -51,8 +51,15 @@ impl Contradiction {
     #[must_use]
     pub fn note(&self) -> Note {
         let Self { name, factor, guessed } = self;
+        let of_torque = format!(
+            "is the rotors' torque per thrust (torque_ratio) {:.2} times what is stated, or not proportional to their thrust? The \
+             motion about z tells only the ratio of torque and izz",
+            factor.recip()
+        );
         let ask = if *name == NAMES[0] {
             "are thrust and torque coefficients wrong by this factor? A weighed mass with anchor = \"mass\" sets the scale"
+        } else if self.is_about_z() {
+            &of_torque
         } else {
             "is a length or a coefficient of the rotors wrong?"
         };
@@ -65,12 +72,25 @@ impl Contradiction {
     }
 }
 
+impl Contradiction {
+    /// Whether it is of the moment of inertia about z, which is only known with the rotors' torque.
+    fn is_about_z(&self) -> bool {
+        self.name == NAMES[6]
+    }
+}
+
 /// Several of them in one clause.
 #[must_use]
 pub fn contradicts_file(all: &[Contradiction]) -> Option<String> {
-    let one = |Contradiction { name, factor, .. }: &Contradiction| {
+    let one = |of: &Contradiction| {
+        let Contradiction { name, factor, .. } = of;
         let places = if *factor < 0.1 { 3 } else { 2 };
-        format!("{name} by a factor of {factor:.places$}")
+        let or = if of.is_about_z() {
+            format!(" (or the rotors' torque per thrust by {:.2})", factor.recip())
+        } else {
+            String::new()
+        };
+        format!("{name} by a factor of {factor:.places$}{or}")
     };
     let clause = |guessed: bool, begins: &str| {
         let those: Vec<String> = all.iter().filter(|of| of.guessed == guessed).map(one).collect();
@@ -211,4 +231,27 @@ pub fn flights_apart(flights: &[Option<Estimated>]) -> Vec<FlightApart> {
 /// Relative difference within which a parameter of two flights agrees.
 fn share(index: usize) -> f64 {
     if index == 0 { FLIGHTS_SHARE } else { FLIGHTS_INERTIA_SHARE }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+    use super::*;
+
+    #[test]
+    fn a_moment_about_z_is_told_with_the_torque_that_it_rests_on() {
+        let of = |name| Contradiction::of(name, (0.010, 0.0001), (0.020, 0.0)).unwrap();
+        let said = contradicts_file(&[of("izz")]).unwrap();
+        assert_eq!(
+            said,
+            "it contradicts the vehicle file, izz by a factor of 0.50 (or the rotors' torque per thrust by 2.00)"
+        );
+        let note = of("izz").note().text;
+        assert!(note.contains("torque_ratio) 2.00 times what is stated"), "{note}");
+        assert_eq!(
+            contradicts_file(&[of("ixx")]).unwrap(),
+            "it contradicts the vehicle file, ixx by a factor of 0.50"
+        );
+        assert!(of("ixx").note().text.contains("a coefficient of the rotors"));
+    }
 }

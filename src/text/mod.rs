@@ -10,6 +10,7 @@ mod excerpt;
 mod format;
 mod json;
 mod number;
+mod sentence;
 mod utc;
 mod wrap;
 
@@ -19,5 +20,6 @@ pub use format::{line_comment, markup, markup_comment, shell_word, toml_string};
 pub use json::{json_line, json_pretty};
 pub(crate) use number::rounded;
 pub use number::{chance, compact, interval, significant, spoken, with_error};
+pub use sentence::capital;
 pub use utc::utc;
 pub use wrap::wrapped;

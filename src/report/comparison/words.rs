@@ -3,6 +3,7 @@
 use crate::change::{NAMED_SIGMAS, Step, Undecided, What};
 use crate::report::number::{significant, with_error};
 use crate::study::{Change, Changed, CompareStudy, Compared, LeastChange};
+use crate::text::capital;
 
 /// What the errors of parameters along the flights hold.
 pub(super) const FLIGHTS_OWN_ERRORS: &str = "errors of each flight alone; those of before and after hold the spread between flights of one vehicle as well";
@@ -24,7 +25,7 @@ pub(super) fn answer(study: &CompareStudy) -> String {
                 );
             }
             let all: Vec<String> = compared.changes.iter().map(|change| sentence(study, change)).collect();
-            format!("{} ({between}).", all.join("; "))
+            capital(&format!("{} ({between}).", all.join("; ")))
         }
         _ if study.history.is_empty() => {
             format!("Nothing changed along {} that they could show.", flights(study.flights.len()))

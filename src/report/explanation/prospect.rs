@@ -3,6 +3,7 @@
 use crate::diagnose::called;
 use crate::diagnose::experiment::{NextFlight, Pair};
 use crate::study::ExplainStudy;
+use crate::text::capital;
 
 /// What a further flight would bring; `None` where none was designed.
 #[must_use]
@@ -44,9 +45,4 @@ fn brought(next: &NextFlight) -> String {
         format!("No trajectory tells {} from {}: {}", called(pair.named), called(pair.other), pair.why)
     });
     pairs.chain(apart).map(|sentence| format!("{sentence}.")).collect::<Vec<_>>().join(" ")
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
