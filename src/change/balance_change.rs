@@ -40,6 +40,8 @@ pub struct BalanceChange {
     pub scatter: f64,
     /// what accounts for it; `None`: nothing that these flights could show
     pub found: Option<BalanceFound>,
+    /// it moved for certain, and by no more than a load or a battery that sits elsewhere moves it
+    pub by_a_load: bool,
     /// what would have been shown
     pub least: Least,
 }
@@ -98,7 +100,8 @@ pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> B
     };
     let worst = variances.x.max(variances.y) + 2.0 * LOADED * LOADED;
     let least = Least { rotors: known.iter().filter_map(least).collect(), centre: (NAMED * worst).sqrt() };
-    BalanceChange { moved, strength, scatter: scale, found, least }
+    let by_a_load = found.is_none() && strength >= NAMED;
+    BalanceChange { moved, strength, scatter: scale, found, by_a_load, least }
 }
 
 fn difference(moved: &[Moved; AXES]) -> Vector3<f64> {

@@ -170,11 +170,21 @@ pub(super) fn spaced(unit: &str) -> String {
 
 /// What would have shown: the balance in a sentence.
 fn unseen(compared: &Compared) -> String {
-    let rotor = compared.balance.least.rotors.iter().copied().fold(0.0, f64::max);
+    let balance = &compared.balance;
+    let by_a_load = if balance.by_a_load {
+        let [x, y, _] = balance.moved.map(|moved| with_error(moved.by.0, moved.by.1));
+        format!(
+            "The balance did move, by {x} of an arm along body x and {y} along y: a load or a battery that sits elsewhere does the \
+             same, and a flight may have its own. "
+        )
+    } else {
+        String::new()
+    };
+    let rotor = balance.least.rotors.iter().copied().fold(0.0, f64::max);
     let centre = compared.least.iter().find(|least| matches!(least.what, Changed::CentreOfMass(_)));
     let centre = centre.map(size).unwrap_or_default();
     format!(
-        "A rotor that gives {} % less thrust would have shown, or a centre of mass {centre} elsewhere.",
+        "{by_a_load}A rotor that gives {} % less thrust would have shown, or a centre of mass {centre} elsewhere.",
         significant(100.0 * rotor, 2)
     )
 }

@@ -4,7 +4,9 @@ use super::result::{Change, Changed, Compared, LeastChange};
 use crate::change::{
     BalanceChange, Groups, NAMED_SIGMAS, Step, What, find_returns, judge_balance, judge_parameter, steps,
 };
+use crate::diagnose::Need;
 use crate::diagnose::Owner;
+use crate::diagnose::signatures::signature_of;
 use crate::study::Track;
 use crate::trim::{Balance, mean_arm_m};
 use crate::vehicle::Vehicle;
@@ -62,9 +64,8 @@ impl Judge<'_> {
         let mut changes = self.of_balance(&balance);
         let mut least = self.least_of_balance(&balance);
         let mut undecided = Vec::new();
-        for (place, track) in
-            self.tracks.iter().enumerate().filter(|(_, track)| track.owner == Owner::Vehicle)
-        {
+        let of_vehicle = |track: &Track| track.owner == Owner::Vehicle && !is_of_battery(track);
+        for (place, track) in self.tracks.iter().enumerate().filter(|(_, track)| of_vehicle(track)) {
             let Some(judged) = judge_parameter(&track.values, groups, &track.spread) else { continue };
             let (what, unit) = (Changed::Parameter(place), track.unit);
             least.push(LeastChange { what, size: judged.least, unit });
@@ -137,4 +138,10 @@ impl Judge<'_> {
 fn flight_groups(groups: &Groups, order: &[usize]) -> Groups {
     let of = |places: &[usize]| places.iter().map(|place| order[*place]).collect();
     Groups { before: of(&groups.before), after: of(&groups.after) }
+}
+
+/// Whether a parameter tells how thrust follows the voltage: each flight has its own battery, and only one that is drained shows it.
+fn is_of_battery(track: &Track) -> bool {
+    let signature = track.effect.and_then(signature_of);
+    signature.is_some_and(|signature| signature.needs.contains(&Need::Voltage))
 }
