@@ -10,6 +10,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 const STYLE: &str = concat!(include_str!("assets/uplot.min.css"), "\n", include_str!("assets/report.css"));
 /// The plotting library with its licence, and the page's own script.
 const SCRIPT: &str = concat!(
+    include_str!("assets/language.js"),
     "/*\n",
     include_str!("assets/uplot.LICENSE"),
     "\n*/\n",

@@ -101,7 +101,8 @@ fn a_rotor_that_became_weak_is_found_and_an_unchanged_vehicle_is_not_called_chan
     wrong["more"] = 1.into();
     assert_eq!(differences(&wrong, &schema).len(), 3, "{:?}", differences(&wrong, &schema));
     // a battery that sits elsewhere is told, and is no change
-    std::fs::write(place("load.toml"), "[[effect]]\nid = \"com_offset\"\nx = 0.005\ny = 0.0\nz = 0.0\n").unwrap();
+    std::fs::write(place("load.toml"), "[[effect]]\nid = \"com_offset\"\nx = 0.005\ny = 0.0\nz = 0.0\n")
+        .unwrap();
     let load = flight("load.tlog", "4", &["--effects", &place("load.toml")]);
     let told = mavid(&["compare", &first, &second, "--with", &load, "--balance-only", "--vehicle", &vehicle]);
     assert_eq!(told.status.code(), Some(0), "{}", String::from_utf8_lossy(&told.stderr));

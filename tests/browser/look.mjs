@@ -24,7 +24,7 @@ async function start() {
   const require = createRequire(pathToFileURL(resolve(packages, 'package.json')));
   const load = async (name) => (await import(pathToFileURL(require.resolve(name)).href)).default;
   const puppeteer = await load('puppeteer-core');
-  const env = { ...process.env, LANG: 'en_US.UTF-8', LC_ALL: 'en_US.UTF-8', LANGUAGE: 'en_US' };
+  const env = { ...process.env, LANG: 'C', LC_ALL: 'C', LANGUAGE: '' };
   const own = process.env.MAVID_CHROMIUM;
   if (own) return puppeteer.launch({ executablePath: own, headless: 'shell', args: ['--no-sandbox'], env });
   const chromium = await load('@sparticuz/chromium');
