@@ -3,6 +3,7 @@
 use super::cost::Costs;
 use super::error::ExportError;
 use crate::physics::{ActiveEffect, Airframe, Parameter};
+use crate::text::compact;
 use crate::vehicle::{ThrustLaw, Vehicle};
 use nalgebra::Vector3;
 use toml::Table;
@@ -187,8 +188,8 @@ impl<'a> Source<'a> {
         };
         let word = |(parameter, value): (&Parameter, &f64)| match (parameter.name, rotor(*value)) {
             (ROTOR, Some((index, rotor))) => format!("{ROTOR} {}, motor {}", rotor.name, index + 1),
-            (name, _) if parameter.unit == "-" => format!("{name} = {value}"),
-            (name, _) => format!("{name} = {value} {}", parameter.unit),
+            (name, _) if parameter.unit == "-" => format!("{name} = {}", compact(*value)),
+            (name, _) => format!("{name} = {} {}", compact(*value), parameter.unit),
         };
         active.effect().parameters().iter().zip(active.parameters()).map(word).collect()
     }
