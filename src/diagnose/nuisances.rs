@@ -135,7 +135,7 @@ fn guessed_balance(trace: &Trace, vehicle: &Vehicle) -> Vec<NuisanceColumn> {
     let Some(guess) = vehicle.guesses.iter().find(of) else { return Vec::new() };
     let share_n = guess.relative * vehicle.body.mass_kg * trace.gravity_m_s2;
     let across_nm = share_n * mean_arm_m(vehicle);
-    // rotors that differ by chance turn the vehicle about body z by all of their torque, and across it by the cosine of their arms
+    // of rotors that differ by chance, each has its whole torque about body z, and across it only the part of its arm along that axis
     let about_z_nm = SQRT_2 * share_n * vehicle.propulsion.torque_per_thrust_m;
     let about = |(axis, std_nm): (usize, f64)| {
         let mut torque = nothing(trace);

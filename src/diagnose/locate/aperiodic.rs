@@ -222,7 +222,7 @@ fn beside(view: &View, (at_s, delta_kg): (f64, f64), gravity_m_s2: f64) -> Optio
         let enough = count as f64 * view.step_s > ENOUGH * (to_s - from_s);
         enough.then(|| sum / count as f64)
     };
-    // a force that is missing upwards is a mass that is not there
+    // a mass that is missing in the model is weight: a force that is left downwards
     let step_kg = |at_s: f64| {
         let before_n = mean(at_s - back_s, at_s - CHANGE_S)?;
         Some((before_n - mean(at_s + CHANGE_S, at_s + on_s)?) / gravity_m_s2)
