@@ -149,10 +149,33 @@ impl Columns {
     /// `sum_c sum_|l|<=L w_c(l) sum_t x_c(t) x_c(t+l)'`, where no pair of rows spans a break between the runs of the channel;
     /// `weights` has for each channel one weight a lag, from 0 to L.
     pub(super) fn correlated(&self, weights: &[Vec<f64>], runs: &[Vec<Range<usize>>]) -> DMatrix<f64> {
+        let windows: Vec<Vec<f64>> = weights
+            .iter()
+            .map(|weights| weights.iter().skip(1).rev().chain(weights).copied().collect())
+            .collect();
+        self.with_smeared(|piece| {
+            Some(piece.smeared(runs.get(piece.channel)?, windows.get(piece.channel)?.len() / 2, |values| {
+                convolved(values, &windows[piece.channel])
+            }))
+        })
+    }
+
+    /// The same with Bartlett's weights, `1 - |l| / (L + 1)`, for columns of one channel.
+    pub(super) fn correlated_by_bartlett(&self, lags: usize, runs: &[Range<usize>]) -> DMatrix<f64> {
+        self.with_smeared(|piece| {
+            Some(piece.smeared(runs, lags, |values| {
+                // a triangle is a box along a box
+                let mut twice = boxed(&boxed(values, lags + 1), lags + 1);
+                twice.iter_mut().for_each(|value| *value /= lags as f64 + 1.0);
+                twice
+            }))
+        })
+    }
+
+    /// Products of each column, smeared, with each other one.
+    fn with_smeared(&self, smeared: impl Fn(&Piece) -> Option<Piece> + Sync) -> DMatrix<f64> {
         let along = |column: &Vec<Piece>| -> Vec<f64> {
-            let smeared =
-                |piece: &Piece| Some(piece.smeared(weights.get(piece.channel)?, runs.get(piece.channel)?));
-            let smeared: Vec<Piece> = column.iter().filter_map(smeared).collect();
+            let smeared: Vec<Piece> = column.iter().filter_map(&smeared).collect();
             self.columns.iter().map(|other| shared(&smeared, other)).collect()
         };
         let parts: Vec<Vec<f64>> = self.columns.par_iter().map(along).collect();
@@ -172,24 +195,58 @@ impl Piece {
         self.first + self.values.len()
     }
 
-    /// At each row the sum over the rows within reach of a weight, weighted.
-    fn smeared(&self, weights: &[f64], runs: &[Range<usize>]) -> Self {
-        let lags = weights.len().saturating_sub(1);
-        let window: Vec<f64> = weights.iter().skip(1).rev().chain(weights).copied().collect();
+    /// At each row the sum over the rows of its run that are at most `lags` away, weighted: `spread` has the whole convolution of
+    /// some values with the weights, which begins `lags` rows before them.
+    fn smeared(&self, runs: &[Range<usize>], lags: usize, spread: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         let (from, to) = (self.first.saturating_sub(lags), self.end() + lags);
         let mut values = vec![0.0; to - from];
         for run in runs {
-            for row in run.start.max(from)..run.end.min(to) {
-                let first = row.saturating_sub(lags).max(run.start).max(self.first);
-                let end = (row + lags + 1).min(run.end).min(self.end());
-                if first < end {
-                    let near = &window[lags + first - row..lags + end - row];
-                    values[row - from] = dot(near, &self.values[first - self.first..end - self.first]);
-                }
+            let held = run.start.max(self.first)..run.end.min(self.end());
+            if held.is_empty() {
+                continue;
             }
+            let spread = spread(&self.values[held.start - self.first..held.end - self.first]);
+            let rows = run.start.max(held.start.saturating_sub(lags))..run.end.min(held.end + lags);
+            let reached = &spread[rows.start + lags - held.start..rows.end + lags - held.start];
+            values[rows.start - from..rows.end - from].copy_from_slice(reached);
         }
         Self { channel: self.channel, first: from, values }
     }
+}
+
+/// Convolution of values with a symmetric window of odd length: one value for each place at which they overlap.
+fn convolved(values: &[f64], window: &[f64]) -> Vec<f64> {
+    let reach = window.len() - 1;
+    let count = values.len() + reach;
+    // whole groups of lanes, with nothing before and after the values
+    let groups = count.div_ceil(LANES);
+    let mut padded = vec![0.0; groups * LANES + reach];
+    padded[reach..reach + values.len()].copy_from_slice(values);
+    let mut out = Vec::with_capacity(groups * LANES);
+    for group in 0..groups {
+        let mut sums = [0.0; LANES];
+        for (weight, place) in window.iter().zip(group * LANES..) {
+            let Some(near) = padded[place..].first_chunk::<LANES>() else { break };
+            sums.iter_mut().zip(near).for_each(|(sum, value)| *sum += weight * value);
+        }
+        out.extend_from_slice(&sums);
+    }
+    out.truncate(count);
+    out
+}
+
+/// Sums over `width` neighbouring values: one for each place at which they overlap.
+fn boxed(values: &[f64], width: usize) -> Vec<f64> {
+    let mut sums = Vec::with_capacity(values.len() + 1);
+    let mut sum = 0.0;
+    sums.push(sum);
+    sums.extend(values.iter().map(|value| {
+        sum += value;
+        sum
+    }));
+    let until = |place: usize| sums[(place + 1).min(values.len())];
+    let before = |place: usize| sums[(place + 1).saturating_sub(width)];
+    (0..values.len() + width - 1).map(|place| until(place) - before(place)).collect()
 }
 
 /// Product of two columns.
@@ -222,6 +279,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
 
     const ROWS: usize = 60;
@@ -267,6 +325,21 @@ mod tests {
         }
         let found = Columns::of(&matrix, ROWS).correlated(&weights, &vec![runs; CHANNELS]);
         assert!((&found - &expected).amax() < 1e-9, "{found} {expected}");
+    }
+
+    #[test]
+    fn bartletts_weights_fall_along_a_line() {
+        let matrix = columns();
+        let one_channel = DMatrix::from_fn(CHANNELS * ROWS, 3, |index, column| {
+            if index < ROWS { matrix[(index, 0)] * (1.0 + column as f64) + column as f64 } else { 0.0 }
+        });
+        let (columns, runs) = (Columns::of(&one_channel, ROWS), vec![0..24, 24..60]);
+        for lags in [1, 5, 40, 100] {
+            let weights = (0..=lags).map(|lag| 1.0 - f64::from(lag) / (f64::from(lags) + 1.0)).collect();
+            let expected = columns.correlated(&[weights], std::slice::from_ref(&runs));
+            let found = columns.correlated_by_bartlett(usize::try_from(lags).unwrap(), &runs);
+            assert!((&found - &expected).amax() < 1e-9 * expected.amax(), "{found} {expected}");
+        }
     }
 
     #[test]

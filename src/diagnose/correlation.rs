@@ -91,7 +91,6 @@ impl Weighted {
     /// Variance of the summed scores (Newey-West): a Bartlett window over their lags.
     pub(super) fn meat_of_scores(&self, scores: &Columns, gammas: &[Vec<f64>]) -> DMatrix<f64> {
         let window = gammas.iter().map(Vec::len).max().unwrap_or(0).max(SCORE_LAGS);
-        let bartlett = (0..=window).map(|lag| 1.0 - lag as f64 / (window as f64 + 1.0)).collect();
-        scores.correlated(&[bartlett], std::slice::from_ref(&self.runs))
+        scores.correlated_by_bartlett(window, &self.runs)
     }
 }

@@ -86,13 +86,23 @@ impl WeakKernel {
     #[must_use]
     pub fn apply_vector(&self, order: usize, series: &[Vector3<f64>], centers: &[usize]) -> [Vec<f64>; 3] {
         let mut out: [Vec<f64>; 3] = std::array::from_fn(|_| Vec::with_capacity(centers.len()));
-        for &center in centers {
-            let window = &series[center - self.half_count..=center + self.half_count];
-            let mut sums = Vector3::repeat(-0.0);
-            for (tap, value) in self.taps[order].iter().zip(window) {
-                sums += *tap * value;
+        let window = |center: usize| &series[center - self.half_count..=center + self.half_count];
+        let taps = &self.taps[order];
+        let mut put = |sums: &Vector3<f64>| out.iter_mut().zip(sums).for_each(|(out, sum)| out.push(*sum));
+        // as of one component
+        let mut fours = centers.chunks_exact(4);
+        for four in &mut fours {
+            let [a, b, c, d] = [four[0], four[1], four[2], four[3]].map(window);
+            let mut sums = [Vector3::repeat(-0.0); 4];
+            for ((((tap, a), b), c), d) in taps.iter().zip(a).zip(b).zip(c).zip(d) {
+                sums.iter_mut().zip([a, b, c, d]).for_each(|(sum, value)| *sum += value * *tap);
             }
-            out.iter_mut().zip(&sums).for_each(|(out, sum)| out.push(*sum));
+            sums.iter().for_each(&mut put);
+        }
+        for &center in fours.remainder() {
+            let mut sums = Vector3::repeat(-0.0);
+            taps.iter().zip(window(center)).for_each(|(tap, value)| sums += value * *tap);
+            put(&sums);
         }
         out
     }
