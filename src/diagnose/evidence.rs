@@ -187,16 +187,23 @@ impl Weighted {
         (used.iter().sum::<f64>() / used.len().max(1) as f64).max(1.0).sqrt()
     }
 
-    /// Coefficients of the nuisances and of the base's effects, in the order of the rows' columns, and
-    /// their covariance.
+    /// Coefficients of the nuisances and of the base's effects, in the order of the rows' columns.
+    pub(super) fn values(&self, rows: &Rows) -> DVector<f64> {
+        let y = weighted(&rows.residual, &self.sigma);
+        match &self.normal {
+            Some(normal) => normal.solve(&self.nuisances.transposed_times(y.as_slice())),
+            None => DVector::zeros(self.nuisances.len()),
+        }
+    }
+
+    /// The same and their covariance.
     #[must_use]
     pub fn coefficients(&self, rows: &Rows) -> (DVector<f64>, DMatrix<f64>) {
-        let y = weighted(&rows.residual, &self.sigma);
         let size = self.nuisances.len();
+        let theta = self.values(rows);
         let Some(normal) = &self.normal else {
-            return (DVector::zeros(size), DMatrix::from_diagonal_element(size, size, f64::INFINITY));
+            return (theta, DMatrix::from_diagonal_element(size, size, f64::INFINITY));
         };
-        let theta = normal.solve(&self.nuisances.transposed_times(y.as_slice()));
         let bread = normal.inverse();
         let prior = DMatrix::from_diagonal(&self.prior_meat);
         let mut covariance = self.sandwich(&bread, &self.nuisances, &self.left, &prior);

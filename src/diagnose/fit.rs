@@ -161,12 +161,20 @@ pub enum Newton {
 /// [`PhysicsError`] where the estimate leaves what is physical.
 pub fn fit(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted, PhysicsError> {
     let mut fitted = evaluate(flights, base.clone())?;
-    for _ in 0..PASSES {
-        let moved = step(&mut base, &fitted.rows, &(fitted.coefficients, fitted.covariance), newton);
+    for pass in 1..=PASSES {
+        let moves = step(&mut base, &fitted.rows, &fitted.coefficients, newton);
+        let covariance = fitted.covariance;
         // two of a long flight at a time take much memory
         drop((fitted.rows, fitted.weighted));
-        fitted = evaluate(flights, base.clone())?;
-        if moved < CONVERGED {
+        fitted = linearised(flights, base.clone())?;
+        // on the way the errors are those of the pass before: they change little, and cost more than the step
+        if pass < PASSES && moves.largest(&covariance) >= CONVERGED {
+            fitted.coefficients = fitted.weighted.values(&fitted.rows);
+            fitted.covariance = covariance;
+            continue;
+        }
+        (fitted.coefficients, fitted.covariance) = fitted.weighted.coefficients(&fitted.rows);
+        if moves.largest(&fitted.covariance) < CONVERGED {
             break;
         }
     }
@@ -192,18 +200,25 @@ pub(super) fn linearised(flights: &[Trace], base: Base) -> Result<Fitted, Physic
 /// Coefficients of the rows' columns, and their covariance.
 pub(super) type Coefficients = (DVector<f64>, DMatrix<f64>);
 
-/// Moves the base by the coefficients; returns the largest move in standard errors.
-pub(super) fn step(
-    base: &mut Base,
-    rows: &Rows,
-    (coefficients, covariance): &Coefficients,
-    newton: Newton,
-) -> f64 {
-    let mut most = 0.0_f64;
+/// What a step moved: coefficients by their places, and by how much.
+pub(super) struct Moves(Vec<(usize, f64)>);
+
+impl Moves {
+    /// The largest of them in standard errors.
+    pub(super) fn largest(&self, covariance: &DMatrix<f64>) -> f64 {
+        let of = |&(index, by): &(usize, f64)| {
+            by.abs() / covariance[(index, index)].max(0.0).sqrt().max(f64::MIN_POSITIVE)
+        };
+        self.0.iter().map(of).fold(0.0, f64::max)
+    }
+}
+
+/// Moves the base by the coefficients.
+pub(super) fn step(base: &mut Base, rows: &Rows, coefficients: &DVector<f64>, newton: Newton) -> Moves {
+    let mut moves = Vec::new();
     let body = &mut base.vehicle.body;
     for (index, column) in rows.nuisances.iter().enumerate() {
         let by = coefficients[index];
-        let std = covariance[(index, index)].max(0.0).sqrt();
         match column.nuisance {
             Nuisance::Mass => {
                 body.mass_kg = (body.mass_kg + by).clamp(0.3 * body.mass_kg, 3.0 * body.mass_kg)
@@ -232,21 +247,20 @@ pub(super) fn step(
             }
             _ => continue,
         }
-        most = most.max(by.abs() / std.max(f64::MIN_POSITIVE));
+        moves.push((index, by));
     }
     let mut index = rows.nuisances.len();
     for present in &mut base.effects {
         for &free in &present.free {
             let by = coefficients[index];
-            let std = covariance[(index, index)].max(0.0).sqrt();
             let before = present.values[free];
             present.values[free] = present.possible(free, before + by, &base.size);
-            most = most.max((present.values[free] - before).abs() / std.max(f64::MIN_POSITIVE));
+            moves.push((index, present.values[free] - before));
             index += 1;
         }
     }
     base.bring_to_scale(rows.compares_torques);
-    most
+    Moves(moves)
 }
 
 /// Largest number of Gauss-Newton passes. A number of steps: only the time of a search and its last digits depend on

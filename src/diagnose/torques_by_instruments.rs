@@ -69,7 +69,7 @@ pub(super) fn fit_by_instruments(
 ) -> Result<Option<Fitted>, PhysicsError> {
     let mut base = fitted.base.clone();
     let Some(told) = by_instruments(flights, fitted, newton) else { return Ok(None) };
-    let mut moved = step(&mut base, &fitted.rows, &told, newton);
+    let mut moved = step(&mut base, &fitted.rows, &told.0, newton).largest(&told.1);
     for _ in 0..PASSES {
         // the one before is gone: two of a long flight at a time take much memory
         let Ok(mut by) = linearised(flights, base.clone()) else { return Ok(None) };
@@ -78,7 +78,7 @@ pub(super) fn fit_by_instruments(
             (by.coefficients, by.covariance) = told;
             return Ok(Some(by));
         }
-        moved = step(&mut base, &by.rows, &told, newton);
+        moved = step(&mut base, &by.rows, &told.0, newton).largest(&told.1);
     }
     Ok(None)
 }
