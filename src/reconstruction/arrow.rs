@@ -7,23 +7,15 @@ use nalgebra::{DMatrix, DVector, Matrix3, SVector};
 use rayon::prelude::*;
 
 use super::blocks::{Block, Columns, Pair, STATE, State, WIDTH};
-use super::residuals::{Group, Residuals};
+use super::residuals::{Group, Residuals, Row};
 
 /// Added to the diagonal so that states which nothing shows stay where they are. It has to exceed rounding and to
 /// stay far below the information of any sensor, which is 1 and more.
 const HOLD: f64 = 1e-9;
 /// Rows that one thread takes.
 const ROWS_AT_ONCE: usize = 128;
-/// Residuals of one group over their standard deviations, and their derivatives.
-#[derive(Debug, Clone, Default)]
-pub struct Rows {
-    /// one a row
-    pub residual: Vec<SVector<f64, WIDTH>>,
-    /// by both states, one a row
-    pub by_states: Vec<Pair>,
-    /// by the group's own parameters, one a row: a column each
-    pub by_parameters: Vec<Columns<WIDTH>>,
-}
+/// Residuals of one group over their standard deviations, and their derivatives by both states and the group's own parameters.
+pub type Rows = Vec<Row>;
 
 /// The normal matrix of the states.
 #[derive(Debug, Clone)]
@@ -62,27 +54,26 @@ pub struct Reduced {
     pub gradient: DVector<f64>,
 }
 
-impl Rows {
-    /// Of a group at states and parameters.
-    #[must_use]
-    pub fn of(group: &Group, states: &[State], theta: &[f64]) -> Self {
-        let form = group.form.as_ref();
-        let one = |row: usize| {
-            let at = form.intervals()[row];
-            let weight = group.weights(row);
-            let mut found = form.row(row, &states[at], &states[at + 1], theta);
-            found.residual.component_mul_assign(&weight);
-            for part in 0..WIDTH {
-                found.by_states.row_mut(part).scale_mut(weight[part]);
-                found.by_parameters.row_mut(part).scale_mut(weight[part]);
-            }
-            (found.residual, (found.by_states, found.by_parameters))
-        };
-        let count = form.intervals().len();
-        let (residual, (by_states, by_parameters)) =
-            (0..count).into_par_iter().with_min_len(ROWS_AT_ONCE).map(one).unzip();
-        Self { residual, by_states, by_parameters }
-    }
+/// Rows of a group at states and parameters.
+#[must_use]
+pub fn rows_of(group: &Group, states: &[State], theta: &[f64]) -> Rows {
+    let form = group.form.as_ref();
+    let one = |row: usize| {
+        let at = form.intervals()[row];
+        let weight = group.weights(row);
+        let mut found = form.row(row, &states[at], &states[at + 1], theta);
+        found.residual.component_mul_assign(&weight);
+        weigh(&mut found.by_states, &weight);
+        for mut column in found.by_parameters.column_iter_mut() {
+            column.component_mul_assign(&weight);
+        }
+        found
+    };
+    (0..form.intervals().len()).into_par_iter().with_min_len(ROWS_AT_ONCE).map(one).collect()
+}
+
+fn weigh(by_states: &mut Pair, weight: &SVector<f64, WIDTH>) {
+    by_states.column_iter_mut().for_each(|mut column| column.component_mul_assign(weight));
 }
 
 /// Parts of [`WIDTH`] components of a state.
@@ -119,13 +110,6 @@ impl Chain {
         }
     }
 
-    /// Adds the rows of a group by their derivatives.
-    pub fn add_rows(&mut self, form: &dyn Residuals, by_states: &[Pair]) {
-        for (at, by_states) in form.intervals().iter().zip(by_states) {
-            self.add(*at, &Blocks::of(by_states));
-        }
-    }
-
     fn add(&mut self, at: usize, blocks: &Blocks) {
         for one in blocks.held() {
             for other in blocks.held().filter(|other| *other >= one) {
@@ -147,23 +131,6 @@ impl Chain {
             }
         }
     }
-
-    /// Logarithm of its determinant. `None` where it is not positive definite.
-    #[must_use]
-    pub fn log_determinant(&self) -> Option<f64> {
-        let (mut half, mut before) = (0.0, None::<Block>);
-        for (at, diagonal) in self.diagonal.iter().enumerate() {
-            let pivot = before.map_or(*diagonal, |before| diagonal - before.tr_mul(&before));
-            let factor = pivot.cholesky()?;
-            let lower = factor.l_dirty();
-            half += lower.diagonal().product().ln();
-            before = self.coupling.get(at).copied();
-            if let Some(before) = &mut before {
-                lower.solve_lower_triangular_unchecked_mut(before);
-            }
-        }
-        Some(2.0 * half)
-    }
 }
 
 /// Derivatives of a group's residuals by the states alone, over their standard deviations.
@@ -174,9 +141,7 @@ pub fn by_states(group: &Group, states: &[State], theta: &[f64]) -> Vec<Pair> {
         let at = form.intervals()[row];
         let weight = group.weights(row);
         let mut found = form.by_states(row, &states[at], &states[at + 1], theta);
-        for part in 0..WIDTH {
-            found.row_mut(part).scale_mut(weight[part]);
-        }
+        weigh(&mut found, &weight);
         found
     };
     (0..form.intervals().len()).into_par_iter().with_min_len(ROWS_AT_ONCE).map(one).collect()
@@ -201,9 +166,7 @@ impl Normal {
 
     fn add(&mut self, form: &dyn Residuals, rows: &Rows) {
         let own = form.parameters();
-        for (row, &at) in form.intervals().iter().enumerate() {
-            let (residual, by_states) = (&rows.residual[row], &rows.by_states[row]);
-            let by_parameters = &rows.by_parameters[row];
+        for (Row { residual, by_states, by_parameters }, &at) in rows.iter().zip(form.intervals()) {
             let blocks = Blocks::of(by_states);
             self.chain.add(at, &blocks);
             for block in blocks.held() {
@@ -213,17 +176,20 @@ impl Normal {
                 into += slope;
             }
             for (column, &parameter) in own.iter().enumerate() {
-                let by_parameter = by_parameters.fixed_columns::<1>(column);
+                let by_parameter: SVector<f64, WIDTH> = by_parameters.fixed_columns::<1>(column).into_owned();
                 for block in blocks.held() {
                     let product = blocks.each[block].tr_mul(&by_parameter);
-                    let cross = &mut self.cross[at + block / PARTS];
-                    let mut into = cross.fixed_view_mut::<WIDTH, 1>(WIDTH * (block % PARTS), parameter);
-                    into += product;
+                    let cross = self.cross[at + block / PARTS].as_mut_slice();
+                    let first = STATE * parameter + WIDTH * (block % PARTS);
+                    cross[first..first + WIDTH].iter_mut().zip(&product).for_each(|(to, value)| *to += value);
                 }
                 self.gradient[parameter] += by_parameter.dot(residual);
-                for (line, &with) in own.iter().enumerate() {
-                    self.parameters[(with, parameter)] +=
-                        by_parameters.fixed_columns::<1>(line).dot(&by_parameter);
+                for (line, &with) in own.iter().enumerate().take(column + 1) {
+                    let product = by_parameters.fixed_columns::<1>(line).dot(&by_parameter);
+                    self.parameters[(with, parameter)] += product;
+                    if line != column {
+                        self.parameters[(parameter, with)] += product;
+                    }
                 }
             }
         }
@@ -248,9 +214,11 @@ impl Normal {
             line.columns_mut(0, parameters).copy_from(&self.cross[at]);
             line.set_column(parameters, &self.state_gradient[at]);
             if at > 0 {
-                line -= coupling[at - 1].transpose() * &solved[at - 1];
+                take_product(&mut line, &coupling[at - 1].transpose(), &solved[at - 1]);
             }
-            solved.push(inverse * line);
+            let mut line_solved = Columns::<STATE>::zeros(parameters + 1);
+            take_product(&mut line_solved, &-inverse, &line);
+            solved.push(line_solved);
             pivots.push(inverse);
             if at + 1 < states {
                 gains.push(inverse * coupling[at]);
@@ -258,8 +226,8 @@ impl Normal {
         }
         let mut answers = solved;
         for at in (0..states.saturating_sub(1)).rev() {
-            let following = gains[at] * &answers[at + 1];
-            answers[at] -= following;
+            let (before, after) = answers.split_at_mut(at + 1);
+            take_product(&mut before[at], &gains[at], &after[0]);
         }
         let mut information = self.parameters.clone();
         let mut gradient = self.gradient.clone();
@@ -268,6 +236,15 @@ impl Normal {
             gradient -= cross.tr_mul(&answer.column(parameters));
         }
         Some(Reduced { pivots, gains, answers, information, gradient })
+    }
+}
+
+/// Takes `matrix * columns` from `from`, column by column: for matrices of this size no other product is faster.
+fn take_product(from: &mut Columns<STATE>, matrix: &Block, columns: &Columns<STATE>) {
+    let each = from.as_mut_slice().chunks_exact_mut(STATE).zip(columns.as_slice().chunks_exact(STATE));
+    for (to, column) in each {
+        let product = matrix * State::from_column_slice(column);
+        to.iter_mut().zip(&product).for_each(|(to, value)| *to -= value);
     }
 }
 
@@ -288,30 +265,26 @@ impl Reduced {
         all
     }
 
-    /// A residual's derivatives by the parameters `of` once the states answer to them: one line a component.
+    /// A residual's derivatives by the parameters `of` once the states answer to them: one each.
     pub fn project(
         &self,
         form: &dyn Residuals,
-        rows: &Rows,
-        (row, of): (usize, &[usize]),
-        into: &mut [Vec<f64>; WIDTH],
+        (row, of_row): (usize, &Row),
+        of: &[usize],
+        into: &mut Vec<SVector<f64, WIDTH>>,
     ) {
         let at = form.intervals()[row];
-        let (by_states, by_parameters) = (&rows.by_states[row], &rows.by_parameters[row]);
-        for (part, line) in into.iter_mut().enumerate() {
-            line.clear();
-            let (a, b) =
-                (by_states.fixed_view::<1, STATE>(part, 0), by_states.fixed_view::<1, STATE>(part, STATE));
-            line.extend(of.iter().map(|&parameter| {
-                let answer = |at: usize| self.answers[at].fixed_columns::<1>(parameter);
-                -(a.tr_dot(&answer(at)) + b.tr_dot(&answer(at + 1)))
-            }));
-        }
+        let by_first = of_row.by_states.fixed_view::<WIDTH, STATE>(0, 0).into_owned();
+        let by_second = of_row.by_states.fixed_view::<WIDTH, STATE>(0, STATE).into_owned();
+        let (first, second) = (self.answers[at].as_slice(), self.answers[at + 1].as_slice());
+        into.clear();
+        into.extend(of.iter().map(|&parameter| {
+            let of = |all: &[f64]| State::from_column_slice(&all[STATE * parameter..STATE * (parameter + 1)]);
+            -(by_first * of(first) + by_second * of(second))
+        }));
         for (column, parameter) in form.parameters().iter().enumerate() {
             let Some(place) = of.iter().position(|of| of == parameter) else { continue };
-            for (part, line) in into.iter_mut().enumerate() {
-                line[place] += by_parameters[(part, column)];
-            }
+            into[place] += of_row.by_parameters.fixed_columns::<1>(column);
         }
     }
 
@@ -323,4 +296,15 @@ impl Reduced {
         let moved = answer.columns(0, count) * parameters + answer.column(count);
         -State::from_iterator(moved.iter().copied())
     }
+}
+
+/// A residual's derivatives by both states times the covariance of these, as [`Reduced::neighbours`] has it.
+#[must_use]
+pub fn spread(by_states: &Pair, [one, between, other]: &[Block; 3]) -> Pair {
+    let by_first = by_states.fixed_view::<WIDTH, STATE>(0, 0);
+    let by_second = by_states.fixed_view::<WIDTH, STATE>(0, STATE);
+    let mut out = Pair::zeros();
+    out.fixed_view_mut::<WIDTH, STATE>(0, 0).copy_from(&(by_first * one + by_second * between.transpose()));
+    out.fixed_view_mut::<WIDTH, STATE>(0, STATE).copy_from(&(by_first * between + by_second * other));
+    out
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, SVector};
 
-use super::arrow::{Chain, Normal, Reduced, Rows, by_states};
+use super::arrow::{Normal, Reduced, Rows, by_states, rows_of, spread};
 use super::blocks::{Block, Pair, STATE, WIDTH};
 use super::places::{BASE, SCALE};
 use super::problem::{Problem, Unknown};
@@ -116,7 +116,7 @@ impl<'a> Iterate<'a> {
 
     fn linearised(&self) -> Result<Turn, FitError> {
         let Problem { groups, states, unknowns, .. } = &self.problem;
-        let rows: Vec<Rows> = groups.iter().map(|group| Rows::of(group, states, &self.theta)).collect();
+        let rows: Vec<Rows> = groups.iter().map(|group| rows_of(group, states, &self.theta)).collect();
         let normal = Normal::of(groups, &rows, states.len(), unknowns.len());
         let reduced = normal.reduced().ok_or(FitError::Singular)?;
         let precision = |index: usize| unknowns[index].std.powi(-2);
@@ -162,15 +162,14 @@ impl<'a> Iterate<'a> {
             let Some(floor) = group.floor.filter(|_| (first..=last).contains(&round)) else { continue };
             let mut taken = SVector::<f64, WIDTH>::zeros();
             let mut squares = SVector::<f64, WIDTH>::zeros();
-            let (count, form) = (rows.residual.len() as f64, group.form.as_ref());
-            let mut projected: [Vec<f64>; WIDTH] = Default::default();
-            for (row, &at) in form.intervals().iter().enumerate() {
-                let pair = &rows.by_states[row];
-                turn.reduced.project(form, rows, (row, self.free), &mut projected);
+            let (count, form) = (rows.len() as f64, group.form.as_ref());
+            let mut projected = Vec::new();
+            for (row, (of_row, &at)) in rows.iter().zip(form.intervals()).enumerate() {
+                turn.reduced.project(form, (row, of_row), self.free, &mut projected);
+                taken += taken_by_parameters(&projected, &turn.covariance);
                 for part in 0..WIDTH {
-                    taken[part] += taken_by_states(pair, part, &neighbours[at])
-                        + taken_by_parameters(&projected[part], &turn.covariance);
-                    squares[part] += rows.residual[row][part].powi(2);
+                    taken[part] += taken_by_states(&of_row.by_states, part, &neighbours[at]);
+                    squares[part] += of_row.residual[part].powi(2);
                 }
             }
             for part in 0..WIDTH {
@@ -183,71 +182,54 @@ impl<'a> Iterate<'a> {
         }
     }
 
-    /// Half the logarithm of the determinant that the states leave behind when they are integrated out: that of their normal
-    /// matrix, less that of the process by its second state, which goes with the parameters too. `known` is the normal matrix of
-    /// the groups that do not go with what was moved.
-    fn half_log_determinant(
-        &self,
-        rows: &[Rows],
-        (shaped, known): (&[bool], &Chain),
-    ) -> Result<f64, FitError> {
+    /// Slope, by each free parameter, of half the logarithm of the determinant that the states leave behind when they are integrated
+    /// out: that of their normal matrix, less that of the process by its second state, which goes with the parameters too.
+    fn slope_of_determinant(&self, here: &Turn) -> DVector<f64> {
         let Problem { groups, states, process, .. } = &self.problem;
-        let (mut chain, mut ahead) = (known.clone(), 0.0);
-        for (index, group) in groups.iter().enumerate() {
-            let moved = shaped[index].then(|| by_states(group, states, &self.theta));
-            let pairs = moved.as_deref().unwrap_or(&rows[index].by_states);
-            if shaped[index] {
-                chain.add_rows(group.form.as_ref(), pairs);
-            }
-            if index == *process {
-                let determinant = |pair: &Pair| pair.fixed_view::<WIDTH, WIDTH>(0, STATE).determinant();
-                ahead = pairs.iter().map(|pair| determinant(pair).abs().ln()).sum();
+        let neighbours = here.reduced.neighbours();
+        // of J'J it goes by what its inverse and J make of a change of J
+        let spreads = groups.iter().zip(&here.rows).map(|(group, rows)| -> Vec<Pair> {
+            let is_shaped = group.form.shaped_by().iter().any(|index| self.free.contains(index));
+            let each = rows.iter().zip(group.form.intervals()).filter(|_| is_shaped);
+            each.map(|(row, &at)| spread(&row.by_states, &neighbours[at])).collect()
+        });
+        let spreads: Vec<Vec<Pair>> = spreads.collect();
+        let mut slope = DVector::zeros(self.free.len());
+        let mut theta = self.theta.clone();
+        for (at, &index) in self.free.iter().enumerate() {
+            let probe = PROBE * here.covariance[(at, at)].sqrt();
+            let mut moved = |group: &Group, by: f64| {
+                theta[index] = self.theta[index] + by;
+                let found = by_states(group, states, &theta);
+                theta[index] = self.theta[index];
+                found
+            };
+            for (place, group) in groups.iter().enumerate() {
+                if !group.form.shaped_by().contains(&index) {
+                    continue;
+                }
+                let (up, down) = (moved(group, probe), moved(group, -probe));
+                let sides = up.iter().zip(&down);
+                let of_row = |((up, down), spread): ((&Pair, &Pair), &Pair)| spread.dot(&(up - down));
+                slope[at] += sides.zip(&spreads[place]).map(of_row).sum::<f64>() / (2.0 * probe);
+                if place == *process {
+                    let ahead = |pairs: &[Pair]| -> f64 {
+                        let determinant =
+                            |pair: &Pair| pair.fixed_view::<WIDTH, WIDTH>(0, STATE).determinant();
+                        pairs.iter().map(|pair| determinant(pair).abs().ln()).sum()
+                    };
+                    slope[at] -= (ahead(&up) - ahead(&down)) / (2.0 * probe);
+                }
             }
         }
-        Ok(0.5 * chain.log_determinant().ok_or(FitError::Singular)? - ahead)
-    }
-
-    /// The normal matrix of the groups that do not go with a parameter.
-    fn unmoved(&self, rows: &[Rows], shaped: &[bool]) -> Chain {
-        let Problem { groups, states, .. } = &self.problem;
-        let mut chain = Chain::of(states.len());
-        for ((group, rows), _) in groups.iter().zip(rows).zip(shaped).filter(|(_, shaped)| !**shaped) {
-            chain.add_rows(group.form.as_ref(), &rows.by_states);
-        }
-        chain
+        slope
     }
 
     /// From the joint mode to the mode with the states integrated out, by Laplace: the slope of the determinant moves the
     /// parameters.
     fn marginal(&mut self) -> Result<(), FitError> {
         let here = self.linearised()?;
-        let mut slope = DVector::zeros(self.free.len());
-        let mut known: Option<(Vec<bool>, Chain)> = None;
-        for (at, &index) in self.free.iter().enumerate() {
-            let goes_with = |group: &Group| group.form.shaped_by().contains(&index);
-            let shaped: Vec<bool> = self.problem.groups.iter().map(goes_with).collect();
-            if !shaped.contains(&true) {
-                continue;
-            }
-            let (shaped, unmoved) = &*match known.take().filter(|(known, _)| *known == shaped) {
-                Some(found) => known.insert(found),
-                None => {
-                    let chain = self.unmoved(&here.rows, &shaped);
-                    known.insert((shaped, chain))
-                }
-            };
-            let probe = PROBE * here.covariance[(at, at)].sqrt();
-            let mut sides = [0.0; 2];
-            for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
-                let kept = self.theta[index];
-                self.theta[index] = kept + sign * probe;
-                let found = self.half_log_determinant(&here.rows, (shaped, unmoved));
-                self.theta[index] = kept;
-                *side = found?;
-            }
-            slope[at] = (sides[0] - sides[1]) / (2.0 * probe);
-        }
-        let step = &here.step - &here.covariance * slope;
+        let step = &here.step - &here.covariance * self.slope_of_determinant(&here);
         self.moved(&Turn { step, ..here });
         Ok(())
     }
@@ -271,12 +253,16 @@ fn taken_by_states(pair: &Pair, part: usize, [one, between, other]: &[Block; 3])
     (0..STATE).map(of_column).sum()
 }
 
-/// The same of the parameters.
-fn taken_by_parameters(projected: &[f64], covariance: &DMatrix<f64>) -> f64 {
-    let columns = covariance.column_iter().zip(projected);
-    columns
-        .map(|(column, own)| projected.iter().zip(column.iter()).map(|(a, b)| a * b).sum::<f64>() * own)
-        .sum()
+/// The same of the parameters, of all components.
+fn taken_by_parameters(projected: &[SVector<f64, WIDTH>], covariance: &DMatrix<f64>) -> SVector<f64, WIDTH> {
+    let mut sum = SVector::zeros();
+    for (at, (column, own)) in covariance.column_iter().zip(projected).enumerate() {
+        // each pair counts twice
+        let mut with = own * (0.5 * column[at]);
+        projected.iter().zip(column.iter()).take(at).for_each(|(other, shared)| with += other * *shared);
+        sum += with.component_mul(own) * 2.0;
+    }
+    sum
 }
 
 /// Scale and effects, for which the fit is made; the others are nuisances. A lag at nought, for one, goes to and fro.
@@ -346,15 +332,14 @@ impl Fit {
             (1..BLOCKS).take_while(|block| share * BLOCKS as f64 >= *block as f64).count()
         };
         let mut scores = DMatrix::zeros(BLOCKS, of.len());
-        let mut projected: [Vec<f64>; WIDTH] = Default::default();
+        let mut projected = Vec::new();
         for (group, rows) in groups.iter().zip(&self.rows) {
             let form = group.form.as_ref();
-            for (row, &at) in form.intervals().iter().enumerate() {
-                self.reduced.project(form, rows, (row, of), &mut projected);
-                let (block, residual) = (block_of(at), &rows.residual[row]);
-                for column in 0..of.len() {
-                    scores[(block, column)] +=
-                        (0..WIDTH).map(|part| projected[part][column] * residual[part]).sum::<f64>();
+            for (row, (of_row, &at)) in rows.iter().zip(form.intervals()).enumerate() {
+                self.reduced.project(form, (row, of_row), of, &mut projected);
+                let block = block_of(at);
+                for (column, projected) in projected.iter().enumerate() {
+                    scores[(block, column)] += projected.dot(&of_row.residual);
                 }
             }
         }
