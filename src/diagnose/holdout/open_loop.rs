@@ -121,8 +121,8 @@ pub(super) fn rate_law(ready: &[Ready]) -> Result<Option<RateLaw>, HoldoutError>
     Ok(RateLaw::fit(&paths, (HALF_S, STRIDE_S)))
 }
 
-/// Longest step of a prediction, s. Over 10 ms a Runge-Kutta step of the fourth order follows a body that turns at ten times a second
-/// to 1e-4 of its motion, and a motor's lag of 20 ms to 1e-3 of the answer to a step.
+/// Longest step of a prediction, s. A Runge-Kutta step of the fourth order that is so long follows a motion of 5 Hz to 1e-4 of its
+/// phase, and a motor with a lag of 20 ms to 4e-4 of its answer: (w h)^4 / 120, and the rest of the exponential's series.
 const STEP_S: f64 = 0.01;
 /// The same for rotors whose lag is shorter than two such steps.
 const SHORT_STEP_S: f64 = 0.004;
