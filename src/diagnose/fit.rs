@@ -222,6 +222,7 @@ pub(super) fn step(
                     body.inertia_kg_m2[(column, row)] += by;
                 }
             }
+            Nuisance::Gyroscopic => body.gyroscopic += by,
             Nuisance::Latency if newton != Newton::Held => {
                 let by = by.clamp(-0.05, 0.05);
                 if base.latency.lag_s > 0.0 && newton == Newton::Free {

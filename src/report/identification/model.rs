@@ -21,7 +21,11 @@ pub fn identified_model(study: &IdentifyStudy) -> Result<String, ConfigError> {
     }
     let best = &study.identification.best.result;
     let scale = study.scale.as_ref();
-    let mut text = vehicle_to_toml(&identified_vehicle(&study.vehicle, best, scale))?;
+    let mut identified = identified_vehicle(&study.vehicle, best, scale);
+    if let Some(share) = study.gyroscopic {
+        identified.body.gyroscopic = share.value;
+    }
+    let mut text = vehicle_to_toml(&identified)?;
     let _ = writeln!(text, "\n[identified]\nmethod = \"{}\"", best.method.name());
     if !study.beside.is_empty() {
         let _ = writeln!(
