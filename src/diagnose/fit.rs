@@ -50,6 +50,7 @@ impl Fitted {
             explained: Some(self.explained_torques()),
             by_wider_window: None,
             by_guessed_curve: None,
+            torque_exponent: None,
         }
     }
 

@@ -21,33 +21,29 @@ pub struct TorqueLaw {
     pub exponent: f64,
     /// its standard error
     pub std: f64,
-    /// relative standard error of all that rests on the stated ratio of torque and thrust: it may be that of hover, that of full thrust,
-    /// or one between
-    pub of_ratio: f64,
 }
 
 impl TorqueLaw {
     /// What is to be said of it.
     #[must_use]
     pub fn note(&self) -> Note {
+        let Self { exponent, std } = self;
         let text = format!(
-            "the yaw torque of the rotors does not go with their thrust, as the vehicle file states it: it goes with the thrust to the \
-             power {:.2} +- {:.2}. No torque per thrust (torque_ratio) holds at every thrust, and izz is known to {:.0} % at best",
-            self.exponent,
-            self.std,
-            100.0 * self.of_ratio
+            "the yaw torque of the rotors does not go with their thrust, as the vehicle file states it: it goes with the power \
+             {exponent:.2} +- {std:.2} of the thrust. No torque per thrust (torque_ratio) holds at every thrust, so izz is not known"
         );
         Note::warning(About::Vehicle, text)
     }
 
-    /// The same estimate with the error that this law brings into the moment about z.
+    /// The same estimate with the error that this law brings into the moment about z: the change of the torque with the thrust is not its
+    /// stated ratio.
     #[must_use]
     pub fn in_errors_of(&self, mut estimated: Estimated) -> Estimated {
         let (entry, izz) = (ABOUT_Z, estimated.theta[ABOUT_Z]);
         if estimated.covariance[(entry, entry)] > 0.0 {
-            estimated.covariance[(entry, entry)] += (self.of_ratio * izz).powi(2);
+            estimated.covariance[(entry, entry)] += ((self.exponent - 1.0) * izz).powi(2);
         }
-        estimated
+        Estimated { torque_exponent: Some(self.exponent), ..estimated }
     }
 }
 
@@ -111,10 +107,7 @@ pub(super) fn torque_law(flights: &[Trace], fitted: &Fitted) -> Option<TorqueLaw
     if !(certain && large && both && std > 0.0) {
         return None;
     }
-    let full = airframe.propulsion.full_thrust_n() / airframe.hover_thrust_n;
-    // anywhere between hover and full thrust, of a uniform distribution
-    let of_ratio = by.abs() * full.max(1.0).ln() / 12.0_f64.sqrt();
-    Some(TorqueLaw { exponent: 1.0 + by, std, of_ratio })
+    Some(TorqueLaw { exponent: 1.0 + by, std })
 }
 
 /// Force and torque per unit of the exponent: of the thrust itself, of the torque by the mean thrust, and of the rest of the torque.
@@ -219,7 +212,7 @@ mod tests {
     fn a_torque_that_does_not_go_with_the_thrust_is_told_with_its_power() {
         let law = told(6101, 1.6).unwrap();
         assert!((law.exponent - 1.6).abs() < 3.0 * law.std + 0.05, "{law:?}");
-        assert!(law.std < 0.12 && law.of_ratio > 0.05, "{law:?}");
+        assert!(law.std < 0.12, "{law:?}");
         let said = law.note().sentence();
         assert!(said.contains("does not go with their thrust"), "{said}");
     }

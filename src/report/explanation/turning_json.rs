@@ -42,7 +42,7 @@ struct GyroscopicValue {
 
 impl TurningValue {
     pub(super) fn of(study: &ExplainStudy) -> Self {
-        let law = |TorqueLaw { exponent, std, .. }| TorqueLawValue { exponent, std };
+        let law = |TorqueLaw { exponent, std }| TorqueLawValue { exponent, std };
         let share = |GyroscopicShare { value, std }| GyroscopicValue { share: value, std };
         Self {
             rate_law: study.rate_law.map(RateLawValue::from),

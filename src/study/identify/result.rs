@@ -28,6 +28,8 @@ pub struct IdentifyStudy {
     pub beside: Vec<&'static str>,
     /// where a simulator leaves the gyroscopic torque out
     pub gyroscopic: Option<GyroscopicShare>,
+    /// where the rotors' torque certainly does not go with their thrust
+    pub torque_law: Option<TorqueLaw>,
     /// where the mass was weighed
     pub scale: Option<ThrustScale>,
     /// effects that were identified together with the rigid body
@@ -89,14 +91,15 @@ impl IdentifyStudy {
     ) -> Result<Self, EstimateError> {
         let mut identification = identify(&flights, &vehicle, settings)?;
         let alone = &identification.best.result.estimated;
-        let (mut effects, mut turned_by_control, mut gyroscopic) = (Vec::new(), false, None);
+        let (mut effects, mut turned_by_control) = (Vec::new(), false);
+        let (mut gyroscopic, mut torque_law) = (None, None);
         match joint_estimate(explained, &vehicle, alone) {
             Ok(found) => {
                 identification.methods.push(found.best.result.clone());
                 identification.best = found.best;
                 (effects, turned_by_control) = (found.effects, found.turned_by_control);
-                gyroscopic = found.gyroscopic;
-                identification.notes.extend(found.torque_law.iter().map(TorqueLaw::note));
+                (gyroscopic, torque_law) = (found.gyroscopic, found.torque_law);
+                identification.notes.extend(torque_law.iter().map(TorqueLaw::note));
                 identification.notes.extend(gyroscopic.iter().map(GyroscopicShare::note));
             }
             Err(why) => {
@@ -124,6 +127,7 @@ impl IdentifyStudy {
             identification,
             beside: effects,
             gyroscopic,
+            torque_law,
             scale,
             with: None,
             notes: Vec::new(),
