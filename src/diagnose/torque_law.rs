@@ -2,7 +2,8 @@
 //! with the thrust, another thrust has another ratio.
 //!
 //! `tau = kappa T (T / T_hover)^e`: the rotors together turn the vehicle about z by more where they lift more, and by the product of
-//! their differences in roll and pitch. Both tell the exponent.
+//! their differences in roll and pitch. The mean thrust tells the exponent; the product, which a load beside the centre alters, is estimated
+//! beside it and must not contradict it.
 
 use super::channels::{Channels, append, channels, nothing};
 use super::fit::Fitted;
@@ -55,8 +56,11 @@ const ORDINARY: f64 = 0.25;
 /// Added to the least number of standard errors of a name: no name is expected of it, and it must not be said of a vehicle without
 /// reason.
 const EXTRA_Z: f64 = 1.0;
-/// Standard errors within which both parts agree. The usual three.
-const AGREE: f64 = 3.0;
+/// Standard errors by which the product of the differences in roll and pitch may show the contrary. The usual three.
+const OPPOSITE: f64 = 3.0;
+/// Standard deviation by which the exponents of flights of one vehicle differ beside their errors. On ten flights of ArduCopter's simulator,
+/// whose torque goes with the power 1.7 to 1.8, they are 1.31 to 1.77.
+const OF_FLIGHTS: f64 = 0.2;
 /// Least share of the yaw torque that the rigid body explains.
 const EXPLAINED: f64 = 0.5;
 /// Least thrust of a rotor over that of hover whose power is taken: below, a rotor hardly turns.
@@ -78,36 +82,19 @@ pub(super) fn torque_law(flights: &[Trace], fitted: &Fitted) -> Option<TorqueLaw
         }
     }
     let [thrust, level, across] = all;
-    let whole: Channels = std::array::from_fn(|channel| {
-        level[channel].iter().zip(&across[channel]).map(|(level, across)| level + across).collect()
-    });
-    let together = fitted.weighted.test(&[thrust.clone(), whole])?;
-    let (of_thrust, by) = (together.theta[0], together.theta[1]);
-    let std = together.std(1);
-    let apart = fitted.weighted.test(&[thrust, level, across])?;
-    let (by_level, by_across) = (apart.theta[1], apart.theta[2]);
-    let of_difference = apart.covariance[(1, 1)] + apart.covariance[(2, 2)] - 2.0 * apart.covariance[(1, 2)];
-    let (level_std, across_std) = (apart.std(1), apart.std(2));
-    tracing::debug!(
-        by,
-        std,
-        of_thrust,
-        by_level,
-        level_std,
-        by_across,
-        across_std,
-        p = together.p_cluster,
-        "law of the rotors' torque tested"
-    );
-    let certain = by.abs() > (NAME_Z + EXTRA_Z) * std && together.p_cluster < Gates::default().p_cluster;
-    let large = by.abs() > ORDINARY + 2.0 * std && of_thrust.abs() < 0.5 * by.abs();
-    let both = by_level * by > 0.0
-        && by_level.abs() > NAME_Z * level_std
-        && (by_level - by_across).powi(2) < AGREE.powi(2) * of_difference;
-    if !(certain && large && both && std > 0.0) {
+    let alone = fitted.weighted.test(std::slice::from_ref(&level))?;
+    let beside = fitted.weighted.test(&[thrust, across, level])?;
+    let (of_thrust, by_across, by) = (beside.theta[0], beside.theta[1], beside.theta[2]);
+    let (across_std, own_std) = (beside.std(1), beside.std(2));
+    let p = alone.p_cluster;
+    tracing::debug!(by, own_std, of_thrust, by_across, across_std, p, "law of the rotors' torque tested");
+    let certain = by.abs() > (NAME_Z + EXTRA_Z) * own_std && p < Gates::default().p_cluster;
+    let large = by.abs() > ORDINARY + 2.0 * own_std && of_thrust.abs() < 0.5 * by.abs();
+    let contradicted = by_across * by.signum() < -OPPOSITE * across_std || alone.theta[0] * by < 0.0;
+    if !(certain && large && own_std > 0.0) || contradicted {
         return None;
     }
-    Some(TorqueLaw { exponent: 1.0 + by, std })
+    Some(TorqueLaw { exponent: 1.0 + by, std: own_std.hypot(OF_FLIGHTS) })
 }
 
 /// Force and torque per unit of the exponent: of the thrust itself, of the torque by the mean thrust, and of the rest of the torque.
@@ -211,8 +198,7 @@ mod tests {
     #[test]
     fn a_torque_that_does_not_go_with_the_thrust_is_told_with_its_power() {
         let law = told(6101, 1.6).unwrap();
-        assert!((law.exponent - 1.6).abs() < 3.0 * law.std + 0.05, "{law:?}");
-        assert!(law.std < 0.12, "{law:?}");
+        assert!((law.exponent - 1.6).abs() < 2.0 * law.std && law.std < 0.3, "{law:?}");
         let said = law.note().sentence();
         assert!(said.contains("does not go with their thrust"), "{said}");
     }
