@@ -48,6 +48,9 @@ pub(super) struct BodyTable {
     /// m/s^2
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity: Option<f64>,
+    /// share of the gyroscopic torque that acts, of simulators that leave it out
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gyroscopic: Option<f64>,
     pub inertia: InertiaTable,
 }
 

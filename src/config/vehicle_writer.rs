@@ -29,6 +29,7 @@ pub fn vehicle_to_toml(vehicle: &Vehicle) -> Result<String, ConfigError> {
             mass: vehicle.body.mass_kg,
             center_of_mass: vehicle.body.center_of_mass_m.into(),
             gravity: Some(vehicle.gravity_m_s2),
+            gyroscopic: Some(vehicle.body.gyroscopic).filter(|share| *share != 1.0),
             inertia: InertiaTable {
                 xx: inertia.m11,
                 yy: inertia.m22,

@@ -32,6 +32,8 @@ pub struct Base {
     /// kg: the vehicle has this mass, and the scale of its thrust is estimated; `None`: the stated thrust is trusted, and the
     /// mass is estimated
     pub weighed_kg: Option<f64>,
+    /// a simulator flew, and it leaves the gyroscopic torque out: the share that acts is estimated
+    pub estimates_gyroscopic: bool,
 }
 
 /// Force, mass and inertia follow the scale of thrust; lengths, angles, times and ratios do not.
@@ -49,6 +51,7 @@ impl Base {
             latency: ActuationLatency::default(),
             effects: Vec::new(),
             weighed_kg: None,
+            estimates_gyroscopic: false,
         }
     }
 
@@ -61,6 +64,13 @@ impl Base {
             base.vehicle.guesses.retain(|guess| guess.of != Guessed::ThrustMax);
         }
         base
+    }
+
+    /// The same with the gyroscopic torque of another base.
+    pub(super) fn turning_as(mut self, other: &Self) -> Self {
+        self.vehicle.body.gyroscopic = other.vehicle.body.gyroscopic;
+        self.estimates_gyroscopic = other.estimates_gyroscopic;
+        self
     }
 
     /// Brings mass, inertia, thrust and the effects' forces to the scale of the weighed mass; their ratios stay as they are.

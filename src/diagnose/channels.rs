@@ -37,6 +37,8 @@ pub enum Nuisance {
     Mass,
     /// kg m^2: xx xy xz yy yz zz
     Inertia(usize),
+    /// share of the gyroscopic torque, of simulators that leave it out
+    Gyroscopic,
     /// s, of all channels
     Latency,
     /// s, of the force beyond that of the torque

@@ -112,6 +112,13 @@ impl Weighted {
         Self::with(rows, &sigma, other.long_run_deviation().powi(2))
     }
 
+    /// The same without a channel.
+    pub(super) fn without(rows: &Rows, other: &Self, channel: usize) -> Self {
+        let mut sigma = other.sigma;
+        sigma[channel] = 0.0;
+        Self::with(rows, &sigma, other.long_run_deviation().powi(2))
+    }
+
     /// By the forces alone.
     pub(super) fn by_forces(rows: &Rows, other: &Self) -> Self {
         let mut sigma = other.sigma;

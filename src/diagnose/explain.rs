@@ -19,6 +19,7 @@ use super::signature::{EffectTerm, Signature};
 use super::signatures::ALL;
 use super::slight::{FoundEffect, Slight, named_and_slight};
 use super::tested::{Search, Step, Tested};
+use super::torque_law::torque_law;
 use super::trace::Trace;
 use super::trace_error::TraceError;
 use crate::physics::PhysicsError;
@@ -248,6 +249,7 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
         located_after,
         field,
         aperiodic,
+        torque_law: torque_law(traces, &found.after),
         search: found,
     }
 }

@@ -6,6 +6,7 @@ use super::locate::{Aperiodic, FieldTest, Localisation};
 use super::named::{DetectionLimit, Named};
 use super::slight::Slight;
 use super::tested::Search;
+use super::torque_law::TorqueLaw;
 
 /// The answer in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,6 +99,8 @@ pub struct Explanation {
     pub field: Option<FieldTest>,
     /// tests of causes that do not repeat
     pub aperiodic: Aperiodic,
+    /// where the rotors' torque certainly does not go with their thrust
+    pub torque_law: Option<TorqueLaw>,
     /// the search with its fits and evidence
     pub search: Search,
 }

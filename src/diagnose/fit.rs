@@ -50,6 +50,7 @@ impl Fitted {
             explained: Some(self.explained_torques()),
             by_wider_window: None,
             by_guessed_curve: None,
+            torque_exponent: None,
         }
     }
 
@@ -237,6 +238,7 @@ pub(super) fn step(base: &mut Base, rows: &Rows, coefficients: &DVector<f64>, ne
                     body.inertia_kg_m2[(column, row)] += by;
                 }
             }
+            Nuisance::Gyroscopic => body.gyroscopic += by,
             Nuisance::Latency if newton != Newton::Held => {
                 let by = by.clamp(-0.05, 0.05);
                 if base.latency.lag_s > 0.0 && newton == Newton::Free {

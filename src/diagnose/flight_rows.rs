@@ -93,7 +93,7 @@ pub(super) fn residual(trace: &Trace, base: &Base, model: &Model, along: &Along)
     }
     let acting = weak_wrench(trace, &forces, &torques);
     let readings = trace.weak_specific_force();
-    let momentum = trace.momentum();
+    let momentum = trace.momentum(base.vehicle.body.gyroscopic);
     let j = &base.vehicle.body.inertia_kg_m2;
     let six = [j[(0, 0)], j[(0, 1)], j[(0, 2)], j[(1, 1)], j[(1, 2)], j[(2, 2)]];
     let mut out = acting;

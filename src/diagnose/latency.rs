@@ -10,6 +10,7 @@ use super::evidence::Weighted;
 use super::feedback_noise::{UNCONFIRMED_S, is_fed_back};
 use super::fit::{Fitted, Newton, evaluate, fit};
 use super::flight_rows::residuals;
+use super::gyroscopic::left_out;
 use super::hausman::{contradict, differ};
 use super::left_over::{of_left_over, of_tested};
 use super::rows::Rows;
@@ -120,8 +121,14 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
             ActuationLatency { delay_s: total_s - lag_s, lag_s, uneven: stated_uneven(&fitted.base.vehicle) };
         drop(fitted);
     }
-    let held = fit(flights, Base { latency, ..base }, Newton::Held)?;
-    Ok((held, finding))
+    let held = fit(flights, Base { latency, ..base.clone() }, Newton::Held)?;
+    match left_out(flights, &held, &base) {
+        Some(base) => {
+            drop(held);
+            fit_latency(flights, base)
+        }
+        None => Ok((held, finding)),
+    }
 }
 
 /// Fits the latency with everything else: by instruments where they serve, else by least squares.
@@ -365,7 +372,7 @@ fn torque_rows(flights: &[Trace], columns: impl Fn(&Trace) -> [Vec<f64>; 3]) -> 
 
 /// `-K` of the derivative of this order of the torque that the measured motion needs, behind a latency.
 fn turning(trace: &Trace, base: &Base, order: usize, behind: ActuationLatency) -> [Vec<f64>; 3] {
-    let torque = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
+    let torque = trace.turning_torque(&base.vehicle.body);
     let torque: Vec<Vector4<f64>> = torque.iter().map(|t| Vector4::new(t.x, t.y, t.z, 0.0)).collect();
     let late = delayed_wrench(&torque, trace.grid.step_s, behind);
     [0, 1, 2].map(|axis| trace.weak(order, &late.iter().map(|t| -t[axis]).collect::<Vec<f64>>()))

@@ -39,9 +39,10 @@ pub(super) fn limits(last: &[Tested], fitted: &Fitted) -> Vec<DetectionLimit> {
                 let Some(parameter) = part.parameter(free) else { continue };
                 let naming = &part.signature.naming;
                 // certainty alone is not enough for a name
-                let of_mass =
-                    if part.is_amount(free) { naming.least_of_mass * vehicle.body.mass_kg } else { 0.0 };
-                let least = naming.ordinary.unwrap_or(naming.least).max(of_mass);
+                let of_size = naming.least_of_mass * vehicle.body.mass_kg
+                    + naming.least_of_arm * fitted.base.size.arm_m;
+                let of_size = if part.is_amount(free) { of_size } else { 0.0 };
+                let least = naming.ordinary.unwrap_or(naming.least).max(of_size);
                 let certain = Gates::default().deviate(part.signature);
                 // nor is a size that does not matter
                 let std = least_std(part, free, last);

@@ -190,10 +190,9 @@ pub(super) fn moved_by(
 ) -> (RotorMotion, Vec<Wrench>) {
     let airframe = &model.airframe;
     let spin_up = SpinUp::of(base, airframe);
-    let (mass_kg, inertia) = (base.vehicle.body.mass_kg, base.vehicle.body.inertia_kg_m2);
     let (mut motion, mut by_motion, mut beyond) = (commanded.clone(), Vec::new(), None);
     for _ in 0..MOTION_PASSES {
-        let thrusts = trace.by_motion(&base.vehicle, (mass_kg, &inertia), commanded, beyond.as_deref());
+        let thrusts = trace.by_motion(&base.vehicle, commanded, beyond.as_deref());
         motion = RotorMotion::new(thrusts, airframe, trace.grid.step_s);
         by_motion = wrench_along(model, trace, &motion);
         if base.effects.is_empty() {
@@ -205,7 +204,7 @@ pub(super) fn moved_by(
         });
         let mut of_effects: Vec<Vector4<f64>> = of_effects.collect();
         if let Some(spin_up) = &spin_up {
-            spin_up.share(trace, (airframe, &motion), &inertia, &mut of_effects);
+            spin_up.share(trace, (airframe, &motion), &base.vehicle.body, &mut of_effects);
         }
         beyond = Some(of_effects);
     }

@@ -8,7 +8,7 @@ use super::trace::Trace;
 use crate::estimate::JITTER_STD;
 use crate::signals::central_difference;
 use crate::trim::mean_arm_m;
-use crate::vehicle::{Guess, Guessed, Vehicle};
+use crate::vehicle::{Guess, Guessed, RigidBody, Vehicle};
 use nalgebra::Vector3;
 use std::f64::consts::SQRT_2;
 
@@ -27,6 +27,10 @@ const LEVEL_STD_RAD: f64 = 0.01;
 /// mg of data sheets (ICM-42688-P, table 2).
 const BIAS_STD_M_S2: f64 = 0.2;
 
+/// Standard deviation of the prior of the share of the gyroscopic torque that a simulator has, about what is known of it: all or
+/// none.
+const GYROSCOPIC_STD: f64 = 1.0;
+
 pub(super) fn nuisances(
     trace: &Trace,
     base: &Base,
@@ -42,9 +46,13 @@ pub(super) fn nuisances(
     // more mass than assumed: more force than assumed was there, in proportion to it
     let forces: Vec<Vector3<f64>> = by_commands_n.iter().map(|force_n| force_n / -mass_kg).collect();
     out.push(column(Nuisance::Mass, None, force(trace.weak_vector(0, &forces))));
-    for (entry, axes) in trace.momentum().iter().enumerate() {
+    for (entry, axes) in trace.momentum(base.vehicle.body.gyroscopic).iter().enumerate() {
         let values = axes.each_ref().map(|values| values.iter().map(|v| -v).collect::<Vec<f64>>());
         out.push(column(Nuisance::Inertia(entry), None, channels(trace, nothing(trace), torque(values))));
+    }
+    if base.estimates_gyroscopic {
+        let values = gyroscopic_column(trace, &base.vehicle.body);
+        out.push(column(Nuisance::Gyroscopic, Some(GYROSCOPIC_STD), values));
     }
     let thrust: Vec<f64> = commanded.thrust_n.each().map(|thrusts| thrusts.iter().sum::<f64>()).collect();
     out.extend(latencies(trace, base, &thrust));
@@ -72,6 +80,15 @@ pub(super) fn nuisances(
     out
 }
 
+/// More of the gyroscopic torque than assumed: more torque than assumed was needed for the motion.
+pub(super) fn gyroscopic_column(trace: &Trace, body: &RigidBody) -> Channels {
+    if !trace.torques {
+        return channels(trace, nothing(trace), nothing(trace));
+    }
+    let needed = trace.gyroscopic(body).map(|axis| axis.iter().map(|torque_nm| -torque_nm).collect());
+    channels(trace, nothing(trace), needed)
+}
+
 /// Latencies: of the commands, of the force beyond that of the torques, and of the kinematics. The thrust is by the commands, N.
 fn latencies(trace: &Trace, base: &Base, thrust_n: &[f64]) -> Vec<NuisanceColumn> {
     let none = || vec![0.0; trace.rows()];
@@ -79,7 +96,7 @@ fn latencies(trace: &Trace, base: &Base, thrust_n: &[f64]) -> Vec<NuisanceColumn
     // by the commands for the force, by the motion for the torques
     let late: Vec<f64> = central_difference(thrust_n, trace.grid.step_s).iter().map(|d| -d).collect();
     let late = trace.weak(0, &late);
-    let turning = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
+    let turning = trace.turning_torque(&base.vehicle.body);
     let [late_x, late_y, late_z] = [0, 1, 2].map(|axis| {
         let column: Vec<f64> = turning.iter().map(|t| -t[axis]).collect();
         trace.weak(0, &central_difference(&column, trace.grid.step_s))

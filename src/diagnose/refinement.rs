@@ -14,6 +14,7 @@ use super::other_law::add_other_laws;
 use super::pace::Pace;
 use super::physical::make_physical;
 use super::reconstructed::{Forms, reconstruct};
+use super::rotor_axes::is_refuted;
 use super::signature::EffectTerm;
 use super::tested::Search;
 use super::thrust_slope::may_be_noise;
@@ -42,7 +43,7 @@ pub(super) fn refine(
     (found, pace): (&mut Search, &mut Pace<'_>),
 ) -> Result<(), PhysicsError> {
     let trim = Trim::of(flights, vehicle);
-    leave_out_unnamed(traces, &trim, found)?;
+    leave_out_unnamed((traces, (flights, vehicle)), &trim, found)?;
     let by_search = found.after.clone();
     let mut start = tracing::info_span!("laws").in_scope(|| settle_laws(flights, traces, found))?;
     let mut by_instruments = Vec::new();
@@ -60,7 +61,7 @@ pub(super) fn refine(
                 .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
         }
         pace.reconstructed();
-        if left == 0 || !leave_out_unnamed(traces, &trim, found)? {
+        if left == 0 || !leave_out_unnamed((traces, (flights, vehicle)), &trim, found)? {
             break;
         }
         pace.again();
@@ -78,7 +79,11 @@ pub(super) fn refine(
 
 /// Removes effects without a name from the model: those of ordinary size, those that are not certain, those that the accelerometer
 /// does not feel, those that the flight could not have shown, and those that hover excludes. Returns whether there were any.
-fn leave_out_unnamed(traces: &[Trace], trim: &Trim, found: &mut Search) -> Result<bool, PhysicsError> {
+fn leave_out_unnamed(
+    (traces, given): (&[Trace], (&[Signals], &Vehicle)),
+    trim: &Trim,
+    found: &mut Search,
+) -> Result<bool, PhysicsError> {
     let all = found.after.base.clone();
     let felt = Felt::of(&found.after);
     let mut first = found.after.rows.nuisances.len();
@@ -92,11 +97,20 @@ fn leave_out_unnamed(traces: &[Trace], trim: &Trim, found: &mut Search) -> Resul
         let bent = present.signature.role.bends_thrust.is_some() && is_fed_back(traces);
         let unseen = bent
             && (!shows_in_forces(&found.after, present, first) || is_noise(present, traces, &found.after));
+        let unbalanced = is_refuted(given, &found.after, present, first);
         first += present.free.len();
         let ordinary = is_ordinary(present, &all);
-        let keeps = !(beyond || refuted || unseen || ordinary);
+        let keeps = !(beyond || refuted || unseen || unbalanced || ordinary);
         if !keeps {
-            tracing::info!(effect = present.id(), beyond, refuted, unseen, ordinary, "effect gets no name");
+            tracing::info!(
+                effect = present.id(),
+                beyond,
+                refuted,
+                unseen,
+                unbalanced,
+                ordinary,
+                "effect gets no name"
+            );
         }
         kept.push(keeps);
         if strength.count > 0 && strength.z < STAYS && weakest.is_none_or(|(least, _)| strength.z < least) {
@@ -134,6 +148,7 @@ fn is_ordinary(term: &EffectTerm, base: &Base) -> bool {
     let of_all = || term.values.iter().map(|value| value * value).sum::<f64>().sqrt();
     let amounts = || term.signature.amounts.iter().filter_map(|&slot| term.values.get(slot));
     term.size() < naming.least_of_mass * base.vehicle.body.mass_kg
+        || term.size() < naming.least_of_arm * base.size.arm_m
         || naming.ordinary.is_some_and(|ordinary| term.size() < ordinary)
         || naming.least > 0.0 && of_all() < naming.least
         || naming.most.is_some_and(|most| amounts().any(|amount| *amount > most))

@@ -72,7 +72,7 @@ impl Rows {
         };
         let mut squares = Vector3::zeros();
         for trace in flights {
-            let torque = trace.turning_torque(&base.vehicle.body.inertia_kg_m2);
+            let torque = trace.turning_torque(&base.vehicle.body);
             squares +=
                 trace.centers.iter().map(|&c| torque[c].component_mul(&torque[c])).sum::<Vector3<f64>>();
         }
@@ -100,6 +100,11 @@ impl Rows {
     #[must_use]
     pub fn commanded(&self, flight: usize) -> Option<&RotorMotion> {
         self.flights.get(flight).map(|along| &along.commanded)
+    }
+
+    /// The same from the motion.
+    pub(super) fn moved(&self, flight: usize) -> Option<&RotorMotion> {
+        self.flights.get(flight).map(|along| &along.motion)
     }
 
     /// The same without the nuisances for which something else stands. No further columns come from it: it has nothing of the

@@ -43,7 +43,8 @@ pub(in super::super) fn vehicle() -> Vehicle {
         [(0.2, 0.15, Spin::Cw), (0.2, -0.15, Spin::Ccw), (-0.2, -0.15, Spin::Cw), (-0.2, 0.15, Spin::Ccw)];
     let rotor = |(x, y, spin)| Rotor { name: String::new(), position_m: Vector3::new(x, y, 0.0), spin };
     let mut vehicle = random_vehicle(1).nominal;
-    vehicle.body = RigidBody { mass_kg: 1.6, inertia_kg_m2, center_of_mass_m: Vector3::zeros() };
+    vehicle.body =
+        RigidBody { mass_kg: 1.6, inertia_kg_m2, center_of_mass_m: Vector3::zeros(), gyroscopic: 1.0 };
     vehicle.rotors = hubs.map(rotor).to_vec();
     vehicle.propulsion.torque_per_thrust_m = 0.02;
     vehicle.gravity_m_s2 = 9.81;
@@ -81,6 +82,7 @@ pub(in super::super) fn turning_on_the_spot() -> Signals {
             gyro_noise_rad_s: None,
             height_by_pose: None,
             position_by_receiver: false,
+            simulated: false,
             notes: Vec::new(),
         },
     }

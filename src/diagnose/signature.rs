@@ -195,6 +195,8 @@ pub struct Naming {
     pub ordinary: Option<f64>,
     /// share of the vehicle's mass up to which an amount in kg gets no name
     pub least_of_mass: f64,
+    /// share of the mean arm up to which an amount in m gets no name
+    pub least_of_arm: f64,
     /// norm of all parameters below which it stays in the model without a name
     pub least: f64,
     /// whether it is ordinary in the presence of the other effects of the model, whatever its size
@@ -220,6 +222,7 @@ impl Naming {
     pub const PLAIN: Self = Self {
         ordinary: None,
         least_of_mass: 0.0,
+        least_of_arm: 0.0,
         least: 0.0,
         is_ordinary: |_, _| false,
         extra_z: 0.0,

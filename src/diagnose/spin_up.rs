@@ -12,7 +12,8 @@ use super::trace::Trace;
 use crate::physics::{
     ActuationLatency, Airframe, Condition, Effect, Input, Own, Rotors, State, Wrench, delayed_wrench,
 };
-use nalgebra::{Matrix3, Vector3, Vector4};
+use crate::vehicle::RigidBody;
+use nalgebra::{Vector3, Vector4};
 
 /// The rotors' inertia in a base.
 #[derive(Debug, Clone, Copy)]
@@ -39,10 +40,10 @@ impl SpinUp {
         &self,
         trace: &Trace,
         (airframe, motion): (&Airframe, &RotorMotion),
-        inertia: &Matrix3<f64>,
+        body: &RigidBody,
         effects: &mut [Vector4<f64>],
     ) {
-        let turning = trace.turning_torque(inertia);
+        let turning = trace.turning_torque(body);
         let beside: Vec<Vector4<f64>> = effects
             .iter()
             .enumerate()

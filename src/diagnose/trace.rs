@@ -2,7 +2,7 @@
 //! motion.
 
 use super::instruments::{Instruments, instruments};
-use super::momentum::momentum_rows;
+use super::momentum::{Momentum, MomentumRows, WeakMotion};
 use super::rotors::{OfRotors, RotorMotion, felt, filtered};
 use super::timing::{command_period_s, inertial_late};
 use super::trace_error::TraceError;
@@ -11,8 +11,9 @@ use crate::reconstruction::velocity_error_m_s;
 use crate::signals::{
     Butterworth, Grid, Series, Signals, ThrustSource, WeakKernel, central_difference, stride,
 };
-use crate::vehicle::{Propulsion, Vehicle};
-use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3, Vector4};
+use crate::vehicle::{Propulsion, RigidBody, Vehicle};
+use nalgebra::{DMatrix, UnitQuaternion, Vector3, Vector4};
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
@@ -72,21 +73,14 @@ pub struct Trace {
     pub height_by_pose: Option<bool>,
     /// a satellite receiver gives the position
     pub position_by_receiver: bool,
+    /// a simulator flew it
+    pub simulated: bool,
     /// m/s rms, slow error of the horizontal velocity by a satellite receiver; `None` without one
     pub velocity_error_m_s: Option<f64>,
     /// of the torques, if the commanded trajectory was recorded
     pub(super) instruments: Option<Arc<Instruments>>,
     /// what every model of this motion is compared with, once it was asked for
     weak_motion: Arc<OnceLock<WeakMotion>>,
-}
-
-/// Measurements of force and momentum in weak form.
-#[derive(Debug)]
-struct WeakMotion {
-    /// m/s^2, body, for each available measurement, the accelerometer's first
-    specific_force: Vec<[Vec<f64>; 3]>,
-    /// for each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2
-    momentum: [[Vec<f64>; 3]; 6],
 }
 
 /// Which parts of the state are measured.
@@ -152,6 +146,7 @@ impl Trace {
             gravity_m_s2: vehicle.gravity_m_s2,
             height_by_pose: signals.quality.height_by_pose,
             position_by_receiver: signals.quality.position_by_receiver,
+            simulated: signals.quality.simulated,
             velocity_error_m_s: velocity_error_m_s(signals),
             instruments: None,
             weak_motion: Arc::default(),
@@ -246,9 +241,15 @@ impl Trace {
         &self.weak_motion().specific_force
     }
 
-    /// For each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2.
-    pub(super) fn momentum(&self) -> &[[Vec<f64>; 3]; 6] {
-        &self.weak_motion().momentum
+    /// For each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2, of a body on which this share of the
+    /// gyroscopic torque acts.
+    pub(super) fn momentum(&self, gyroscopic: f64) -> Cow<'_, MomentumRows> {
+        self.weak_motion().momentum.with_share(gyroscopic)
+    }
+
+    /// The whole gyroscopic torque of a body, rows about body x, y, z, N m.
+    pub(super) fn gyroscopic(&self, body: &RigidBody) -> [Vec<f64>; 3] {
+        self.weak_motion().momentum.gyroscopic_nm(&body.inertia_kg_m2)
     }
 
     fn weak_motion(&self) -> &WeakMotion {
@@ -256,9 +257,8 @@ impl Trace {
             let measured = self.specific_force_m_s2.as_ref().map(|force| self.weak_vector(0, force));
             let specific_force = measured.into_iter().chain(self.weak_kinematic()).collect();
             let rates: Vec<Vector3<f64>> = self.states.iter().map(|state| state.rates_rad_s).collect();
-            let momentum = momentum_rows(&rates, |order, series| self.weak(order, series));
-            let momentum = momentum.map(|axes| self.torque_rows(axes));
-            WeakMotion { specific_force, momentum }
+            let momentum = Momentum::of(&rates, |order, series| self.weak(order, series));
+            WeakMotion { specific_force, momentum: momentum.map(|axes| self.torque_rows(axes)) }
         })
     }
 
@@ -332,7 +332,6 @@ impl Trace {
     pub fn by_motion(
         &self,
         vehicle: &Vehicle,
-        (mass_kg, inertia): (f64, &Matrix3<f64>),
         commanded: &RotorMotion,
         effects: Option<&[Vector4<f64>]>,
     ) -> OfRotors {
@@ -342,9 +341,9 @@ impl Trace {
         let Ok(inverse) = mixer.clone().pseudo_inverse(1e-12) else { return commanded.thrust_n.clone() };
         let mut out: Vec<f64> = Vec::with_capacity(rotors * self.grid.count);
         for (i, thrusts) in commanded.thrust_n.each().enumerate() {
-            let rate = self.smooth_rate[i];
-            let torque = inertia * self.smooth_turning[i] + rate.cross(&(inertia * rate));
-            let mut short = Vector4::new(mass_kg * self.smooth_lift[i], torque.x, torque.y, torque.z);
+            let torque = vehicle.body.turning_torque_nm(&self.smooth_rate[i], &self.smooth_turning[i]);
+            let lift_n = vehicle.body.mass_kg * self.smooth_lift[i];
+            let mut short = Vector4::new(lift_n, torque.x, torque.y, torque.z);
             if let Some(effects) = effects {
                 short -= effects[i];
             }
@@ -360,11 +359,11 @@ impl Trace {
 
     /// Torque that the measured rotation needs, `J w' + w x J w`, smoothed, body, N m.
     #[must_use]
-    pub fn turning_torque(&self, inertia: &Matrix3<f64>) -> Vec<Vector3<f64>> {
+    pub fn turning_torque(&self, body: &RigidBody) -> Vec<Vector3<f64>> {
         self.smooth_rate
             .iter()
             .zip(self.smooth_turning.iter())
-            .map(|(rate, turning)| inertia * turning + rate.cross(&(inertia * rate)))
+            .map(|(rate, turning)| body.turning_torque_nm(rate, turning))
             .collect()
     }
 }

@@ -244,6 +244,7 @@ impl Noted {
             mass_kg,
             inertia_kg_m2: Matrix3::from_diagonal(&moments),
             center_of_mass_m: Vector3::zeros(),
+            gyroscopic: 1.0,
         }
     }
 

@@ -111,7 +111,14 @@ mod tests {
         let mut covariance = ThetaCovariance::zeros();
         covariance[(0, 0)] = 0.02_f64.powi(2); // 1 % of the mass
         let out = rescaled(
-            &Estimated { theta, covariance, explained: None, by_wider_window: None, by_guessed_curve: None },
+            &Estimated {
+                theta,
+                covariance,
+                explained: None,
+                by_wider_window: None,
+                by_guessed_curve: None,
+                torque_exponent: None,
+            },
             2.2,
         );
         assert!((out.theta[0] - 2.2).abs() < 1e-12);

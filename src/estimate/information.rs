@@ -80,6 +80,7 @@ impl WeakInformation {
             explained: self.explained,
             by_wider_window: None,
             by_guessed_curve: None,
+            torque_exponent: None,
         };
         let Some(inverse) = inverse else { return estimated };
         let of_theta = used.iter().enumerate().filter(|(_, parameter)| **parameter < THETA);

@@ -73,7 +73,14 @@ impl RecursiveEstimator {
         self.scores.extend(self.blocks.iter().map(|block| block.right - block.information * theta));
         let meat = newey_west(&self.scores, self.lags);
         let covariance = inverse * meat * inverse.transpose();
-        Some(Estimated { theta, covariance, explained: None, by_wider_window: None, by_guessed_curve: None })
+        Some(Estimated {
+            theta,
+            covariance,
+            explained: None,
+            by_wider_window: None,
+            by_guessed_curve: None,
+            torque_exponent: None,
+        })
     }
 
     fn put_neighbours_together(&mut self) {

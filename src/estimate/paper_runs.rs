@@ -61,6 +61,7 @@ impl PaperRuns {
                     explained: weak.explained,
                     by_wider_window: weak.by_wider_window,
                     by_guessed_curve: weak.by_guessed_curve,
+                    torque_exponent: weak.torque_exponent,
                 };
                 MethodResult::new(*method, &estimated, &self.nominal)
             })

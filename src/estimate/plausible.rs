@@ -56,12 +56,18 @@ impl Contradiction {
              motion about z tells only the ratio of torque and izz",
             factor.recip()
         );
+        let along = if *name == NAMES[1] { "y" } else { "x" };
+        let of_arms = format!(
+            "is a coefficient of the rotors wrong, or are their arms along {along} {:.2} times what is stated? The motion tells only the \
+             ratio of torque and {name}",
+            factor.recip()
+        );
         let ask = if *name == NAMES[0] {
             "are thrust and torque coefficients wrong by this factor? A weighed mass with anchor = \"mass\" sets the scale"
         } else if self.is_about_z() {
             &of_torque
         } else {
-            "is a length or a coefficient of the rotors wrong?"
+            &of_arms
         };
         let stated =
             if *guessed { "the rule of thumb says of this mass and size" } else { "the vehicle file states" };
@@ -252,6 +258,10 @@ mod tests {
             contradicts_file(&[of("ixx")]).unwrap(),
             "it contradicts the vehicle file, ixx by a factor of 0.50"
         );
-        assert!(of("ixx").note().text.contains("a coefficient of the rotors"));
+        let note = of("ixx").note().text;
+        assert!(
+            note.contains("a coefficient of the rotors") && note.contains("arms along y 2.00 times"),
+            "{note}"
+        );
     }
 }

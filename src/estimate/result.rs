@@ -79,6 +79,9 @@ pub struct Estimated {
     pub by_wider_window: Option<[f64; 3]>,
     /// how far `theta` moves with one standard error of a guessed thrust curve; `None` where no guess bears on it
     pub by_guessed_curve: Option<Theta>,
+    /// the power of the thrust with which the rotors' torque about their axes goes, where it is certain that the vehicle file has it
+    /// wrong
+    pub torque_exponent: Option<f64>,
 }
 
 impl Estimated {
@@ -97,6 +100,7 @@ impl Estimated {
             explained: Some(explained),
             by_wider_window: None,
             by_guessed_curve: None,
+            torque_exponent: None,
         }
     }
 
@@ -230,6 +234,9 @@ pub fn size_of(theta: &Theta, nominal: &Nominal, index: usize) -> f64 {
     scale_of(&nominal.theta, index).max(scale_of(&theta.map(f64::abs), index))
 }
 
+/// Place of Izz.
+const ABOUT_Z: usize = 6;
+
 /// Assesses one parameter.
 #[must_use]
 pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Finding {
@@ -241,6 +248,15 @@ pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Findin
             "no torque can be compared: body rates or commands are not recorded, or at too low a rate"
         };
         return Finding::NotDetermined { reason: reason.to_owned() };
+    }
+    if let Some(exponent) = estimated.torque_exponent.filter(|_| index == ABOUT_Z) {
+        return Finding::NotDetermined {
+            reason: format!(
+                "the rotors' torque goes with the power {exponent:.2} of their thrust, and the motion about z tells only how it \
+                 changes with the thrust: {:.3e} kg m^2 if the stated torque per thrust is that of hover",
+                exponent * value
+            ),
+        };
     }
     let std = variance.max(0.0).sqrt();
     let size = size_of(&estimated.theta, nominal, index);

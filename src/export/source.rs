@@ -176,6 +176,12 @@ impl<'a> Source<'a> {
             };
             self.left_out.push(format!("{lost}; {instead}"));
         }
+        let share = self.vehicle.body.gyroscopic;
+        if share != 1.0 {
+            self.left_out.push(format!(
+                "body.gyroscopic of {share:.2} cannot be represented here: the gyroscopic torque is that of the simulator"
+            ));
+        }
         let callback = self.callback.map(|callback| callback.text);
         Exported { text: write(&self.left_out), left_out: self.left_out, callback }
     }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Quaternion, SymmetricEigen, Vector3};
 
 use super::{PhysicsError, State, StateDerivative, Wrench};
-use crate::vehicle::RigidBody;
+use crate::vehicle::{RigidBody, gyroscopic_torque_nm};
 
 /// Mass, inertia and gravity, ready for integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +14,8 @@ pub struct RigidBodyModel {
     pub inertia_kg_m2: Matrix3<f64>,
     /// its inverse
     pub inertia_inverse: Matrix3<f64>,
+    /// share of the gyroscopic torque that acts
+    pub gyroscopic: f64,
     /// m/s^2, along world -z
     pub gravity_m_s2: f64,
 }
@@ -22,7 +24,7 @@ impl RigidBodyModel {
     /// # Errors
     /// If the mass is not positive, or the inertia is not symmetric and positive definite.
     pub fn new(body: &RigidBody, gravity_m_s2: f64) -> Result<Self, PhysicsError> {
-        let (mass_kg, inertia) = (body.mass_kg, body.inertia_kg_m2);
+        let (mass_kg, inertia, gyroscopic) = (body.mass_kg, body.inertia_kg_m2, body.gyroscopic);
         if !(mass_kg > 0.0 && mass_kg.is_finite()) {
             return Err(PhysicsError::Mass { mass_kg });
         }
@@ -32,7 +34,7 @@ impl RigidBodyModel {
         let inverse = inertia.cholesky().map(|factor| factor.inverse());
         match inverse {
             Some(inertia_inverse) if symmetric && inertia.iter().all(|x| x.is_finite()) => {
-                Ok(Self { mass_kg, inertia_kg_m2: inertia, inertia_inverse, gravity_m_s2 })
+                Ok(Self { mass_kg, inertia_kg_m2: inertia, inertia_inverse, gyroscopic, gravity_m_s2 })
             }
             _ => Err(PhysicsError::Inertia { inertia_kg_m2: came }),
         }
@@ -55,8 +57,14 @@ impl RigidBodyModel {
             acceleration_m_s2: state.attitude * (wrench.force_n * per_kg) - gravity,
             quaternion_rate: state.attitude.quaternion() * spin,
             angular_acceleration_rad_s2: self.inertia_inverse
-                * (wrench.torque_nm - w.cross(&(self.inertia_kg_m2 * w))),
+                * (wrench.torque_nm - gyroscopic_torque_nm(self.gyroscopic, &self.inertia_kg_m2, w)),
         }
+    }
+
+    /// Torque that a motion takes, `J w' + w x J w`, N m, body: of body rates, rad/s, and their derivative, rad/s^2.
+    #[must_use]
+    pub fn turning_torque_nm(&self, rates: &Vector3<f64>, turning: &Vector3<f64>) -> Vector3<f64> {
+        self.inertia_kg_m2 * turning + gyroscopic_torque_nm(self.gyroscopic, &self.inertia_kg_m2, rates)
     }
 
     /// Total thrust that holds the vehicle level and still, N.
@@ -87,6 +95,7 @@ mod tests {
                 0.012, -0.0008, 0.0001, -0.0008, 0.015, -0.0006, 0.0001, -0.0006, 0.08,
             ),
             center_of_mass_m: Vector3::zeros(),
+            gyroscopic: 1.0,
         };
         RigidBodyModel::new(&body, 9.81).unwrap()
     }
@@ -135,6 +144,7 @@ mod tests {
             mass_kg: 1.0,
             inertia_kg_m2: Matrix3::identity() * 0.01,
             center_of_mass_m: Vector3::zeros(),
+            gyroscopic: 1.0,
         };
         assert!(RigidBodyModel::new(&RigidBody { mass_kg: -1.0, ..good.clone() }, 9.81).is_err());
         assert!(RigidBodyModel::new(&RigidBody { mass_kg: f64::NAN, ..good.clone() }, 9.81).is_err());

@@ -258,6 +258,7 @@ mod tests {
                 gyro_noise_rad_s: None,
                 height_by_pose: None,
                 position_by_receiver: false,
+                simulated: false,
                 notes: Vec::new(),
             },
         };

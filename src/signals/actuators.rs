@@ -291,6 +291,7 @@ mod tests {
                 mass_kg: 2.0,
                 inertia_kg_m2: Matrix3::identity(),
                 center_of_mass_m: Vector3::zeros(),
+                gyroscopic: 1.0,
             },
             propulsion: Propulsion {
                 actuator: Actuator::Speed,

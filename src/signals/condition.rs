@@ -16,6 +16,7 @@ use super::select::{best, best_of, mean_rate_hz, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
 use super::usable::{Evidence, Usable, airborne_spans, usable};
 use super::{Grid, SignalsError, WeakKernel, plausible, sufficient};
+use crate::autopilot::is_simulated;
 use crate::note::Note;
 use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
@@ -130,6 +131,7 @@ pub fn condition(
             torques: sufficiency.torques,
             height_by_pose: is_height_by_pose(recording),
             position_by_receiver: is_position_by_receiver(recording),
+            simulated: is_simulated(|name| recording.parameters.get(name).copied()),
             notes,
         },
     };

@@ -130,6 +130,8 @@ pub struct Quality {
     pub height_by_pose: Option<bool>,
     /// a satellite receiver gives the position
     pub position_by_receiver: bool,
+    /// a simulator flew it: its parameters say that the inertial unit is simulated
+    pub simulated: bool,
     /// notes for the user
     pub notes: Vec<Note>,
 }
@@ -166,6 +168,7 @@ mod tests {
                 torques: true,
                 height_by_pose: None,
                 position_by_receiver: false,
+                simulated: false,
                 notes: Vec::new(),
             },
         };

@@ -223,7 +223,7 @@ impl AutopilotCascade {
         let InnerLoopSetpoint { rates_rad_s: rates, thrust_n, .. } = self.inner;
         let turning = self.rates.update(&rates, &estimate.rates_rad_s, period_s);
         let w = &estimate.rates_rad_s;
-        let torque = self.body.inertia_kg_m2 * turning + w.cross(&(self.body.inertia_kg_m2 * w));
+        let torque = self.body.turning_torque_nm(w, &turning);
         self.allocation.commands(&Vector4::new(thrust_n, torque.x, torque.y, torque.z))
     }
 

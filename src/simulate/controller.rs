@@ -114,7 +114,7 @@ impl CascadeController {
         let rates_wanted =
             estimate.attitude.inverse_transform_vector(&(Vector3::z() * setpoint.yaw_rate_rad_s));
         let acceleration = -error * self.gains.attitude - (w - rates_wanted) * self.gains.rates;
-        self.body.inertia_kg_m2 * acceleration + w.cross(&(self.body.inertia_kg_m2 * w))
+        self.body.turning_torque_nm(&w, &acceleration)
     }
 }
 

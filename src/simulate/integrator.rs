@@ -144,7 +144,12 @@ mod tests {
 
     fn body() -> RigidBodyModel {
         let inertia = Matrix3::new(0.012, -0.0008, 0.0001, -0.0008, 0.015, -0.0006, 0.0001, -0.0006, 0.022);
-        let body = RigidBody { mass_kg: 1.8, inertia_kg_m2: inertia, center_of_mass_m: Vector3::zeros() };
+        let body = RigidBody {
+            mass_kg: 1.8,
+            inertia_kg_m2: inertia,
+            center_of_mass_m: Vector3::zeros(),
+            gyroscopic: 1.0,
+        };
         RigidBodyModel::new(&body, 9.81).unwrap()
     }
 

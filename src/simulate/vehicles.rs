@@ -32,7 +32,7 @@ pub fn random_vehicle(seed: u64) -> VehiclePair {
     let inertia_kg_m2 = random_inertia(&mut rng, mass_kg * arm_m * arm_m);
     let truth = Vehicle {
         name: format!("random-{seed}"),
-        body: RigidBody { mass_kg, inertia_kg_m2, center_of_mass_m: Vector3::zeros() },
+        body: RigidBody { mass_kg, inertia_kg_m2, center_of_mass_m: Vector3::zeros(), gyroscopic: 1.0 },
         propulsion: random_propulsion(&mut rng, mass_kg, arm_m),
         rotors: cross_rotors(arm_m),
         limits: Limits::default(),
@@ -104,6 +104,7 @@ fn nominal_body(rng: &mut Pcg64Mcg, truth: &RigidBody) -> RigidBody {
         mass_kg,
         inertia_kg_m2: Matrix3::from_diagonal(&Vector3::new(xx, yy, zz)),
         center_of_mass_m: Vector3::zeros(),
+        gyroscopic: 1.0,
     }
 }
 

@@ -13,7 +13,7 @@ mod rotor;
 mod size;
 
 pub use anchor::Anchor;
-pub use body::{AXIS_NAMES, RigidBody};
+pub use body::{AXIS_NAMES, RigidBody, gyroscopic_torque_nm};
 pub use description::Vehicle;
 pub use guess::{Guess, Guessed};
 pub use limits::Limits;

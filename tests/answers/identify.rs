@@ -148,6 +148,7 @@ fn all_four_methods_recover_the_papers_vehicle() {
         mass_kg: truth[0],
         inertia_kg_m2: inertia_of(&truth),
         center_of_mass_m: Vector3::zeros(),
+        gyroscopic: 1.0,
     };
     let model = RigidBodyModel::new(&body, nominal.gravity_m_s2).unwrap();
     let flight = simulate_pid_flight(&model, &trajectory, &PidFlightSettings::default(), None).unwrap();

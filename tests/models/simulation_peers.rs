@@ -42,7 +42,7 @@ fn in_its_words(state: &State, wind_m_s: &Vector3<f64>, speeds_rad_s: &[f64]) ->
 fn both_integrators_agree_with_scipy() {
     let mut random = Pcg64Mcg::seed_from_u64(4);
     let inertia_kg_m2 = Matrix3::new(0.012, -0.0008, 0.0001, -0.0008, 0.015, -0.0006, 0.0001, -0.0006, 0.022);
-    let body = RigidBody { mass_kg: 1.8, inertia_kg_m2, center_of_mass_m: Vector3::zeros() };
+    let body = RigidBody { mass_kg: 1.8, inertia_kg_m2, center_of_mass_m: Vector3::zeros(), gyroscopic: 1.0 };
     let model = RigidBodyModel::new(&body, 9.81).unwrap();
     for _ in 0..5 {
         let state = any_state(&mut random);

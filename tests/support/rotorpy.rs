@@ -90,6 +90,7 @@ impl Hummingbird {
                 mass_kg: self.mass_kg,
                 inertia_kg_m2: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
                 center_of_mass_m: Vector3::zeros(),
+                gyroscopic: 1.0,
             },
             propulsion: Propulsion {
                 actuator: Actuator::Speed,

@@ -204,8 +204,7 @@ impl<'a> Foresight<'a> {
         for index in 0..grid.count {
             let now = Reference::new(trajectory.derivatives(grid.time_s(index)), vehicle.gravity_m_s2);
             let omega = Vector3::from(now.motion.omega);
-            let turning = vehicle.body.inertia_kg_m2 * Vector3::from(now.motion.omega_dot)
-                + omega.cross(&(vehicle.body.inertia_kg_m2 * omega));
+            let turning = vehicle.body.turning_torque_nm(&omega, &Vector3::from(now.motion.omega_dot));
             let lift = vehicle.body.mass_kg * now.motion.specific_force;
             let thrusts = allocation.thrusts_n(&Vector4::new(lift, turning.x, turning.y, turning.z));
             let [roll, pitch, yaw] = [now.motion.roll[0], now.motion.pitch[0], now.path[3][0]];
@@ -267,6 +266,7 @@ impl SimulatedSeries {
                 gyro_noise_rad_s: Some(like.gyro_noise_rad_s),
                 height_by_pose: like.height_by_pose,
                 position_by_receiver: like.position_by_receiver,
+                simulated: like.simulated,
                 notes: Vec::new(),
             },
         }

@@ -112,7 +112,7 @@ fn path_of<'a>(ready: &'a Ready) -> Result<Path<'a>, HoldoutError> {
     let (model, signals) = (model_of(base)?, ready.flight.signals);
     let torques_nm = torques_along((&model, &base.vehicle), signals, &playback_of(HALF_S, &[base]))
         .map_err(|source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source })?;
-    Ok(Path { signals, torques_nm, inertia_kg_m2: model.body.inertia_kg_m2 })
+    Ok(Path { signals, torques_nm, body: model.body })
 }
 
 /// A law of the rates, fitted to flights.

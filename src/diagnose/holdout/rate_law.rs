@@ -4,8 +4,9 @@
 //! torque is seen in the rates. What is left then predicts best with a share of that torque only, and with rates that decay as the
 //! controller lets them. The law describes the vehicle under its controller as it was flown and is no mechanism.
 
-use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
+use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, RigidBodyModel, Rotors, Wrench};
 use crate::signals::{Grid, Signals};
+use crate::vehicle::gyroscopic_torque_nm;
 use nalgebra::{Matrix3, Vector3};
 
 /// `I w' = s o tau - w x I w - b o w + c` for the torque `tau` of the model, with `o` axis by axis.
@@ -28,12 +29,12 @@ const PASSES: usize = 25;
 /// below the error of an empirical law.
 const CONVERGED: f64 = 1e-4;
 
-/// What the law is fitted to: a flight with the torque of the model along it (body FLU, N m, one an instant) and the inertia in
-/// that model (kg m^2).
+/// What the law is fitted to: a flight with the torque of the model along it (body FLU, N m, one an instant) and the body of that
+/// model.
 pub(super) struct Path<'a> {
     pub(super) signals: &'a Signals,
     pub(super) torques_nm: Vec<Vector3<f64>>,
-    pub(super) inertia_kg_m2: Matrix3<f64>,
+    pub(super) body: RigidBodyModel,
 }
 
 impl RateLaw {
@@ -107,14 +108,15 @@ fn sums(
     let (mut normal, mut right, mut any) = (Matrix3::zeros(), Vector3::zeros(), false);
     for path in paths {
         let Signals { grid, usable, rate: Some(rates), .. } = path.signals else { continue };
-        let moment = path.inertia_kg_m2[(axis, axis)];
+        let moment = path.body.inertia_kg_m2[(axis, axis)];
         let count = |time_s: f64| {
             (1..grid.count).take_while(|n| *n as f64 * grid.step_s <= time_s + 1e-9).count().max(1)
         };
         let (window, stride) = (count(window_s), count(stride_s));
         let step = |index: usize| {
             let rate = 0.5 * (rates[index] + rates[index + 1]);
-            let gyroscopic = -rate.cross(&(path.inertia_kg_m2 * rate))[axis] / moment;
+            let gyroscopic =
+                -gyroscopic_torque_nm(path.body.gyroscopic, &path.body.inertia_kg_m2, &rate)[axis] / moment;
             Step {
                 measured: rates[index + 1][axis],
                 torque: path.torques_nm[index][axis] / moment,

@@ -93,7 +93,11 @@ fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
     for (index, column) in own.rows.nuisances.iter().enumerate() {
         let share = match column.nuisance {
             // a model without drag has no column for the velocity's error: neither model is given one
-            Nuisance::Mass | Nuisance::Inertia(_) | Nuisance::Latency | Nuisance::VelocityError => continue,
+            Nuisance::Mass
+            | Nuisance::Inertia(_)
+            | Nuisance::Gyroscopic
+            | Nuisance::Latency
+            | Nuisance::VelocityError => continue,
             Nuisance::AccelerometerBias(_)
             | Nuisance::AirMoment(_)
             | Nuisance::Balance(_)

@@ -116,8 +116,10 @@ fn put_together(
     let effects = finding::effects((traces, vehicle), wanted, (&after, &settled), (&latency, split), by_mass);
     let mut acting: Vec<ActiveEffect> = kept.iter().map(|of| (*of).clone()).collect();
     acting.extend(effects.iter().filter_map(EffectFound::acting));
+    let mut identified = identified_vehicle(vehicle, &body, scale.as_ref());
+    identified.body.gyroscopic = after.base.vehicle.body.gyroscopic;
     JointEstimate {
-        vehicle: identified_vehicle(vehicle, &body, scale.as_ref()),
+        vehicle: identified,
         latency_named: wanted.signatures().iter().any(|signature| signature.role.latency.is_some()),
         before,
         after,

@@ -57,6 +57,7 @@ impl Kept<'_> {
         loop {
             let base = Base { effects: self.on_scale(factor), ..Base::rigid(self.vehicle) };
             let (fitted, latency) = fit_latency(flights, base.clone())?;
+            let base = base.turning_as(&fitted.base);
             pass += 1;
             match self.factor(&fitted) {
                 Some(now) if (now / factor - 1.0).abs() > CONVERGED && pass < PASSES => factor = now,

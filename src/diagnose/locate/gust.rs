@@ -1,6 +1,6 @@
 //! Gusts: a red horizontal force that corresponds to wind by a known drag.
 
-use super::lateral_drag::lateral_drag;
+use super::lateral_drag::{is_known_across, lateral_drag};
 use super::redness::{
     CONTRADICTED, LEAST_S, Quantity, RED_STATISTIC, Redness, beside_harmonics, red_fit, red_shape,
 };
@@ -56,7 +56,7 @@ pub(super) fn gust(view: &View, fitted: &Fitted, redness: &[Redness]) -> Option<
         red.statistic > RED_STATISTIC && red.relative > LEAST_FORCE && red.correlation_s >= LEAST_S
     };
     let certain = axes.iter().any(|red| shows(red));
-    if !(alike && each && certain) {
+    if !(alike && each && certain && is_known_across(fitted)) {
         return None;
     }
     let (drag, drag_std) = lateral_drag(view, fitted)?;

@@ -14,6 +14,9 @@ use crate::physics::effects::CeilingEffect;
 /// Distances of a ceiling above the highest rotor position that are tried, rotor radii. A grid: the height is refined
 /// afterwards.
 const CEILINGS_RADII: [f64; 7] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0];
+/// Range of the middle half of the flown heights from which on a flight tells of a ceiling, rotor radii. The suction falls to a fraction
+/// within two of them. A vehicle that keeps its height is higher than that only by errors of its controller, which thrust answers.
+const LEAST_RANGE_RADII: f64 = 2.0;
 /// Value of a1 that is equivalent to no ceiling, the parameter's bound: the added thrust is proportional to its
 /// inverse.
 const NO_CEILING: f64 = 50.0;
@@ -77,6 +80,12 @@ fn over(flights: &[Trace], airframe: &Airframe) -> Vec<f64> {
         state.position_m.z + over
     };
     let flown = flights.iter().flat_map(|trace| trace.centers.iter().map(move |&row| hub_m(trace, row)));
-    let top_m = flown.fold(f64::MIN, f64::max);
+    let mut flown_m: Vec<f64> = flown.collect();
+    flown_m.sort_by(f64::total_cmp);
+    let Some(&top_m) = flown_m.last() else { return Vec::new() };
+    let of_half_m = flown_m[3 * flown_m.len() / 4] - flown_m[flown_m.len() / 4];
+    if of_half_m < LEAST_RANGE_RADII * radius_m {
+        return Vec::new();
+    }
     CEILINGS_RADII.iter().map(|radii| top_m + radii * radius_m).filter(|height_m| *height_m >= 0.5).collect()
 }

@@ -10,6 +10,8 @@ use crate::text::{significant, with_error};
 
 /// Least standard error of the centre of mass, m. A position is not defined better on a vehicle.
 const NUISANCE_M: f64 = 0.000_15;
+/// Offset that is ordinary, as a share of the mean arm: four rotors that differ by 2 % each turn the vehicle as much, and rotors do.
+const ORDINARY: f64 = 0.01;
 /// Largest change of the centre of mass by a battery pack that was put back in another place, m. Set by judgement:
 /// with more another vehicle would pass for a battery that was put back, with less each battery would be another
 /// vehicle.
@@ -18,7 +20,7 @@ pub(in crate::diagnose) const REPACKED_M: f64 = 0.002;
 /// A centre of mass that is not where the vehicle file has it.
 pub static SIGNATURE: Signature = Signature {
     forms: |_| vec![SIGNATURE.form(&[0.0; 3], &[0, 1])],
-    naming: Naming { least: NUISANCE_M, ..Naming::PLAIN },
+    naming: Naming { least: NUISANCE_M, least_of_arm: ORDINARY, ..Naming::PLAIN },
     role: Role {
         of_the_loading: true,
         of_the_vehicle: Some(OfTheVehicle { slots: &[0, 1, 2], least_difference: REPACKED_M }),

@@ -3,7 +3,7 @@
 use super::along::AlongValue;
 use super::answer::answer;
 use super::fit_json::{FitValues, fit_values};
-use crate::diagnose::holdout::RateLaw;
+use super::turning_json::TurningValue;
 use crate::diagnose::{Along, CHANNEL_NAMES, Materiality, Named, NamedParameter, Slight};
 use crate::note::Note;
 use crate::report::thrust_source::thrust_name;
@@ -25,8 +25,8 @@ pub struct ExplanationDocument {
     traces: Vec<TraceValue>,
     closest: Vec<EffectValue>,
     empirical: Option<EmpiricalValue>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    rate_law: Option<RateLawValue>,
+    #[serde(flatten)]
+    turning: TurningValue,
     localisation: Located,
     #[serde(rename = "fit")]
     prediction: FitValues,
@@ -97,15 +97,6 @@ struct EmpiricalValue {
     force_n: Vec<[f64; 3]>,
     frame: &'static str,
     gain_percent: f64,
-}
-
-/// How the rates move in open loop, body x y z.
-#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
-struct RateLawValue {
-    /// of the model's torque that acts, 0..1
-    share: [f64; 3],
-    decay_1_s: [f64; 3],
-    offset_rad_s2: [f64; 3],
 }
 
 #[derive(Debug, Clone, Serialize, JsonSchema)]
@@ -208,7 +199,7 @@ impl ExplanationDocument {
             traces: study.explanation.slight.iter().map(TraceValue::from).collect(),
             closest: effect_values(study, &study.closest),
             empirical: empirical(study),
-            rate_law: study.rate_law.map(RateLawValue::from),
+            turning: TurningValue::of(study),
             localisation: study.located.clone(),
             prediction: fit_values(study),
             parameters: study
@@ -292,16 +283,6 @@ fn empirical(study: &ExplainStudy) -> Option<EmpiricalValue> {
         },
         gain_percent: 100.0 * term.gain,
     })
-}
-
-impl From<RateLaw> for RateLawValue {
-    fn from(law: RateLaw) -> Self {
-        Self {
-            share: law.share.into(),
-            decay_1_s: law.decay_1_s.into(),
-            offset_rad_s2: law.offset_rad_s2.into(),
-        }
-    }
 }
 
 fn moved(study: &ExplainStudy) -> BTreeMap<&'static str, Moved> {

@@ -13,6 +13,7 @@ mod motor;
 mod pictures;
 mod prospect;
 mod text;
+mod turning_json;
 
 pub use answer::answer as explanation_answer;
 pub use html::explanation_html;

@@ -21,7 +21,15 @@ pub fn identified_model(study: &IdentifyStudy) -> Result<String, ConfigError> {
     }
     let best = &study.identification.best.result;
     let scale = study.scale.as_ref();
-    let mut text = vehicle_to_toml(&identified_vehicle(&study.vehicle, best, scale))?;
+    let mut identified = identified_vehicle(&study.vehicle, best, scale);
+    if let Some(share) = study.gyroscopic {
+        identified.body.gyroscopic = share.value;
+    }
+    if study.torque_law.is_some() {
+        // what turns the vehicle about z with the stated torque per thrust, as the flight does
+        identified.body.inertia_kg_m2[(2, 2)] = best.estimated.theta[6];
+    }
+    let mut text = vehicle_to_toml(&identified)?;
     let _ = writeln!(text, "\n[identified]\nmethod = \"{}\"", best.method.name());
     if !study.beside.is_empty() {
         let _ = writeln!(

@@ -41,7 +41,8 @@ fn table2() -> FourierTrajectory {
 fn qball2() -> RigidBodyModel {
     let (xx, xy, xz, yy, yz, zz) = (0.00749, -0.00051, -0.00003, 0.00976, -0.00098, 0.05130);
     let inertia_kg_m2 = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    let body = RigidBody { mass_kg: 1.82245, inertia_kg_m2, center_of_mass_m: Vector3::zeros() };
+    let body =
+        RigidBody { mass_kg: 1.82245, inertia_kg_m2, center_of_mass_m: Vector3::zeros(), gyroscopic: 1.0 };
     RigidBodyModel::new(&body, 9.81).unwrap()
 }
 

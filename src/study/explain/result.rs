@@ -11,8 +11,8 @@ use crate::diagnose::experiment::{NextError, NextFlight};
 use crate::diagnose::holdout::{Difference, HoldoutFit, RateLaw};
 use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::{
-    AXES, CHANNEL_NAMES, CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, LatencyFinding, Named,
-    Trace, Verdict,
+    AXES, CHANNEL_NAMES, CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, GyroscopicShare,
+    LatencyFinding, Named, Trace, Verdict,
 };
 use crate::draft::Draft;
 use crate::estimate::{
@@ -183,6 +183,12 @@ impl ExplainStudy {
         &self.fitted().base.vehicle
     }
 
+    /// Where a simulator leaves the gyroscopic torque out: the share that acts.
+    #[must_use]
+    pub fn gyroscopic(&self) -> Option<GyroscopicShare> {
+        self.fitted().gyroscopic()
+    }
+
     /// Mass and inertia, nominal, alone and with the effects.
     #[must_use]
     pub fn body(&self) -> Vec<BodyParameter> {
@@ -232,7 +238,8 @@ impl ExplainStudy {
     fn guessing(&self, estimated: Estimated, fitted: &Fitted) -> Estimated {
         let told = fitted.base.estimates_bend();
         let moved = self.given.by_guessed_curve.filter(|_| !told).map(|by| by.on(&estimated.theta));
-        estimated.with_guessed_curve(moved)
+        let estimated = estimated.with_guessed_curve(moved);
+        self.explanation.torque_law.iter().fold(estimated, |estimated, law| law.in_errors_of(estimated))
     }
 
     /// Mass and inertia of a fit with their standard errors.

@@ -10,7 +10,7 @@ use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::diagnose::holdout::HoldoutSettings;
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{ExplainSettings, Explanation, Trace, Verdict};
+use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, TorqueLaw, Trace, Verdict};
 use crate::estimate::{
     Contradiction, contradicting_flights, inertia_by_wider_window, moved_by_guessed_curve,
 };
@@ -162,6 +162,8 @@ impl Task<'_> {
         study.notes.extend_from_slice(self.notes);
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
+        study.notes.extend(study.explanation.torque_law.iter().map(TorqueLaw::note));
+        study.notes.extend(study.gyroscopic().iter().map(GyroscopicShare::note));
         study.tell_flights_apart();
         study.tell_wandering();
         study.evaluate_explained(flights);

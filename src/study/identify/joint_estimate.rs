@@ -1,6 +1,8 @@
 //! Mass and inertia by the estimator of `explain`, together with the effects that the flights show.
 
-use crate::diagnose::{ExplainError, ExplainSettings, Explanation, Verdict, brief, explain};
+use crate::diagnose::{
+    ExplainError, ExplainSettings, Explanation, GyroscopicShare, TorqueLaw, Verdict, brief, explain,
+};
 use crate::estimate::{
     Estimated, Finding, MethodResult, Nominal, Recommendation, THETA, moved_by_guessed_curve,
 };
@@ -16,6 +18,10 @@ pub(super) struct EstimateWithEffects {
     pub(super) effects: Vec<&'static str>,
     /// hardly anything but the controller turned the vehicle
     pub(super) turned_by_control: bool,
+    /// where a simulator leaves the gyroscopic torque out
+    pub(super) gyroscopic: Option<GyroscopicShare>,
+    /// where the rotors' torque certainly does not go with their thrust
+    pub(super) torque_law: Option<TorqueLaw>,
 }
 
 /// Takes the moments of inertia out of a result that rests on the controller's answer to noise.
@@ -45,9 +51,13 @@ pub(super) fn joint_estimate(
         let moved = moved_by_guessed_curve(flights, vehicle).map(|by| by.on(&estimated.theta));
         estimated = estimated.with_guessed_curve(moved);
     }
+    if let Some(law) = found.torque_law {
+        estimated = law.in_errors_of(estimated);
+    }
     let effects: Vec<&'static str> = found.named.iter().map(|named| named.id).collect();
     let best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(&found, vehicle));
-    Ok(EstimateWithEffects { best, effects, turned_by_control: found.turned_by_control })
+    let (turned_by_control, torque_law) = (found.turned_by_control, found.torque_law);
+    Ok(EstimateWithEffects { best, effects, turned_by_control, gyroscopic: fitted.gyroscopic(), torque_law })
 }
 
 /// The reason for the user.

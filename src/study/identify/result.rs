@@ -1,8 +1,8 @@
 //! The result of identifying: what went in, the estimates, and what is to be known of them.
 
-use super::joint_estimate::{EstimateWithEffects, joint_estimate, without_inertia};
-use crate::diagnose::CHANNEL_NAMES;
+use super::joint_estimate::{joint_estimate, without_inertia};
 use crate::diagnose::joint::JointEstimate;
+use crate::diagnose::{CHANNEL_NAMES, GyroscopicShare, TorqueLaw};
 use crate::estimate::{
     Contradiction, EstimateError, Identification, IdentifySettings, Method, MethodResult, ThrustScale,
     apply_anchor, contradictions, identify, rests_on_guessed_curve,
@@ -26,6 +26,10 @@ pub struct IdentifyStudy {
     pub identification: Identification,
     /// identifiers of the effects that the recommended method has in its model
     pub beside: Vec<&'static str>,
+    /// where a simulator leaves the gyroscopic torque out
+    pub gyroscopic: Option<GyroscopicShare>,
+    /// where the rotors' torque certainly does not go with their thrust
+    pub torque_law: Option<TorqueLaw>,
     /// where the mass was weighed
     pub scale: Option<ThrustScale>,
     /// effects that were identified together with the rigid body
@@ -88,11 +92,15 @@ impl IdentifyStudy {
         let mut identification = identify(&flights, &vehicle, settings)?;
         let alone = &identification.best.result.estimated;
         let (mut effects, mut turned_by_control) = (Vec::new(), false);
+        let (mut gyroscopic, mut torque_law) = (None, None);
         match joint_estimate(explained, &vehicle, alone) {
-            Ok(EstimateWithEffects { best, effects: found, turned_by_control: by_control }) => {
-                identification.methods.push(best.result.clone());
-                identification.best = best;
-                (effects, turned_by_control) = (found, by_control);
+            Ok(found) => {
+                identification.methods.push(found.best.result.clone());
+                identification.best = found.best;
+                (effects, turned_by_control) = (found.effects, found.turned_by_control);
+                (gyroscopic, torque_law) = (found.gyroscopic, found.torque_law);
+                identification.notes.extend(torque_law.iter().map(TorqueLaw::note));
+                identification.notes.extend(gyroscopic.iter().map(GyroscopicShare::note));
             }
             Err(why) => {
                 let text = format!(
@@ -118,6 +126,8 @@ impl IdentifyStudy {
             inputs,
             identification,
             beside: effects,
+            gyroscopic,
+            torque_law,
             scale,
             with: None,
             notes: Vec::new(),

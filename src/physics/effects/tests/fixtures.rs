@@ -17,6 +17,7 @@ pub(super) fn vehicle() -> Vehicle {
             mass_kg: 2.0,
             inertia_kg_m2: Matrix3::from_diagonal(&Vector3::new(0.02, 0.022, 0.04)),
             center_of_mass_m: Vector3::new(0.003, -0.002, 0.001),
+            gyroscopic: 1.0,
         },
         propulsion: Propulsion {
             actuator: Actuator::Speed,
