@@ -32,7 +32,7 @@ pub fn run(json: bool, args: &CsvMapArgs) -> Result<Outcome, CommandError> {
             .map(|()| Outcome::Done);
     }
     if args.out.is_none() {
-        output::text(toml.trim_end())?;
+        output::file_text(toml.trim_end())?;
     }
     unsure.iter().for_each(|remark| output::message(&format!("not sure of {remark}")));
     if !unused.is_empty() {

@@ -26,7 +26,7 @@ pub fn run(json: bool, args: &EffectsArgs) -> Result<Outcome, CommandError> {
         output::json(&Document { schema: 1, effects })?;
     } else if args.table {
         let tables: Vec<&str> = effects.iter().map(|effect| effect.table.trim_end()).collect();
-        output::text(&tables.join("\n\n"))?;
+        output::file_text(&tables.join("\n\n"))?;
     } else if args.id.is_some() {
         output::text(&effects.iter().map(effect_text).collect::<Vec<_>>().join("\n\n"))?;
     } else {

@@ -32,7 +32,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Out
     if json {
         output::json(&ExplanationDocument::new(&study))?;
     } else if args.format == PageFormat::Md {
-        output::text(&explanation_markdown(&study))?;
+        output::file_text(&explanation_markdown(&study))?;
     } else {
         output::text(&explanation_text(&study))?;
     }

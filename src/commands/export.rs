@@ -92,7 +92,7 @@ pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
         let file = args.out.as_ref().map(|path| text::path(&path));
         output::json(&Document { schema: 1, file, text, callback, parameters, left_out })?;
     } else if args.out.is_none() {
-        output::text(text.trim_end())?;
+        output::file_text(text.trim_end())?;
     }
     Ok(Outcome::Done)
 }

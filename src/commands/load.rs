@@ -1,6 +1,7 @@
 //! `mavid vehicle load`: parameters of a file onto a vehicle, and back.
 
 use crate::commands::agreement::SET;
+use crate::commands::fly::is_attended;
 use mavid::fetch::Noted;
 use mavid::onboard::{
     self, ChangedSince, Loaded, Loading, ParameterComparison, ParameterFileError, PutBack, Session,
@@ -80,6 +81,7 @@ async fn load(
     }
     let differing = loading.parameters.iter().filter(|parameter| parameter.differs()).count();
     let set = differing > 0 && (args.yes || !json && agreed(SET, "set these")?);
+    let nobody_said = differing > 0 && !args.yes && (json || !is_attended());
     let loaded = if set { onboard::load(session, &loading, &notes).await? } else { Loaded::default() };
     let place = text::path(&notes.path());
     if json {
@@ -98,10 +100,18 @@ async fn load(
         })?;
     } else if set {
         output::text(&set_page(&loaded, &place, &undo_command(args)))?;
+    } else if nobody_said {
+        // the error says it
     } else if differing > 0 {
         output::text("nothing is changed; --yes sets it without a question")?;
     } else {
         output::text("nothing to change")?;
+    }
+    if nobody_said {
+        return Err(CommandError::Input(
+            "expected --yes, or a terminal at which to agree, got neither: nothing is changed. Look at the values above, then add --yes"
+                .to_owned(),
+        ));
     }
     Ok(if loaded.differing.is_empty() { Outcome::Done } else { Outcome::DoneWithLoss })
 }

@@ -5,6 +5,7 @@
 
 mod after_flight;
 mod agreement;
+mod columns;
 mod compare;
 mod convert;
 mod csv_map;

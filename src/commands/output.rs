@@ -1,6 +1,6 @@
 //! Standard output for results, standard error for the rest.
 
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use mavid::files::write_whole;
@@ -10,11 +10,27 @@ use mavid::text;
 use serde::Serialize;
 
 use super::CommandError;
+use super::columns::of_terminal;
 use super::standard_error::MESSAGE;
 
-/// A result for people; ends the line.
+/// A result for people; ends the line. On a terminal lines that are longer than it is wide are broken between words.
 pub fn text(text: &str) -> Result<(), CommandError> {
+    let text = text::clean_lines(text);
+    let columns = of_terminal().filter(|_| io::stdout().is_terminal());
+    match columns {
+        Some(columns) => line(io::stdout().lock(), &to_columns(&text, columns)),
+        None => line(io::stdout().lock(), &text),
+    }
+}
+
+/// What is a file for another program; ends the line. Its lines stay as they are.
+pub fn file_text(text: &str) -> Result<(), CommandError> {
     line(io::stdout().lock(), &text::clean_lines(text))
+}
+
+/// The same lines, none of which a terminal breaks within a word.
+fn to_columns(text: &str, columns: usize) -> String {
+    text.split('\n').flat_map(|line| text::to_width(line, columns)).collect::<Vec<_>>().join("\n")
 }
 
 /// A result as one JSON document.

@@ -3,11 +3,8 @@
 use super::ConfigError;
 use super::check::Check;
 use super::faults::Faults;
-use crate::physics::{ActiveEffect, PhysicsError};
+use crate::physics::{ActiveEffect, Parameter, PhysicsError, WHICH_ROTOR};
 use crate::vehicle::Vehicle;
-
-/// Parameter that says on which rotor an effect acts. A file may give it by the rotor's name.
-const ROTOR: &str = "rotor";
 
 /// The effects of a file, which `origin` names in errors.
 ///
@@ -50,7 +47,7 @@ pub(super) fn checked(
 
 fn repeated(check: &Check<'_>, effects: &[ActiveEffect], faults: &mut Faults) {
     let rotor = |active: &ActiveEffect| {
-        let slot = active.effect().parameters().iter().position(|parameter| parameter.name == ROTOR)?;
+        let slot = active.effect().parameters().iter().position(Parameter::is_rotor)?;
         active.parameters().get(slot).copied()
     };
     for (index, active) in effects.iter().enumerate() {
@@ -73,14 +70,14 @@ fn number(name: &str, value: &toml::Value, vehicle: Option<&Vehicle>) -> Option<
         toml::Value::Float(number) => *number,
         // whole numbers of a file are small
         toml::Value::Integer(number) => f64::from(i32::try_from(*number).ok()?),
-        toml::Value::String(rotor) if name == ROTOR => match vehicle {
+        toml::Value::String(rotor) if name == WHICH_ROTOR => match vehicle {
             Some(vehicle) => vehicle.rotors.iter().position(|known| known.name == *rotor)? as f64,
             None => 0.0,
         },
         _ => return None,
     };
     let is_rotor = |vehicle: &Vehicle| (0..vehicle.rotors.len()).any(|index| index as f64 == number);
-    (name != ROTOR || vehicle.is_none_or(is_rotor)).then_some(number)
+    (name != WHICH_ROTOR || vehicle.is_none_or(is_rotor)).then_some(number)
 }
 
 fn effect(
@@ -103,7 +100,8 @@ fn effect(
     for (name, value) in table.iter().filter(|(name, _)| *name != "id") {
         let number = number(name, value, vehicle);
         if number.is_none() {
-            let expected = vehicle.filter(|_| name == ROTOR).map_or_else(|| "a number".to_owned(), rotors);
+            let expected =
+                vehicle.filter(|_| name == WHICH_ROTOR).map_or_else(|| "a number".to_owned(), rotors);
             faults.check(Err(check.refuse(&at(name), expected, value)));
         }
         values.push((name.as_str(), number));

@@ -31,6 +31,8 @@ pub enum Followed {
     YawCos,
     /// body rate about x, y, z, rad/s; about z it is the yaw rate
     Rate(usize),
+    /// rate of change of the torque about x, y, z that the motion needs, N m/s; no residual is searched along it
+    TorqueRate(usize),
 }
 
 impl Followed {
@@ -52,6 +54,7 @@ impl Followed {
             Self::YawSin => "yaw_sin".into(),
             Self::YawCos => "yaw_cos".into(),
             Self::Rate(about) => format!("rate_{}", axis(about)),
+            Self::TorqueRate(about) => format!("torque_rate_{}", axis(about)),
         }
     }
 
@@ -67,6 +70,7 @@ impl Followed {
             Self::Time => "s",
             Self::YawSin | Self::YawCos => "-",
             Self::Rate(_) => "rad/s",
+            Self::TorqueRate(_) => "N m/s",
         }
     }
 

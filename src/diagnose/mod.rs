@@ -4,6 +4,7 @@ mod acceptance;
 mod averaged;
 mod base;
 mod by_flight;
+mod by_part;
 mod candidates;
 mod channels;
 mod columns;
@@ -87,6 +88,7 @@ pub use base::Base;
 pub use by_flight::{
     FlightParameter, LATENCY, Owner, by_flight, each_with_model_of_all, of_one_flight, rigid_by_flight,
 };
+pub use by_part::{ByPart, by_part};
 pub use candidates::{Candidate, candidates};
 pub use channels::{AXES, CHANNEL_NAMES, CHANNELS, Channels, Nuisance, NuisanceColumn, SECOND};
 pub use empirical::{Along, Empirical};

@@ -158,9 +158,10 @@ fn motors(source: &Source<'_>, arms: &[Vector3<f64>]) -> String {
     let order: Vec<String> = arms
         .iter()
         .zip(&source.vehicle.rotors)
-        .map(|(arm, rotor)| {
+        .enumerate()
+        .map(|(index, (arm, rotor))| {
             let [x, y, _] = frd(arm);
-            format!("{} at x {x:.4}, y {y:.4}, {:?}", rotor.name, rotor.spin)
+            format!("{} at x {x:.4}, y {y:.4}, {:?}", rotor.motor_words(index), rotor.spin)
         })
         .collect();
     format!(

@@ -10,8 +10,6 @@ use toml::Table;
 
 /// Lag that is nearly none, s, for formats that need one.
 pub(super) const FAST_S: f64 = 0.001;
-/// The parameter that says which rotor, by its index in the vehicle's file.
-const ROTOR: &str = "rotor";
 
 /// The model as the writers read it; what they do not take is told at the end.
 pub(super) struct Source<'a> {
@@ -186,17 +184,14 @@ impl<'a> Source<'a> {
         Exported { text: write(&self.left_out), left_out: self.left_out, callback }
     }
 
-    /// The parameters of an effect in words; a rotor by its place and the autopilot's number.
+    /// The parameters of an effect in words; a rotor by the autopilot's number and its place.
     fn values(&self, active: &ActiveEffect) -> Vec<String> {
-        let rotor = |value: f64| {
-            let mut rotors = self.vehicle.rotors.iter().enumerate();
-            rotors.find(|(index, _)| (*index as f64 - value).abs() < 0.5)
-        };
-        let word = |(parameter, value): (&Parameter, &f64)| match (parameter.name, rotor(*value)) {
-            (ROTOR, Some((index, rotor))) => format!("{ROTOR} {}, motor {}", rotor.name, index + 1),
-            (name, _) if parameter.unit == "-" => format!("{name} = {}", compact(*value)),
-            (name, _) => format!("{name} = {} {}", compact(*value), parameter.unit),
-        };
+        let word =
+            |(parameter, value): (&Parameter, &f64)| match (parameter.name, self.vehicle.rotor_of(*value)) {
+                (_, Some(index)) if parameter.is_rotor() => self.vehicle.motor_words(index),
+                (name, _) if parameter.unit == "-" => format!("{name} = {}", compact(*value)),
+                (name, _) => format!("{name} = {} {}", compact(*value), parameter.unit),
+            };
         active.effect().parameters().iter().zip(active.parameters()).map(word).collect()
     }
 }

@@ -32,6 +32,6 @@ pub use input::Input;
 pub use measurement::Measurement;
 pub(crate) use model::OwnStates;
 pub use model::{Evaluation, Model};
-pub use parameter::{Bounds, Parameter, REFERENCE_SIZE};
+pub use parameter::{Bounds, Parameter, REFERENCE_SIZE, WHICH_ROTOR};
 pub use rigid_body::{RigidBodyModel, pseudo_inertia_is_positive};
 pub use state::{RIGID_STATES, State, StateDerivative, Wrench};

@@ -13,6 +13,17 @@ pub struct Parameter {
     pub bounds: Bounds,
 }
 
+/// Name of the parameter that says which rotor, by its place in the vehicle's description from 0. People are told the motor instead.
+pub const WHICH_ROTOR: &str = "rotor";
+
+impl Parameter {
+    /// It says which rotor.
+    #[must_use]
+    pub fn is_rotor(&self) -> bool {
+        self.name == WHICH_ROTOR
+    }
+}
+
 /// The size of vehicle for which bounds are written.
 pub const REFERENCE_SIZE: VehicleSize = VehicleSize { mass_kg: 1.0, arm_m: 0.15 };
 

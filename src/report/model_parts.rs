@@ -3,16 +3,21 @@
 use crate::physics::ActiveEffect;
 use crate::study::{Correlation, InputFile};
 use crate::text::toml_string;
+use crate::vehicle::Vehicle;
 use std::fmt::Write;
 
 /// The effects as `[[effect]]` tables.
-pub(super) fn effect_tables(effects: &[ActiveEffect]) -> String {
+pub(super) fn effect_tables(effects: &[ActiveEffect], vehicle: &Vehicle) -> String {
     let mut text = String::new();
     for effect in effects {
         let _ = writeln!(text, "\n[[effect]]\nid = \"{}\"", effect.effect().id());
         let (common, finer) = (effect.effect().parameters(), effect.effect().finer_parameters());
         for (parameter, value) in common.iter().chain(finer).zip(effect.parameters()) {
-            let _ = writeln!(text, "{} = {value:?} # {}", parameter.name, parameter.unit);
+            let words = match vehicle.rotor_of(*value).filter(|_| parameter.is_rotor()) {
+                Some(index) => format!("counts from 0: {}", vehicle.motor_words(index)),
+                None => parameter.unit.to_owned(),
+            };
+            let _ = writeln!(text, "{} = {value:?} # {words}", parameter.name);
         }
     }
     text

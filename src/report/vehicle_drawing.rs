@@ -22,13 +22,6 @@ pub(super) struct Mark {
     pub(super) words: Option<String>,
 }
 
-/// The autopilot's number of a motor and its place: `rear left, motor 2`. `place` counts from 0.
-pub(super) fn motor_words(rotor: &Rotor, place: usize) -> String {
-    let (number, name) = (place + 1, rotor.name.replace('_', " "));
-    let says_where = !name.is_empty() && !name.contains(|letter: char| letter.is_ascii_digit());
-    if says_where { format!("{name}, motor {number}") } else { format!("motor {number}") }
-}
-
 /// The drawing; `label` says in words what it shows.
 pub(super) fn vehicle_drawing(
     rotors: &[Rotor],
@@ -51,7 +44,7 @@ pub(super) fn vehicle_drawing(
                 circle cx=(round(x)) cy=(round(y)) r=(ROTOR) fill=(if is_filled { colour } else { "none" })
                     fill-opacity="0.35" stroke=(colour) stroke-width=(if mark.is_some() { "4" } else { "2" }) {}
                 text x=(round(x)) y=(round(y - 2.0)) text-anchor="middle" font-weight="bold" { (place + 1) " " (sense(rotor.spin)) }
-                text x=(round(x)) y=(round(y + 12.0)) text-anchor="middle" { (rotor.name.replace('_', " ")) }
+                text x=(round(x)) y=(round(y + 12.0)) text-anchor="middle" { (rotor.place_words()) }
                 @if let Some(words) = mark.and_then(|mark| mark.words) {
                     text x=(round(x)) y=(round(y + ROTOR + 14.0)) text-anchor="middle" font-weight="bold" { (words) }
                 }
@@ -85,10 +78,8 @@ mod tests {
     use nalgebra::Vector3;
 
     #[test]
-    fn a_motor_is_told_by_the_number_of_the_autopilot_and_its_place() {
+    fn motors_are_numbered_as_the_autopilot_does_and_arms_end_at_them() {
         let rotor = |name: &str| Rotor { name: name.to_owned(), position_m: Vector3::x(), spin: Spin::Cw };
-        assert_eq!(motor_words(&rotor("rear_left"), 1), "rear left, motor 2");
-        assert_eq!(motor_words(&rotor("rotor_2"), 1), "motor 2");
         assert_eq!(edge((160.0, 160.0), (260.0, 160.0)), (226.0, 160.0));
         assert_eq!(edge((160.0, 160.0), (170.0, 160.0)), (160.0, 160.0));
         let mark = |place| {

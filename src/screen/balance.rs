@@ -27,7 +27,7 @@ pub(super) fn off_balance(signals: &Signals, vehicle: &Vehicle) -> Result<Option
     let said: Vec<String> = components.iter().map(|(value, std)| with_error(*value, *std)).collect();
     let most = (1..).zip(shares).max_by(|(_, one), (_, other)| one.total_cmp(other));
     let most = most.map_or_else(String::new, |(rotor, share)| {
-        format!(" Rotor {rotor} is commanded the most: {:.0} % of the thrust.", 100.0 * share)
+        format!(" Motor {rotor} is commanded the most: {:.0} % of the thrust.", 100.0 * share)
     });
     let named = NAMES.iter().zip(&components).map(|(name, (value, std))| Amount {
         name: (*name).to_owned(),

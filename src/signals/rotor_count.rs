@@ -38,8 +38,8 @@ pub(super) fn refuse_still_rotors(
     }
     let names: Vec<String> = still.iter().map(|rotor| (rotor + 1).to_string()).collect();
     let (those, outputs) = match names.as_slice() {
-        [one] => (format!("rotor {one}"), "an output that never moves"),
-        [all @ .., last] => (format!("rotors {} and {last}", all.join(", ")), "outputs that never move"),
+        [one] => (format!("motor {one}"), "an output that never moves"),
+        [all @ .., last] => (format!("motors {} and {last}", all.join(", ")), "outputs that never move"),
         [] => return Ok(()),
     };
     Err(SignalsError::OtherRotors {

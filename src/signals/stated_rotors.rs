@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use crate::autopilot::{Autopilot, Layout, LayoutUnit, RotorPlace};
-use crate::vehicle::{Rotor, Spin, Vehicle};
+use crate::vehicle::{Rotor, Spin, Vehicle, direction_words};
 
 /// Ratio of arm lengths from which they are told: arms are often stated by the class of the frame. Only a remark
 /// depends on it.
@@ -102,8 +102,18 @@ fn difference(layout: &Layout, file: &[Rotor]) -> Option<RotorDifference> {
         let of = if layout.rotors.iter().all(elsewhere) { Differing::Order } else { Differing::Place };
         return Some(RotorDifference {
             of,
-            file: format!("its rotor {} ({}) {}", index + 1, rotor.name, place(rotor.position_m.into())),
-            stated: format!("motor {} is {} ({}, by {by})", index + 1, place(stated.place), layout.name),
+            file: format!(
+                "its rotor {} ({}) {}",
+                index + 1,
+                rotor.name,
+                direction_words(rotor.position_m.into())
+            ),
+            stated: format!(
+                "motor {} is {} ({}, by {by})",
+                index + 1,
+                direction_words(stated.place),
+                layout.name
+            ),
         });
     }
     if let Some((index, (stated, rotor))) = pairs().find(|(_, (stated, rotor))| !turns(stated, rotor)) {
@@ -131,23 +141,6 @@ fn difference(layout: &Layout, file: &[Rotor]) -> Option<RotorDifference> {
 /// From forward to the left, degrees.
 fn direction_deg([forward, left, _]: [f64; 3]) -> f64 {
     left.atan2(forward).to_degrees()
-}
-
-/// Where it is, in words: rotors are known by them, and not by coordinates.
-fn place(of: [f64; 3]) -> &'static str {
-    const PLACES: [(f64, &str); 9] = [
-        (-157.5, "at the rear"),
-        (-112.5, "rear right"),
-        (-67.5, "at the right"),
-        (-22.5, "front right"),
-        (22.5, "in front"),
-        (67.5, "front left"),
-        (112.5, "at the left"),
-        (157.5, "rear left"),
-        (f64::INFINITY, "at the rear"),
-    ];
-    let direction_deg = direction_deg(of);
-    PLACES.iter().find(|(end_deg, _)| direction_deg < *end_deg).map_or("at no place", |(_, words)| words)
 }
 
 #[cfg(test)]
@@ -212,15 +205,5 @@ mod tests {
         let mut metres = copter(1.0);
         metres.unit = LayoutUnit::Metres;
         assert!(matches!(of(&metres, &quad()), Some(Differing::Arms(factor)) if factor > 3.0));
-    }
-
-    #[test]
-    fn a_place_is_said_in_words() {
-        let said = |x: f64, y: f64| place([x, y, 0.0]);
-        assert_eq!(
-            [said(1.0, 0.0), said(0.2, -0.2), said(-1.0, 0.01)],
-            ["in front", "front right", "at the rear"]
-        );
-        assert_eq!(said(-0.3, 0.2), "rear left");
     }
 }

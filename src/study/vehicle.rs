@@ -102,17 +102,18 @@ pub fn vehicle_summary(loaded: &LoadedVehicle) -> VehicleSummary {
 fn effect_lines(loaded: &LoadedVehicle) -> Vec<String> {
     let effects =
         effects_of(&loaded.model.effects, &loaded.vehicle.name, &loaded.vehicle).unwrap_or_default();
-    effects.iter().map(effect_line).collect()
+    effects.iter().map(|active| effect_line(active, &loaded.vehicle)).collect()
 }
 
-fn effect_line(active: &ActiveEffect) -> String {
+fn effect_line(active: &ActiveEffect, vehicle: &Vehicle) -> String {
     let effect = active.effect();
     let known = effect.parameters().iter().chain(effect.finer_parameters());
     let values: Vec<String> = known
         .zip(active.parameters())
-        .map(|(parameter, value)| match parameter.unit {
-            "-" => format!("{} {}", parameter.name, text::compact(*value)),
-            unit => format!("{} {} {unit}", parameter.name, text::compact(*value)),
+        .map(|(parameter, value)| match (parameter.unit, vehicle.rotor_of(*value)) {
+            (_, Some(index)) if parameter.is_rotor() => vehicle.motor_words(index),
+            ("-", _) => format!("{} {}", parameter.name, text::compact(*value)),
+            (unit, _) => format!("{} {} {unit}", parameter.name, text::compact(*value)),
         })
         .collect();
     format!("{}: {}", effect.id(), values.join(", "))

@@ -22,4 +22,4 @@ pub(crate) use number::rounded;
 pub use number::{chance, compact, interval, significant, spoken, with_error};
 pub use sentence::capital;
 pub use utc::utc;
-pub use wrap::wrapped;
+pub use wrap::{to_width, wrapped};

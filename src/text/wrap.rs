@@ -26,9 +26,71 @@ pub fn wrapped(text: &str, columns: usize) -> Vec<String> {
     lines
 }
 
+/// What begins a command that a person may copy.
+const PROMPT: &str = "$ ";
+/// At the end of each line of a command but its last: a shell then takes the next line with it.
+const GOES_ON: &str = " \\";
+
+/// A line as it was written, in lines of at most so many columns: broken between words, those after the first moved in by two more than
+/// the line itself. A command after `$ ` still is one when it is copied. A word that is longer than a line stays whole.
+#[must_use]
+pub fn to_width(line: &str, columns: usize) -> Vec<String> {
+    let columns = columns.max(20);
+    let text = line.trim_end();
+    if text.chars().count() <= columns {
+        return vec![line.to_owned()];
+    }
+    let indent: String = text.chars().take_while(|letter| *letter == ' ').chain(INDENT.chars()).collect();
+    let end = if text.starts_with(PROMPT) { GOES_ON } else { "" };
+    let room = columns - end.len();
+    let mut lines = Vec::new();
+    let mut rest = text.to_owned();
+    while rest.chars().count() > columns {
+        let first = rest.len() - rest.trim_start().len();
+        // the last space within the line, else the first one behind it
+        let fits = rest.char_indices().nth(room + 1).map_or(rest.len(), |(at, _)| at);
+        let within = rest[first..fits].rfind(' ').map(|at| first + at);
+        let Some(at) = within.or_else(|| rest[fits..].find(' ').map(|at| fits + at)) else { break };
+        lines.push(format!("{}{end}", rest[..at].trim_end()));
+        rest = format!("{indent}{}", rest[at..].trim_start());
+    }
+    lines.push(rest);
+    lines
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_keeps_its_form_and_no_word_is_broken() {
+        assert_eq!(to_width("  short   table ", 40), ["  short   table "]);
+        let text = "  warning: fence: expected a fence round the place of the flight, got none";
+        for columns in [20, 37, 60] {
+            let lines = to_width(text, columns);
+            assert!(lines.iter().all(|line| line.chars().count() <= columns), "{lines:#?}");
+            assert!(lines[0].starts_with("  w") && lines[1..].iter().all(|line| line.starts_with("    ")));
+            let words: Vec<&str> = lines.iter().flat_map(|line| line.split_whitespace()).collect();
+            assert_eq!(words, text.split_whitespace().collect::<Vec<_>>());
+        }
+        // a path longer than the line
+        let path = "x".repeat(50);
+        assert_eq!(
+            to_width(&format!("wrote {path} at last"), 30),
+            ["wrote".to_owned(), format!("  {path}"), "  at last".to_owned()]
+        );
+        assert_eq!(to_width(&path, 30), [path]);
+        assert_eq!(to_width("ä ö ü é è ê ñ õ ã ç ß ø", 20), ["ä ö ü é è ê ñ õ ã ç", "  ß ø"]);
+    }
+
+    #[test]
+    fn a_command_is_one_when_it_is_copied() {
+        let lines = to_width("$ mavid fly --connect udpin:127.0.0.1:14550 --out flight1 --arm", 40);
+        assert_eq!(
+            lines,
+            ["$ mavid fly --connect \\", "  udpin:127.0.0.1:14550 --out flight1 \\", "  --arm"]
+        );
+    }
 
     #[test]
     fn lines_are_broken_between_words_and_none_is_lost() {

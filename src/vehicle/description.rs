@@ -34,4 +34,18 @@ impl Vehicle {
     pub fn mixer(&self) -> Mixer {
         Mixer::new(&self.rotors, self.body.center_of_mass_m, self.propulsion.torque_per_thrust_m)
     }
+
+    /// The rotor that an effect's number means, from 0; `None` where there is none.
+    #[must_use]
+    pub fn rotor_of(&self, number: f64) -> Option<usize> {
+        (0..self.rotors.len()).find(|&index| (index as f64 - number).abs() < 0.5)
+    }
+
+    /// The motor at a place of [`Self::rotors`] as people call it: `motor 2 (rear left)`.
+    #[must_use]
+    pub fn motor_words(&self, index: usize) -> String {
+        self.rotors
+            .get(index)
+            .map_or_else(|| format!("motor {}", index + 1), |rotor| rotor.motor_words(index))
+    }
 }

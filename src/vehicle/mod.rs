@@ -18,5 +18,5 @@ pub use description::Vehicle;
 pub use guess::{Guess, Guessed};
 pub use limits::Limits;
 pub use propulsion::{Actuator, Propulsion, PwmRange, ThrustLaw};
-pub use rotor::{Mixer, Rotor, Spin};
+pub use rotor::{Mixer, Rotor, Spin, direction_words};
 pub use size::VehicleSize;

@@ -152,10 +152,10 @@ fn arms(vehicle: &Vehicle) -> Option<String> {
     let is_tilted = |rotor: &&Rotor| {
         (rotor.position_m.z - center_m).abs() > HEIGHT_OVER_ARM * rotor.position_m.xy().norm()
     };
-    let rotor = vehicle.rotors.iter().find(is_tilted)?;
+    let (index, rotor) = vehicle.rotors.iter().enumerate().find(|(_, rotor)| is_tilted(rotor))?;
     Some(format!(
-        "rotor {}: {:.3} m above or below the others, and {:.3} m from the axis; position is x forward, y left, z up",
-        rotor.name,
+        "{}: {:.3} m above or below the others, and {:.3} m from the axis; position is x forward, y left, z up",
+        rotor.motor_words(index),
         (rotor.position_m.z - center_m).abs(),
         rotor.position_m.xy().norm()
     ))

@@ -33,6 +33,44 @@ pub struct Rotor {
     pub spin: Spin,
 }
 
+impl Rotor {
+    /// The motor as people call it: by the autopilot's number, and by its place, `motor 2 (rear left)`. `index` counts from 0, in the
+    /// order of the vehicle's description, which is that of the autopilot's motors.
+    #[must_use]
+    pub fn motor_words(&self, index: usize) -> String {
+        format!("motor {} ({})", index + 1, self.place_words())
+    }
+
+    /// Its place: its name without underscores; where the name has a number, which another count may have given, where it is.
+    #[must_use]
+    pub fn place_words(&self) -> String {
+        let says_where = !self.name.is_empty() && !self.name.contains(|letter: char| letter.is_ascii_digit());
+        if says_where {
+            self.name.replace('_', " ")
+        } else {
+            direction_words(self.position_m.into()).to_owned()
+        }
+    }
+}
+
+/// Where a rotor is, in words; forward, left, up, any unit.
+#[must_use]
+pub fn direction_words([forward, left, _]: [f64; 3]) -> &'static str {
+    const PLACES: [(f64, &str); 9] = [
+        (-157.5, "rear"),
+        (-112.5, "rear right"),
+        (-67.5, "right"),
+        (-22.5, "front right"),
+        (22.5, "front"),
+        (67.5, "front left"),
+        (112.5, "left"),
+        (157.5, "rear left"),
+        (f64::INFINITY, "rear"),
+    ];
+    let direction_deg = left.atan2(forward).to_degrees();
+    PLACES.iter().find(|(end_deg, _)| direction_deg < *end_deg).map_or("at no place", |(_, words)| words)
+}
+
 /// `F = B T`: from rotor thrusts (N) to `[Fz tau_x tau_y tau_z]` (N, N m) at the centre of mass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mixer {
@@ -70,6 +108,26 @@ impl Mixer {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_motor_is_told_by_the_number_of_the_autopilot_and_its_place() {
+        let rotor = |name: &str| Rotor {
+            name: name.to_owned(),
+            position_m: Vector3::new(-0.3, 0.2, 0.0),
+            spin: Spin::Cw,
+        };
+        assert_eq!(rotor("rear_left").motor_words(1), "motor 2 (rear left)");
+        // a number of another count is not repeated
+        assert_eq!(rotor("rotor_1").motor_words(1), "motor 2 (rear left)");
+        assert_eq!(rotor("").motor_words(0), "motor 1 (rear left)");
+    }
+
+    #[test]
+    fn a_place_is_said_in_words() {
+        let said = [[1.0, 0.0], [0.2, -0.2], [-1.0, 0.01], [0.0, 1.0], [-0.3, 0.2]]
+            .map(|[x, y]| direction_words([x, y, 0.0]));
+        assert_eq!(said, ["front", "front right", "rear", "left", "rear left"]);
+    }
 
     #[test]
     fn left_rotor_rolls_right_and_cw_yaws_left() {

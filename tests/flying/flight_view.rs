@@ -92,9 +92,25 @@ fn a_tall_screen_has_an_artificial_horizon_the_path_and_the_share_of_the_limit()
     for wanted in ["Horizon", "▒", "Path, north up", "●", "0.49 of 1.0 m ████░░░░"] {
         assert!(screen.contains(wanted), "no `{wanted}` in\n{screen}");
     }
-    // a small screen keeps what matters more
+    // a usual terminal has them beside the parameters of the rigid body, which keep their rows
+    let names = ["mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
+    model.parameters = names
+        .map(|name| ParameterRow {
+            name,
+            unit: "kg m^2",
+            value: Some(0.0224),
+            std: Some(0.0012),
+            history: Trace::default(),
+        })
+        .to_vec();
     let small = drawn(&model, 80, 24);
-    assert!(!small.contains("Horizon") && small.contains("h hold"), "{small}");
+    let wanted = ["Horizon", "▒", "Path", "●", "takeoff done", "setpoints late by 22 ms", "h hold"];
+    for wanted in names.iter().chain(&wanted) {
+        assert!(small.contains(wanted), "no `{wanted}` in\n{small}");
+    }
+    // a narrow one keeps what matters more
+    let narrow = drawn(&model, 60, 24);
+    assert!(!narrow.contains("Horizon") && narrow.contains("h hold"), "{narrow}");
 }
 
 #[test]
@@ -128,16 +144,16 @@ fn after_the_landing_the_view_shows_the_analysis_and_then_the_answer() {
         assert!(working.contains(wanted), "no `{wanted}` in\n{working}");
     }
     view.answer = Some(
-        "Rotor rear_left is weak: its thrust and torque are 10.1 +- 0.2 % less than the others'.".into(),
+        "Motor 2 (rear left) is weak: its thrust and torque are 10.1 +- 0.2 % less than the others'.".into(),
     );
     view.stays = true;
     let done = drawn(&view, 80, 24);
-    for wanted in ["Rotor rear_left is weak", "others'.", "Enter goes on"] {
+    for wanted in ["Motor 2 (rear left) is weak", "others'.", "Enter goes on"] {
         assert!(done.contains(wanted), "no `{wanted}` in\n{done}");
     }
     assert!(!done.contains("not yet"), "{done}");
     // the answer is above all else, and is whole on a low terminal too
-    assert!(done.find("rear_left").unwrap() < done.find("4 periods").unwrap());
+    assert!(done.find("rear left").unwrap() < done.find("4 periods").unwrap());
     assert!(drawn(&view, 80, 8).contains("others'."));
     for (columns, rows) in [(1, 1), (10, 3), (300, 100)] {
         assert_eq!(drawn(&view, columns, rows).lines().count(), usize::from(rows));

@@ -215,7 +215,7 @@ fn a_weak_rotor_is_weak_in_gazebo_and_mujoco_and_left_out_elsewhere() {
     for format in [Format::Px4Sih, Format::ArdupilotSitl, Format::Rotorpy] {
         let left_out = export(&vehicle, &effects, Some(&identified), format).unwrap().left_out;
         // the motor by the autopilot's number, and what it costs by the model's own figures
-        let expected = "weak_rotor cannot be represented here: rotor front_left, motor 3, factor = 0.9; without it the \
+        let expected = "weak_rotor cannot be represented here: motor 3 (front left), factor = 0.9; without it the \
                         prediction error of the attitude grows from 0.0010 to 0.014 rad over 0.1 s, from 0.0080 to 0.33 rad \
                         over 0.5 s";
         assert!(left_out.iter().any(|note| note == expected), "{format:?}: {left_out:?}");

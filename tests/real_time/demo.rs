@@ -32,12 +32,18 @@ pub fn the_demo_names_what_it_conceals_with_its_size() {
     let improvement = &document["explanation"]["fit"]["holdout"]["improvement_percent"];
     assert!(improvement.as_f64().unwrap() > 60.0, "{improvement}");
     let report = std::fs::read_to_string(document["report"].as_str().unwrap()).unwrap();
-    assert!(report.contains("rear_left"));
+    assert!(report.contains("Motor 2 (rear left) is weak"));
     // what flies and explains was told nothing
     let told = ["vehicle.toml", "plan.toml", "limits.toml", "flight1/parameters.toml"];
     assert!(told.iter().all(|file| !std::fs::read_to_string(out.join(file)).unwrap().contains("weak")));
     // one report and one model at the root, the rigid body in an appendix
-    for file in ["report.html", "model.toml", "rigid_body/model.toml", "export/model.sdf"] {
+    for file in [
+        "report.html",
+        "model.toml",
+        "rigid_body/model.toml",
+        "export/model.sdf",
+        "export/px4-aircraft.params",
+    ] {
         assert!(out.join(file).is_file(), "{file}");
     }
     assert!(!out.join("flight1/report.html").exists() && !out.join("flight1/model.toml").exists());

@@ -314,9 +314,14 @@ pub fn parameters_of_a_file_are_set_read_back_and_undone() {
         path.display().to_string()
     };
     let wanted = file("wanted.params", "# hover\n1\t1\tMPC_THR_HOVER\t0.4321\t9\nTHR_MDL_FAC,0.5\n");
-    // shown, and nothing set without a word
+    // shown, and nothing set without a word: where nobody can agree that is an error
     let (status, seen, said) = load(&[&wanted]);
-    assert_eq!((status, &seen["set"]), (Some(0), &false.into()), "{said}");
+    assert_eq!((status, &seen["set"]), (Some(2), &false.into()), "{said}");
+    assert!(
+        said.contains("expected --yes, or a terminal at which to agree")
+            && said.contains("nothing is changed"),
+        "{said}"
+    );
     let before = seen["parameters"][0]["found"].clone();
     let (status, set, said) = load(&[&wanted, "--yes"]);
     assert_eq!(
@@ -324,7 +329,8 @@ pub fn parameters_of_a_file_are_set_read_back_and_undone() {
         (Some(0), &true.into(), &before),
         "{said}"
     );
-    let (_, again, _) = load(&[&wanted]);
+    let (status, again, _) = load(&[&wanted]);
+    assert_eq!(status, Some(0), "nothing differs");
     assert_eq!(again["parameters"][0]["found"], again["parameters"][0]["wanted"]);
     // one that the vehicle does not have: all or nothing
     let foreign = file("foreign.param", "THR_MDL_FAC,0.7\nMOT_THST_EXPO,0.7\n");

@@ -13,7 +13,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &FleetArgs) -> Result<Outco
         Some(FleetVerb::Rows(args)) => one::run(json, args),
         Some(FleetVerb::Schema) => {
             let schema = Schema::current();
-            if json { output::json(&schema) } else { output::text(&schema.markdown()) }?;
+            if json { output::json(&schema) } else { output::file_text(&schema.markdown()) }?;
             Ok(Outcome::Done)
         }
         None => making::run(json, stderr, &args.run),

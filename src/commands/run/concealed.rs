@@ -3,16 +3,13 @@
 use std::path::Path;
 
 use mavid::diagnose::Named;
-use mavid::physics::ActiveEffect;
+use mavid::physics::{ActiveEffect, WHICH_ROTOR};
 use mavid::report::with_error;
 use mavid::study::effects_file;
 use mavid::vehicle::Vehicle;
 use serde::Serialize;
 
 use crate::commands::CommandError;
-
-/// Parameter that is a number of a rotor, from 0.
-const ROTOR: &str = "rotor";
 
 /// What the file conceals in the embedded vehicle.
 pub fn acting(file: &Path, vehicle: &Vehicle) -> Result<Vec<ActiveEffect>, CommandError> {
@@ -54,9 +51,13 @@ pub fn compare(concealed: &[ActiveEffect], named: &[Named]) -> Vec<Compared> {
 
 /// The rows as a table.
 pub fn table(rows: &[Compared], vehicle: &Vehicle) -> String {
-    let mut lines = vec![format!("  {:<28} {:>12}   found", "", "concealed")];
+    let shown = |row: &Compared, value: f64| rotor(row, value, vehicle).unwrap_or_else(|| format!("{value}"));
+    let heading = "concealed";
+    let widths = rows.iter().map(|row| shown(row, row.concealed).chars().count());
+    let width = widths.fold(heading.len(), usize::max);
+    let mut lines = vec![format!("  {:<24} {heading:>width$}   found", "")];
     for row in rows {
-        let shown = |value: f64| rotor(row, value, vehicle).unwrap_or_else(|| format!("{value}"));
+        let shown = |value: f64| shown(row, value);
         let found = match (row.found, row.std) {
             (Some(found), Some(std)) if std > 0.0 => with_error(found, std),
             (Some(found), _) => shown(found),
@@ -65,15 +66,14 @@ pub fn table(rows: &[Compared], vehicle: &Vehicle) -> String {
         let name = format!("{} {}", row.effect, row.parameter);
         let unit = if row.unit == "-" { "" } else { row.unit };
         lines.push(
-            format!("  {name:<28} {:>12}   {found} {unit}", shown(row.concealed)).trim_end().to_owned(),
+            format!("  {name:<24} {:>width$}   {found} {unit}", shown(row.concealed)).trim_end().to_owned(),
         );
     }
     lines.join("\n")
 }
 
-/// A rotor by its name.
+/// A rotor by the autopilot's number and its place.
 fn rotor(row: &Compared, value: f64, vehicle: &Vehicle) -> Option<String> {
-    let mut rotors = vehicle.rotors.iter().enumerate();
-    let is_it = |index: usize| (index as f64 - value).abs() < 0.5;
-    (row.parameter == ROTOR).then(|| rotors.find(|(index, _)| is_it(*index)).map(|(_, r)| r.name.clone()))?
+    let index = vehicle.rotor_of(value).filter(|_| row.parameter == WHICH_ROTOR)?;
+    Some(vehicle.motor_words(index))
 }

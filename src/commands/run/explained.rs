@@ -10,19 +10,11 @@ use mavid::text;
 use super::context::Context;
 use super::folder::Recorded;
 use super::step::Step;
+use crate::commands::columns::columns;
 use crate::commands::fly::{self, LOG, Landed};
 use crate::commands::progress::Spinner;
 use crate::commands::words::Word;
 use crate::commands::{CommandError, explain, output};
-
-/// Columns of a terminal whose width is not known.
-const COLUMNS: usize = 80;
-
-/// Columns of lines for people.
-pub fn columns() -> usize {
-    let columns = ratatui::crossterm::terminal::size().map_or(0, |(columns, _)| usize::from(columns));
-    if columns == 0 { COLUMNS } else { columns.min(120) }
-}
 
 /// What flights say.
 #[derive(Debug)]

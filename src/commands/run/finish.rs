@@ -1,13 +1,14 @@
-//! What a run leaves beside its report and its model: the appendix, and the model for simulators.
+//! What a run leaves beside its report and its model: the appendix, and the model for simulators and for the aircraft itself.
 
 use std::path::PathBuf;
 
+use mavid::autopilot::Autopilot;
 use mavid::report::identification_text;
 use mavid::text;
 
 use super::context::Context;
 use super::step::Step;
-use crate::commands::{export, identify, output};
+use crate::commands::{CommandError, export, identify, output};
 
 /// Folder of the appendix: the rigid body alone, without effects.
 const RIGID_BODY: &str = "rigid_body";
@@ -22,6 +23,15 @@ const FORMATS: [(&str, &str); 5] = [
     ("mjcf", "model.xml"),
     ("rotorpy", "rotorpy.py"),
 ];
+
+/// The aircraft's own parameters, and their file; of the autopilots that have such a format.
+fn aircraft_format(autopilot: Autopilot) -> Option<(&'static str, &'static str)> {
+    match autopilot {
+        Autopilot::Px4 => Some(("px4-params", "px4-aircraft.params")),
+        Autopilot::ArduPilot => Some(("ardupilot-params", "ardupilot-aircraft.param")),
+        Autopilot::Other | Autopilot::Unknown => None,
+    }
+}
 
 /// The rigid body alone, into a folder of its own. That it cannot be had makes no run a failure.
 pub fn rigid_body(context: &Context<'_>, logs: &[PathBuf]) {
@@ -43,23 +53,33 @@ pub fn rigid_body(context: &Context<'_>, logs: &[PathBuf]) {
 
 /// The model for each simulator; the files. A simulator that cannot hold it is said.
 pub fn exports(context: &Context<'_>) -> Vec<String> {
-    let (folder, model) = (context.folder.of(EXPORT), context.folder.of("model.toml"));
     let mut files = Vec::new();
-    for (format, name) in FORMATS {
-        let file = folder.join(name);
-        let step = Step::of(&["export"]).word(&model).option("--to", format).option("--out", &file);
-        let make = || {
-            output::silent_folder(&folder)?;
-            context.tell(&step);
-            export::make(&step.export()?).map(|_| ())
-        };
-        match make() {
-            Ok(()) => files.push(text::path(&file)),
-            Err(error) => output::warning(&format!("not exported to {format}: {error}")),
+    for format in FORMATS {
+        match exported(context, format) {
+            Ok(file) => files.push(file),
+            Err(error) => output::warning(&format!("not exported to {}: {error}", format.0)),
         }
     }
     if !files.is_empty() {
         output::message("run an export command alone to see what its simulator cannot represent");
     }
     files
+}
+
+/// What follows from the model for the aircraft's own autopilot; the file. That nothing does is said.
+pub fn aircraft(context: &Context<'_>, autopilot: Option<Autopilot>) -> Option<String> {
+    let format = autopilot.and_then(aircraft_format)?;
+    let made = exported(context, format);
+    made.inspect_err(|error| output::message(&format!("no parameters for the aircraft: {error}"))).ok()
+}
+
+/// Writes the model in a format, into a file of this name.
+fn exported(context: &Context<'_>, (format, name): (&str, &str)) -> Result<String, CommandError> {
+    let (folder, model) = (context.folder.of(EXPORT), context.folder.of("model.toml"));
+    let file = folder.join(name);
+    let step = Step::of(&["export"]).word(&model).option("--to", format).option("--out", &file);
+    output::silent_folder(&folder)?;
+    context.tell(&step);
+    export::make(&step.export()?)?;
+    Ok(text::path(&file))
 }

@@ -20,6 +20,8 @@ pub struct Made<'a> {
     pub flights: usize,
     /// files for simulators
     pub exports: Vec<String>,
+    /// parameters for the aircraft itself
+    pub parameters: Option<String>,
     /// what was concealed and what was found, if anything was concealed
     pub concealed: Vec<Compared>,
     /// wall clock
@@ -42,6 +44,8 @@ pub struct Document<'a> {
     report: String,
     model: String,
     exports: Vec<String>,
+    /// for the aircraft itself
+    parameters: Option<String>,
     /// each step as it is typed
     commands: Vec<String>,
     concealed: Vec<Compared>,
@@ -64,6 +68,7 @@ impl<'a> Document<'a> {
             report: text::path(&context.folder.of("report.html")),
             model: text::path(&context.folder.of("model.toml")),
             exports: made.exports,
+            parameters: made.parameters,
             commands: context.steps(),
             concealed: made.concealed,
             took_s: made.took_s,
@@ -79,6 +84,7 @@ pub fn places(context: &Context<'_>, made: &Made<'_>) -> String {
     if !made.exports.is_empty() {
         lines.push(format!("simulators  {} ({} files)", place("export"), made.exports.len()));
     }
+    lines.extend(made.parameters.iter().map(|file| format!("aircraft    {file}")));
     let steps = context.steps().len();
     lines.push(format!(
         "commands    {} ({steps} steps, each of which can be repeated alone)",

@@ -16,6 +16,7 @@ use super::logging::Logging;
 use super::step::Step;
 use super::target::{Target, WARM_UP_S};
 use super::vehicle::{asked, autopilot};
+use crate::commands::columns::columns;
 use crate::commands::{CommandError, leftover, output};
 
 /// Flies the trajectory with the twin, and says how it went and what would be learnt.
@@ -69,7 +70,7 @@ pub fn rehearse(context: &Context<'_>, vehicle: &Vehicle, trajectory: &Path) -> 
         "of a vehicle that is as its file says, the flight would say: {}",
         explanation_answer(&study)
     );
-    text::wrapped(&would, explained::columns()).iter().for_each(|line| output::message(line));
+    text::wrapped(&would, columns()).iter().for_each(|line| output::message(line));
     Ok(())
 }
 

@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use mavid::autopilot::{Autopilot, Stack};
 use mavid::config::read_vehicle;
 use mavid::draft::{Draft, Given, parameters_of};
 use mavid::files::write_whole;
+use mavid::fly::PARAMETERS;
 use mavid::fly::parameters::{Parameters, requested_parameters};
 use mavid::study::{draft_from_parameters, implausible};
 use mavid::text;
@@ -135,8 +136,18 @@ pub fn asked(context: &Context<'_>, target: &mut Target, given: &Given) -> Resul
 
 /// The autopilot of the parameters in the folder.
 pub fn autopilot(context: &Context<'_>) -> Option<Autopilot> {
-    let text = std::fs::read_to_string(context.folder.parameters()).ok()?;
-    Parameters::from_toml(&text, "parameters.toml").ok().map(|parameters| parameters.autopilot)
+    autopilot_of(&context.folder.parameters())
+}
+
+/// The same; where the vehicle's file was given, that of the parameters beside a flight's log.
+pub fn autopilot_flown(context: &Context<'_>, logs: &[PathBuf]) -> Option<Autopilot> {
+    let beside = |log: &PathBuf| autopilot_of(&log.with_file_name(PARAMETERS));
+    autopilot(context).or_else(|| logs.iter().find_map(beside))
+}
+
+fn autopilot_of(path: &Path) -> Option<Autopilot> {
+    let text = std::fs::read_to_string(path).ok()?;
+    Parameters::from_toml(&text, PARAMETERS).ok().map(|parameters| parameters.autopilot)
 }
 
 fn mass(context: &Context<'_>) -> Result<f64, CommandError> {

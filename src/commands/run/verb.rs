@@ -54,13 +54,15 @@ pub fn story(
     context.stage("Model and report");
     finish::rigid_body(&context, logs);
     let exports = finish::exports(&context);
+    let parameters = finish::aircraft(&context, vehicle::autopilot_flown(&context, logs));
     // the verdict is written: only now is it read what was concealed
     let concealed = match &args.effects {
         Some(file) => compare(&acting(file, &flying_vehicle(args)?)?, &study.effects),
         None => Vec::new(),
     };
     let took_s = since.elapsed().as_secs_f64();
-    let made = Made { study, record: record.as_ref(), flights: *flights, exports, concealed, took_s };
+    let made =
+        Made { study, record: record.as_ref(), flights: *flights, exports, parameters, concealed, took_s };
     if json {
         output::json(&Document::new(&context, made))?;
     } else {

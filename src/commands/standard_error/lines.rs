@@ -1,14 +1,15 @@
 //! The lines of standard error, beside the progress bars that are drawn there.
 
 use std::fs::{File, OpenOptions};
-use std::io::{self, StderrLock, Write};
+use std::io::{self, IsTerminal, StderrLock, Write};
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::{MultiProgress, ProgressBar};
-use mavid::text;
+use mavid::text::{self, to_width};
 
 use super::color::Tone;
+use crate::commands::columns::of_terminal;
 
 /// Where lines for people go: standard error, or a file while the terminal shows a picture.
 #[derive(Debug, Default)]
@@ -18,7 +19,7 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// A line, which is clean already. Where standard error is closed there is nobody to tell.
+    /// A line, which is clean already, broken between words where a terminal is narrower. Where standard error is closed there is nobody to tell.
     pub(super) fn write(&self, line: &str) {
         self.write_in(Tone::Plain, line);
     }
@@ -28,7 +29,10 @@ impl Lines {
         match self.away().as_mut() {
             Some(away) => away.write(line),
             None => self.bars.suspend(|| {
-                let _ = writeln!(io::stderr().lock(), "{}", tone.colored(line));
+                let columns = of_terminal().filter(|_| io::stderr().is_terminal());
+                let lines = columns.map_or_else(|| vec![line.to_owned()], |columns| to_width(line, columns));
+                let lines: Vec<String> = lines.iter().map(|line| tone.colored(line)).collect();
+                let _ = writeln!(io::stderr().lock(), "{}", lines.join("\n"));
             }),
         }
     }

@@ -1,11 +1,12 @@
 //! What one effect of a model does, over the state on which it depends: recorded and by the model.
 
-use super::super::channels::AXES;
+use super::super::channels::{AXES, Nuisance};
 use super::super::fit::Fitted;
 use super::super::followed::Followed;
 use super::super::signature::{EffectTerm, Growth};
+use super::super::signatures::latency_kind;
 use super::super::trace::Trace;
-use super::states::{Bin, binned};
+use super::states::{Bin, binned, binned_over};
 use super::view::View;
 
 /// A picture of one effect: what the rest of the model leaves of one channel, over a state.
@@ -17,15 +18,18 @@ pub struct Portrait {
     pub channel: usize,
     /// the abscissa
     pub state: Followed,
-    /// N or N m: recorded less the model without this effect, in bins of the state
+    /// N or N m: recorded less the model without this effect, in bins of the state; of a latency the other way round, commanded less needed
     pub recorded: Vec<Bin>,
     /// N or N m: what the effect itself does, in the same bins
     pub model: Vec<Bin>,
 }
 
-/// The picture of an effect of a fitted model; `None` where the model does not hold it, or where it acts through the latency.
+/// The picture of an effect of a fitted model; `None` where the model does not hold it.
 #[must_use]
-pub fn portrait(traces: &[Trace], fitted: &Fitted, id: &str) -> Option<Portrait> {
+pub fn portrait(traces: &[Trace], fitted: &Fitted, id: &'static str) -> Option<Portrait> {
+    if latency_kind(id).is_some() {
+        return of_latency(traces, fitted, id);
+    }
     let mut column = 0;
     for term in &fitted.base.effects {
         if term.id() == id {
@@ -34,6 +38,40 @@ pub fn portrait(traces: &[Trace], fitted: &Fitted, id: &str) -> Option<Portrait>
         column += term.free.len();
     }
     None
+}
+
+/// What a lag or a delay does: rotors that follow late give the torque that was commanded before, so what is commanded is beyond what the
+/// motion needs by the latency times the rate of change of that. To first order, as the fit has it.
+fn of_latency(traces: &[Trace], fitted: &Fitted, id: &'static str) -> Option<Portrait> {
+    let view = View::new(traces, fitted)?;
+    let nuisances = &fitted.rows.nuisances;
+    let (place, column) =
+        nuisances.iter().enumerate().find(|(_, column)| column.nuisance == Nuisance::Latency)?;
+    let (coefficients, _) = fitted.weighted.coefficients(&fitted.rows);
+    let latency_s = fitted.base.latency.total_s();
+    // the column is what is left of the torque per second, so that the rate of change has the other sign
+    let rate = |axis: usize| -> Vec<f64> { (0..view.len()).map(|row| -column.at(axis, row)).collect() };
+    let size = |axis: &usize| {
+        let energy: f64 = (0..view.len()).map(|row| column.at(*axis, row).powi(2)).sum();
+        energy / fitted.weighted.sigma[*axis].powi(2).max(f64::MIN_POSITIVE)
+    };
+    let channel = (3..AXES).max_by(|a, b| size(a).total_cmp(&size(b)))?;
+    let rate = rate(channel);
+    if rate.iter().all(|value| *value == 0.0) {
+        return None;
+    }
+    let part: Vec<f64> = rate.iter().map(|rate| latency_s * rate).collect();
+    let by_s = latency_s + coefficients[place];
+    let recorded: Vec<f64> =
+        view.residual[channel].iter().zip(&rate).map(|(left, rate)| by_s * rate - left).collect();
+    let state = Followed::TorqueRate(channel - 3);
+    Some(Portrait {
+        id: id,
+        channel,
+        state,
+        recorded: binned_over(&view, (state, &rate), &recorded, channel),
+        model: binned_over(&view, (state, &rate), &part, channel),
+    })
 }
 
 fn of_term(traces: &[Trace], fitted: &Fitted, (term, column): (&EffectTerm, usize)) -> Option<Portrait> {

@@ -272,7 +272,17 @@ fn hats(cut: &Cut) -> Vec<(usize, f64)> {
 /// The mean of a channel in bins of a state that varies, with bands; `None` for a state that is not in the view.
 pub(super) fn binned(view: &View, state: Followed, of_channel: &[f64], channel: usize) -> Option<Vec<Bin>> {
     let (_, values) = view.states.iter().find(|(of, _)| *of == state)?;
-    Some(bins(&cut(view, state, values), of_channel, channel))
+    Some(binned_over(view, (state, values), of_channel, channel))
+}
+
+/// The same over values of a state that the view need not hold, one a row.
+pub(super) fn binned_over(
+    view: &View,
+    (state, values): (Followed, &[f64]),
+    of_channel: &[f64],
+    channel: usize,
+) -> Vec<Bin> {
+    bins(&cut(view, state, values), of_channel, channel)
 }
 
 /// Mean residual of each bin with its band.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::diagnose::{ExplainSettings, Explanation, Verdict, explain};
+use crate::diagnose::{ExplainSettings, Explanation, Trace, Verdict, by_part, explain};
 use crate::physics::effects::by_id;
 use crate::physics::{ActiveEffect, Wrench};
 use crate::signals::Signals;
@@ -152,4 +152,46 @@ fn where_torques_are_averaged_a_guessed_balance_leaves_a_weak_rotor_uncertain() 
     // the mean balance tells nothing any more, the balance over the thrust still does
     let guessed = std(&vehicle);
     assert!(guessed > 1.4 * measured, "{guessed} {measured}");
+}
+
+#[test]
+fn a_lag_is_the_slope_of_what_is_commanded_over_the_rate_of_change_of_the_torque() {
+    let (signals, vehicle) = flown(6007, |truth, _| truth.effects.push(effect("motor_lag", &[0.06])));
+    let settings = ExplainSettings::default();
+    let found = explain(std::slice::from_ref(&signals), &vehicle, &settings).unwrap();
+    assert_eq!(found.named.iter().map(|named| named.id).collect::<Vec<_>>(), ["motor_lag"]);
+    let traces = [Trace::new(&signals, &vehicle, settings.half_width_s).unwrap()];
+    let picture = portrait(&traces, &found.search.after, "motor_lag").unwrap();
+    assert!(matches!(picture.state, Followed::TorqueRate(_)) && picture.channel >= 3, "{:?}", picture.state);
+    let slope = |bins: &[Bin]| {
+        let (first, last) = (bins.first().unwrap(), bins.last().unwrap());
+        (last.mean - first.mean) / (last.center - first.center)
+    };
+    // the log's sampling is part of the latency
+    let latency_s = found.search.after.base.latency.total_s();
+    assert!((latency_s - 0.06).abs() < 0.012, "{latency_s}");
+    assert!((slope(&picture.model) - latency_s).abs() < 1e-9, "{}", slope(&picture.model));
+    assert!((slope(&picture.recorded) / latency_s - 1.0).abs() < 0.1, "{}", slope(&picture.recorded));
+    // the dots are apart from nothing by far more than from the line
+    let far = |bin: &Bin| bin.high < 0.0 || bin.low > 0.0;
+    assert!(picture.recorded.iter().filter(|bin| far(bin)).count() >= 8, "{:?}", picture.recorded);
+}
+
+#[test]
+fn a_drag_is_in_each_half_of_the_flight() {
+    let (signals, vehicle) = flown(6008, |truth, weight_n| {
+        let drag = 0.02 * weight_n;
+        truth.effects.push(effect("linear_drag", &[drag, drag, 0.0]));
+    });
+    let settings = ExplainSettings::default();
+    let found = explain(std::slice::from_ref(&signals), &vehicle, &settings).unwrap();
+    let traces = [Trace::new(&signals, &vehicle, settings.half_width_s).unwrap()];
+    let parts = by_part(&traces, &found).unwrap();
+    let drag = parts.iter().find(|of| of.id == "linear_drag").unwrap();
+    assert!(drag.parts.len() == 2 && drag.is_in_each(), "{drag:?}");
+    let whole = found.named.iter().find(|named| named.id == "linear_drag").unwrap().value(drag.parameter);
+    assert!(
+        drag.parts.iter().all(|(value, std)| (value - whole).abs() < 5.0 * std.max(0.02 * whole)),
+        "{drag:?} {whole}"
+    );
 }

@@ -42,9 +42,8 @@ pub static SIGNATURE: Signature = Signature {
         }),
         whence: |term, slot, vehicle, _| {
             (slot == ROTOR).then(|| {
-                let mut rotors = vehicle.rotors.iter().enumerate();
-                let named = rotors.find(|(index, _)| *index as f64 == term.values[ROTOR]);
-                Whence::Given(named.map_or("the likeliest", |(_, rotor)| rotor.name.as_str()).to_owned())
+                let named = vehicle.rotor_of(term.values[ROTOR]).map(|index| vehicle.motor_words(index));
+                Whence::Given(named.unwrap_or_else(|| "the likeliest".to_owned()))
             })
         },
         ..Joint::PLAIN
@@ -57,7 +56,7 @@ pub static SIGNATURE: Signature = Signature {
         Words {
             noun_of: Some(|named, vehicle| {
                 let what = if named.value("factor") < 1.0 { "weak" } else { "strong" };
-                format!("a {what} {}", rotor_name(vehicle, named.value("rotor")))
+                format!("a {what} {}", motor_words(vehicle, named.value("rotor")))
             }),
             clause: Clause::Own(clause),
             size: Size::Own(|named| {
@@ -90,16 +89,13 @@ fn is_ordinary(term: &EffectTerm, all: &[EffectTerm]) -> bool {
         || rotors().any(|other| other > 1.0) && factor > 1.0 - SCATTER
 }
 
-/// `rotor front_left`, by its number.
-fn rotor_name(vehicle: &Vehicle, number: f64) -> String {
-    let mut rotors = vehicle.rotors.iter().enumerate();
-    rotors
-        .find(|(index, _)| (*index as f64 - number).abs() < 0.5)
-        .map_or_else(|| format!("rotor {number:.0}"), |(_, rotor)| format!("rotor {}", rotor.name))
+/// `motor 3 (front left)`, by the rotor's place from 0.
+fn motor_words(vehicle: &Vehicle, number: f64) -> String {
+    vehicle.rotor_of(number).map_or_else(|| "motor".to_owned(), |index| vehicle.motor_words(index))
 }
 
 fn clause(named: &Named, vehicle: &Vehicle) -> String {
-    let name = rotor_name(vehicle, named.value("rotor"));
+    let name = motor_words(vehicle, named.value("rotor"));
     let factor = named.value("factor");
     let std = named.get("factor").map_or(0.0, |p| p.std);
     let (what, change) = if factor < 1.0 { ("weak", 1.0 - factor) } else { ("strong", factor - 1.0) };
@@ -108,5 +104,5 @@ fn clause(named: &Named, vehicle: &Vehicle) -> String {
         with_error(100.0 * change, 100.0 * std),
         if factor < 1.0 { "less" } else { "more" }
     )
-    .replacen("rotor", "Rotor", 1)
+    .replacen('m', "M", 1)
 }

@@ -34,7 +34,8 @@ pub(super) fn geometry(
 fn places(source: &mut Source<'_>, determined: &Determined<'_>) -> Vec<AircraftParameter> {
     let stds = ["x", "y"].map(|axis| determined.std("com_offset", axis));
     let [Some(std_x), Some(std_y)] = stds else { return Vec::new() };
-    let rotors: Vec<String> = source.vehicle.rotors.iter().map(|rotor| rotor.name.clone()).collect();
+    let motors: Vec<String> =
+        (0..source.vehicle.rotors.len()).map(|index| source.vehicle.motor_words(index)).collect();
     let arms = source.arms_m();
     let place = |(index, (arm, name)): (usize, (&nalgebra::Vector3<f64>, &String))| {
         let [x, y, _] = frd(arm);
@@ -43,7 +44,7 @@ fn places(source: &mut Source<'_>, determined: &Determined<'_>) -> Vec<AircraftP
             AircraftParameter::number(format!("CA_ROTOR{index}_{end}"), (value, std), "m", why.clone())
         })
     };
-    arms.iter().zip(&rotors).enumerate().flat_map(place).collect()
+    arms.iter().zip(&motors).enumerate().flat_map(place).collect()
 }
 
 fn coefficients(source: &mut Source<'_>, determined: &Determined<'_>) -> Vec<AircraftParameter> {
@@ -53,7 +54,7 @@ fn coefficients(source: &mut Source<'_>, determined: &Determined<'_>) -> Vec<Air
     let one = |(index, rotor_file): (usize, &crate::vehicle::Rotor)| {
         let is_weak = (index as f64 - rotor).abs() < 0.5;
         let name = format!("CA_ROTOR{index}_CT");
-        let why = format!("{}, relative to the others", rotor_file.name);
+        let why = format!("{}, relative to the others", rotor_file.motor_words(index));
         if is_weak {
             let why = format!(
                 "{why}: it gives {} of their thrust; repair it rather than fly with this",

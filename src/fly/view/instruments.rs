@@ -17,7 +17,8 @@ pub fn horizon((columns, rows): (usize, usize), roll_deg: f64, pitch_deg: f64) -
     let below = pitch_deg / PITCH_SPAN_DEG * (middle_y + 0.5);
     let cell = |x: usize, y: usize| {
         let (right, down) = ((x as f64 - middle_x) / ASPECT, y as f64 - middle_y);
-        if down.abs() < 0.5 && right.abs() < 2.0 {
+        // one row, also where the middle is between two
+        if (-0.5..0.5).contains(&down) && right.abs() < 2.0 {
             return if right.abs() < 0.3 { '+' } else { '-' };
         }
         // with the right side down the horizon rises to the right
@@ -73,6 +74,7 @@ mod tests {
         let level = horizon((20, 7), 0.0, 0.0);
         assert!(!level[0].contains('▒') && level[6] == "▒".repeat(20) && level[3].contains("-"), "{level:?}");
         assert!(ground(&horizon((20, 7), 0.0, 20.0)) < ground(&level));
+        assert_eq!(horizon((20, 6), 0.0, 0.0).iter().filter(|line| line.contains('+')).count(), 1);
         // right side down: more ground on the right
         let rolled = horizon((20, 7), 30.0, 0.0);
         assert!(rolled[2].ends_with('▒') && rolled[4].starts_with(' '), "{rolled:?}");

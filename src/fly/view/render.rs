@@ -7,6 +7,7 @@ use super::plain::with_error;
 use super::spark::spark;
 use crate::fly::finding::Level;
 use crate::fly::preflight::Page;
+use crate::text::to_width;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
@@ -23,8 +24,11 @@ const VALUE_COLUMNS: usize = 32;
 
 /// Rows beside the parameters' and the instruments': head, gauges, motion, frames, events and foot.
 const OTHER_ROWS: u16 = 16;
-/// Rows of the instruments: a smaller terminal is without them.
+/// Rows of the instruments below each other with the parameters: a lower terminal has them beside these.
 const INSTRUMENT_ROWS: u16 = 7;
+/// Columns of the parameters with instruments beside them, and the fewest of these.
+const BESIDE_COLUMNS: u16 = 42;
+const INSTRUMENT_COLUMNS: u16 = 30;
 /// Columns of the bar of the tracking error.
 const BAR_COLUMNS: usize = 8;
 
@@ -36,7 +40,7 @@ pub fn render(frame: &mut Frame<'_>, model: &ViewModel) {
     let rows = u16::try_from(model.parameters.len()).unwrap_or(u16::MAX).max(1);
     let spare = frame.area().height.saturating_sub(rows.saturating_add(OTHER_ROWS));
     let drawn = if spare < INSTRUMENT_ROWS { 0 } else { spare.min(2 * INSTRUMENT_ROWS) };
-    let [head, gauges, motion, instruments, parameters, events, foot] = Layout::vertical([
+    let [head, gauges, motion, instruments, below, events, foot] = Layout::vertical([
         Constraint::Length(1),
         Constraint::Length(3),
         Constraint::Length(4),
@@ -49,9 +53,18 @@ pub fn render(frame: &mut Frame<'_>, model: &ViewModel) {
     frame.render_widget(Paragraph::new(header(model)), head);
     gauge_row(frame, model, gauges);
     boxed(frame, "Motion (north, west, up)", motion_lines(model), motion);
-    if drawn > 0 {
+    let is_wide = below.width >= BESIDE_COLUMNS + INSTRUMENT_COLUMNS;
+    let parameters = if drawn > 0 {
         instrument_row(frame, model, instruments);
-    }
+        below
+    } else if is_wide {
+        let [left, right] =
+            Layout::horizontal([Constraint::Length(BESIDE_COLUMNS), Constraint::Min(0)]).areas(below);
+        instrument_row(frame, model, right);
+        left
+    } else {
+        below
+    };
     let title = format!("Parameters from {:.0} s of flight", model.parameters_used_s);
     boxed(frame, &title, parameter_lines(model, parameters.width), parameters);
     event_list(frame, model, events);
@@ -137,7 +150,9 @@ fn instrument_row(frame: &mut Frame<'_>, model: &ViewModel, area: Rect) {
     boxed(frame, "Horizon", lines(level), left);
     let path: Vec<[f64; 2]> = model.path_m.iter().copied().collect();
     let (map, width_m) = path_map(inner(right), &path);
-    boxed(frame, &format!("Path, north up, {width_m:.1} m wide"), lines(map), right);
+    let title = format!("Path, north up, {width_m:.1} m wide");
+    let fits = title.len() + 2 <= usize::from(right.width);
+    boxed(frame, &if fits { title } else { format!("Path, {width_m:.1} m") }, lines(map), right);
 }
 
 fn link_line(model: &ViewModel) -> Line<'_> {
@@ -217,20 +232,23 @@ fn parameter_line(row: &ParameterRow, room: usize) -> Line<'_> {
 fn event_list(frame: &mut Frame<'_>, model: &ViewModel, area: Rect) {
     let room = usize::from(area.height.saturating_sub(2));
     let first = model.events.len().saturating_sub(room);
-    let lines: Vec<Line<'_>> = model
+    let columns = usize::from(area.width.saturating_sub(2));
+    let mut lines: Vec<Line<'_>> = model
         .events
         .iter()
         .skip(first)
-        .map(|event| {
+        .flat_map(|event| {
             let color = match event.level {
                 Level::Ok | Level::Awaited => Color::Reset,
                 Level::Warning => Color::Yellow,
                 Level::Refusal => Color::Red,
             };
-            Line::styled(format!("{:7.1} {}", event.time_s, event.text), color)
+            let text = format!("{:7.1} {}", event.time_s, event.text);
+            to_width(&text, columns).into_iter().map(move |line| Line::styled(line, color))
         })
         .collect();
-    boxed(frame, "Events", lines, area);
+    // the newest is at the end
+    boxed(frame, "Events", lines.split_off(lines.len().saturating_sub(room)), area);
 }
 
 fn help(model: &ViewModel) -> Line<'_> {

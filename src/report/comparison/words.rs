@@ -143,7 +143,7 @@ pub(super) fn open(study: &CompareStudy, (change, why): &(Change, Undecided)) ->
 /// What a change is of.
 pub(super) fn name(study: &CompareStudy, what: Changed) -> String {
     match what {
-        Changed::Rotor(place) => format!("rotor {} ({})", place + 1, study.rotor(place)),
+        Changed::Rotor(place) => study.vehicle.motor_words(place),
         Changed::CentreOfMass(axis) => {
             format!("the centre of mass along body {}", if axis == 0 { "x" } else { "y" })
         }

@@ -251,7 +251,9 @@ fn spoken_state(variable: &str) -> String {
         "airspeed_x" | "airspeed_y" | "airspeed_z" => {
             format!("the airspeed along body {}", variable.trim_start_matches("airspeed_"))
         }
-        rotor if rotor.starts_with("rotor_") => format!("the thrust of {}", rotor.replace('_', " ")),
+        rotor if rotor.starts_with("rotor_") => {
+            format!("the thrust of motor {}", rotor.trim_start_matches("rotor_"))
+        }
         other => format!("the {}", other.replace('_', " ")),
     }
 }

@@ -3,7 +3,6 @@
 use crate::diagnose::locate::{Bin, Followed as State, Portrait};
 use crate::diagnose::{CHANNEL_NAMES, Line as HarmonicLine, called};
 use crate::report::chart::{Band, Bars, Line, POINTS, Panel, Path3, Strip, Stroke};
-use crate::report::vehicle_drawing::motor_words;
 use crate::study::{
     AxisResidual, ExplainStudy, FlownPath, Followed, Harmonics, Heat, LeftAlongTime, RecordedAndSimulated,
 };
@@ -58,6 +57,8 @@ pub(super) fn recorded_and_simulated(of: &RecordedAndSimulated, after: &str) -> 
 /// What one effect does over the state on which it depends: recorded, and by the model found.
 pub(super) fn portrait(of: &Portrait, vehicle: &Vehicle) -> Panel {
     let (axis, state) = (in_words(CHANNEL_NAMES[of.channel]), state_in_words(of.state, vehicle));
+    let is_late = matches!(of.state, State::TorqueRate(_));
+    let axis = if is_late { format!("commanded beyond needed {axis}") } else { axis };
     let xy = |bins: &[Bin]| bins.iter().map(|bin| (bin.center, bin.mean)).unzip();
     let (x, y): (Vec<f64>, Vec<f64>) = xy(&of.recorded);
     let (model_x, model_y): (Vec<f64>, Vec<f64>) = xy(&of.model);
@@ -95,10 +96,8 @@ fn state_in_words(state: State, vehicle: &Vehicle) -> String {
         State::Altitude => "height".to_owned(),
         State::Airspeed(axis) => format!("airspeed along body {}", AXIS_NAMES[axis.min(2)]),
         State::Rate(axis) => format!("rate about body {}", AXIS_NAMES[axis.min(2)]),
-        State::Rotor(place) => {
-            let motor = vehicle.rotors.get(place).map(|rotor| motor_words(rotor, place));
-            format!("thrust of {}", motor.unwrap_or_default())
-        }
+        State::Rotor(place) => format!("thrust of {}", vehicle.motor_words(place)),
+        State::TorqueRate(_) => "rate of change of the needed torque".to_owned(),
         State::YawCos => "cosine of the heading".to_owned(),
         State::YawSin => "sine of the heading".to_owned(),
         other => other.name().replace('_', " "),
@@ -146,7 +145,10 @@ pub(super) fn followed(of: &Followed) -> Panel {
         high: bins.iter().map(|bin| bin.high).collect(),
         colour,
     };
-    let state = spoken(&of.state);
+    let state = match of.state.strip_prefix("rotor_") {
+        Some(number) => format!("thrust of motor {number}"),
+        None => spoken(&of.state),
+    };
     let after = of.after.as_deref();
     Panel {
         title: format!("residual of {} over {state}", spoken(of.axis)),

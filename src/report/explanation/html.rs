@@ -3,7 +3,7 @@
 use super::along::along_section;
 use super::answer::answer;
 use super::hold_out::{hold_out, hold_out_details};
-use super::motor::motor;
+use super::motor::{motor, sizes};
 use super::pictures;
 use super::text::{after, scale, unseen};
 use crate::diagnose::holdout::RateLaw;
@@ -115,14 +115,10 @@ fn traces(study: &ExplainStudy) -> Markup {
     let percent =
         |of: Option<f64>| number(of.map_or_else(|| "-".to_owned(), |of| significant(100.0 * of, 2)));
     let row = |of: &Slight| {
-        let sizes = of.effect.parameters.iter().map(|p| {
-            let size = with_error(p.value, p.std);
-            format!("{} {size} {}", p.name, spoken(p.unit)).trim_end().to_owned()
-        });
         let materiality = of.materiality.as_ref();
         vec![
             text(called(of.effect.id)),
-            text(sizes.collect::<Vec<_>>().join(", ")),
+            text(sizes(study, &of.effect)),
             number(format!("{:.1}", of.effect.strength.z)),
             percent(materiality.map(|of| of.force)),
             percent(materiality.map(|of| of.torque)),

@@ -2,9 +2,10 @@
 
 use super::along::AlongValue;
 use super::answer::answer;
+use super::effect_json::{EffectValue, TraceValue, effect_values, trace};
 use super::fit_json::{FitValues, fit_values};
 use super::turning_json::TurningValue;
-use crate::diagnose::{Along, CHANNEL_NAMES, Materiality, Named, NamedParameter, Slight};
+use crate::diagnose::{Along, CHANNEL_NAMES};
 use crate::note::Note;
 use crate::report::thrust_source::thrust_name;
 use crate::report::value::{Thrust, thrust};
@@ -44,48 +45,6 @@ pub struct ExplanationDocument {
     #[serde(skip_serializing_if = "Option::is_none")]
     flights_together: Option<AlongValue>,
     warnings: Vec<String>,
-}
-
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-struct EffectValue {
-    id: &'static str,
-    sentence: String,
-    parameters: Vec<ParameterOf>,
-    evidence: EvidenceValue,
-    confusable_with: Vec<&'static str>,
-    /// their distance in this flight, standard deviations
-    distinguishability: BTreeMap<&'static str, Option<f64>>,
-}
-
-/// Certain, and too small to matter.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-struct TraceValue {
-    id: &'static str,
-    parameters: Vec<ParameterOf>,
-    z: f64,
-    /// of its own part, root mean square
-    #[serde(skip_serializing_if = "Option::is_none")]
-    of_weight_percent: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    of_torque_percent: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    of_misfit_percent: Option<f64>,
-}
-
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-struct ParameterOf {
-    name: &'static str,
-    value: f64,
-    std: f64,
-    unit: &'static str,
-}
-
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-struct EvidenceValue {
-    z: f64,
-    gain_percent: f64,
-    delta_bic: f64,
-    p_value: f64,
 }
 
 /// A term without a mechanism: linear between the knots, zero outside.
@@ -196,7 +155,7 @@ impl ExplanationDocument {
             verdict: study.verdict().name(),
             answer: answer(study),
             effects: effect_values(study, &study.effects),
-            traces: study.explanation.slight.iter().map(TraceValue::from).collect(),
+            traces: study.explanation.slight.iter().map(|slight| trace(study, slight)).collect(),
             closest: effect_values(study, &study.closest),
             empirical: empirical(study),
             turning: TurningValue::of(study),
@@ -224,49 +183,6 @@ impl ExplanationDocument {
             flights_together: study.along.as_ref().map(AlongValue::new),
             warnings: study.notes.iter().map(Note::sentence).collect(),
         }
-    }
-}
-
-fn effect_values(study: &ExplainStudy, effects: &[Named]) -> Vec<EffectValue> {
-    effects
-        .iter()
-        .map(|effect| EffectValue {
-            id: effect.id,
-            sentence: format!("{}.", crate::diagnose::clause(effect, study.vehicle())),
-            parameters: effect.parameters.iter().map(ParameterOf::from).collect(),
-            evidence: EvidenceValue {
-                z: effect.strength.z,
-                gain_percent: 100.0 * effect.strength.gain,
-                delta_bic: study.delta_bic(effect),
-                p_value: study.p_value(effect),
-            },
-            confusable_with: effect.confusable_with.iter().map(|other| other.id).collect(),
-            distinguishability: effect
-                .confusable_with
-                .iter()
-                .map(|other| (other.id, other.distinguishability))
-                .collect(),
-        })
-        .collect()
-}
-
-impl From<&Slight> for TraceValue {
-    fn from(slight: &Slight) -> Self {
-        let percent = |of: fn(&Materiality) -> f64| slight.materiality.as_ref().map(|m| 100.0 * of(m));
-        Self {
-            id: slight.effect.id,
-            parameters: slight.effect.parameters.iter().map(ParameterOf::from).collect(),
-            z: slight.effect.strength.z,
-            of_weight_percent: percent(|of| of.force),
-            of_torque_percent: percent(|of| of.torque),
-            of_misfit_percent: percent(|of| of.misfit),
-        }
-    }
-}
-
-impl From<&NamedParameter> for ParameterOf {
-    fn from(&NamedParameter { name, value, std, unit }: &NamedParameter) -> Self {
-        Self { name, value, std, unit }
     }
 }
 

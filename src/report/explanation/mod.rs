@@ -2,6 +2,7 @@
 
 mod along;
 mod answer;
+mod effect_json;
 mod figures;
 mod fit_json;
 mod hold_out;

@@ -16,7 +16,7 @@ use std::fmt::Write;
 /// [`ConfigError`] where a value has no form in TOML.
 pub fn explained_model(study: &ExplainStudy) -> Result<String, ConfigError> {
     let mut text = vehicle_to_toml(study.vehicle())?;
-    text.push_str(&effect_tables(&study.effects_of_model()));
+    text.push_str(&effect_tables(&study.effects_of_model(), study.vehicle()));
     identified(&mut text, study);
     provenance(&mut text, study);
     Ok(text)

@@ -1,9 +1,11 @@
 //! The sections of the report that hold pictures: what shows the name, and where the models miss.
 
 use super::figures;
+use crate::diagnose::locate::{Followed, Portrait};
 use crate::report::chart::inline;
 use crate::report::html::{figure, note, section};
-use crate::report::vehicle_drawing::{MEANT, Mark, motor_words, vehicle_drawing};
+use crate::report::number::significant;
+use crate::report::vehicle_drawing::{MEANT, Mark, vehicle_drawing};
 use crate::study::{ExplainStudy, Figures};
 use maud::{Markup, html};
 
@@ -18,7 +20,7 @@ const PORTRAIT: &str = "Dots: recorded, less everything else of the model, mean 
 /// The picture that shows the answer, with the vehicle beside it.
 pub(super) fn proof(study: &ExplainStudy, numbers: &Figures) -> Markup {
     let picture = if let Some(of) = &numbers.portrait {
-        figure(&inline(&figures::portrait(of, study.vehicle())), PORTRAIT)
+        figure(&inline(&figures::portrait(of, study.vehicle())), &portrait_caption(study, of))
     } else if let Some(of) = numbers.followed.as_ref().filter(|_| study.effects.is_empty()) {
         figure(
             &inline(&figures::followed(of)),
@@ -36,11 +38,23 @@ pub(super) fn proof(study: &ExplainStudy, numbers: &Figures) -> Markup {
     section("What shows it", &content)
 }
 
+fn portrait_caption(study: &ExplainStudy, of: &Portrait) -> String {
+    let Followed::TorqueRate(_) = of.state else { return PORTRAIT.to_owned() };
+    let parts = study.latency().parts;
+    let ms = |time_s: f64| significant(1e3 * time_s, 3);
+    format!(
+        "Rotors that follow late give the torque that was commanded before. So what the commands give is beyond what the motion needs by          the latency times the rate of change of the torque: the slope of the line, {} ms (delay {} ms, lag {} ms). Dots: recorded, less          everything else of the model, mean in bins with 95 % bands of a bootstrap over the flight's periods. Without a latency the dots          would lie at zero.",
+        ms(parts.total_s()),
+        ms(parts.delay_s),
+        ms(parts.lag_s)
+    )
+}
+
 /// The vehicle with the motor that a name is about; `None` where there is no such name.
 fn vehicle(study: &ExplainStudy) -> Option<Markup> {
     let rotors = &study.vehicle().rotors;
     let meant: Vec<usize> = study.effects.iter().filter_map(|named| study.motor_of(named)).collect();
-    let words: Vec<String> = meant.iter().map(|&place| motor_words(&rotors[place], place)).collect();
+    let words: Vec<String> = meant.iter().map(|&place| study.vehicle().motor_words(place)).collect();
     let label = format!("the vehicle from above: {} is meant", words.join("; "));
     let mark = |place: usize| {
         meant.contains(&place).then(|| Mark {

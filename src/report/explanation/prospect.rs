@@ -1,7 +1,8 @@
 //! What a further flight would bring, in one sentence.
 
-use crate::diagnose::called;
 use crate::diagnose::experiment::{NextFlight, Pair};
+use crate::diagnose::{ByPart, called};
+use crate::report::number::{spoken, with_error};
 use crate::study::ExplainStudy;
 use crate::text::capital;
 
@@ -14,7 +15,14 @@ pub fn next_flight_words(study: &ExplainStudy) -> Option<String> {
         return Some(capital(&format!("{names}no further flight is needed.")));
     }
     Some(match next {
-        Ok(next) => format!("{}{}", known(study), brought(next)),
+        Ok(next) => format!("{}{}{}", known(study), unsettled(study), brought(next)),
+        Err(_) if study.unsettled().next().is_some() => {
+            format!(
+                "{}{}A further flight would show whether it is there again.",
+                known(study),
+                unsettled(study)
+            )
+        }
         Err(why) => format!("{}A further flight would not tell more: {why}.", known(study)),
     })
 }
@@ -28,6 +36,22 @@ fn known(study: &ExplainStudy) -> String {
     };
     let all: Vec<String> = study.effects.iter().filter_map(one).collect();
     if all.is_empty() { String::new() } else { format!("{}. ", capital(&all.join(", "))) }
+}
+
+/// A sentence on each name that not every part shows.
+fn unsettled(study: &ExplainStudy) -> String {
+    let of_parts =
+        if study.given.inputs.len() > 1 { "one flight after the other gives" } else { "its halves give" };
+    let one = |of: &ByPart| {
+        let parts: Vec<String> = of.parts.iter().map(|(value, std)| with_error(*value, *std)).collect();
+        format!(
+            "{} is not certain: {of_parts} {} {}. ",
+            capital(called(of.id)),
+            parts.join(" and "),
+            spoken(of.unit)
+        )
+    };
+    study.unsettled().map(one).collect()
 }
 
 /// What the designed flight separates.

@@ -2,10 +2,10 @@
 
 use super::along::along_lines;
 use super::answer::answer;
-use super::motor::motor;
+use super::motor::{motor, sizes};
 use crate::diagnose::{NO_LATENCY, Named, Verdict, called, clause};
 use crate::estimate::{Finding, ThrustScale};
-use crate::report::number::{chance, percent, significant, spoken, with_error};
+use crate::report::number::{chance, percent, significant, with_error};
 use crate::report::thrust_source::thrust_name;
 use crate::study::{AxisFit, BodyParameter, ExplainStudy, Predicted, QUANTITIES};
 use std::fmt::Write;
@@ -43,12 +43,8 @@ fn trace_lines(page: &mut String, study: &ExplainStudy) {
         return;
     }
     page.push_str("\n  certain, but too small to matter\n");
-    for Named { id, parameters, .. } in slight.iter().map(|of| &of.effect) {
-        let sizes = parameters.iter().map(|p| {
-            let size = format!("{} {} {}", p.name, with_error(p.value, p.std), spoken(p.unit));
-            size.trim_end().to_owned()
-        });
-        let _ = writeln!(page, "    {id:<16} {}", sizes.collect::<Vec<_>>().join(", "));
+    for effect in slight.iter().map(|of| &of.effect) {
+        let _ = writeln!(page, "    {:<16} {}", effect.id, sizes(study, effect));
     }
 }
 
@@ -95,7 +91,10 @@ fn located_lines(page: &mut String, study: &ExplainStudy) {
             .state
             .iter()
             .take(4)
-            .map(|state| format!("{} with {} {:.0} %", state.axis, state.variable, state.share_percent))
+            .map(|state| {
+                let variable = state.variable.replace("rotor_", "motor_");
+                format!("{} with {variable} {:.0} %", state.axis, state.share_percent)
+            })
             .collect();
         let _ = writeln!(page, "  following: {}", state.join(", "));
     }

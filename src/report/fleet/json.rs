@@ -39,6 +39,8 @@ struct VehicleEntry {
 #[derive(Debug, Clone, Serialize)]
 struct RotorEntry {
     name: String,
+    /// by the autopilot's number, from 1
+    motor: usize,
     thrust_per_command: Vec<(f64, f64)>,
 }
 
@@ -84,6 +86,7 @@ fn vehicle(of: &ReportedVehicle) -> VehicleEntry {
     let study = &of.history.study;
     let rotor = |(place, track): (usize, &Vec<(f64, f64)>)| RotorEntry {
         name: study.rotor(place).to_owned(),
+        motor: place + 1,
         thrust_per_command: track.clone(),
     };
     VehicleEntry {

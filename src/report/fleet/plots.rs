@@ -18,7 +18,7 @@ pub(super) fn plots(vehicle: &ReportedVehicle) -> Vec<Markup> {
     let mut charts = Vec::new();
     if !vehicle.rotors.is_empty() {
         let of = |(place, track): (usize, &Vec<(f64, f64)>)| Along {
-            label: study.rotor(place).to_owned(),
+            label: study.vehicle.motor_words(place),
             values: track.iter().map(|value| Some(*value)).collect(),
         };
         let lines: Vec<Along> = vehicle.rotors.iter().enumerate().map(of).collect();

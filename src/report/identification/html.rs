@@ -3,8 +3,9 @@
 use super::model::history_charts;
 use super::words::verdict;
 use crate::diagnose::called;
-use crate::diagnose::joint::{EffectFound, Found};
+use crate::diagnose::joint::{EffectFound, Found, ParameterFound};
 use crate::estimate::{Finding, NAMES, theta_of};
+use crate::physics::WHICH_ROTOR;
 use crate::report::chart::{Line, POINTS, Panel, inline};
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::{significant, spoken, with_error};
@@ -146,7 +147,7 @@ fn effect(of: &EffectFound) -> Markup {
         .parameters
         .iter()
         .map(|parameter| {
-            let (value, why) = found(&parameter.found);
+            let (value, why) = found(parameter);
             vec![text(parameter.name), number(value), text(spoken(parameter.unit)), text(why)]
         })
         .collect();
@@ -304,8 +305,9 @@ fn said(finding: &Finding) -> (String, String) {
     }
 }
 
-fn found(found: &Found) -> (String, String) {
-    match found {
+fn found(parameter: &ParameterFound) -> (String, String) {
+    match &parameter.found {
+        Found::Given { why, .. } if parameter.name == WHICH_ROTOR => (why.clone(), String::new()),
         Found::Determined { value, std } => (with_error(*value, *std), String::new()),
         Found::AtBound { value, unbounded, std } => (
             significant(*value, 4),

@@ -50,7 +50,7 @@ pub fn identified_model(study: &IdentifyStudy) -> Result<String, ConfigError> {
 fn model_with(study: &IdentifyStudy, with: &WithEffects) -> Result<String, ConfigError> {
     let joint = &with.joint;
     let mut text = vehicle_to_toml(&joint.vehicle)?;
-    text.push_str(&effect_tables(&joint.acting));
+    text.push_str(&effect_tables(&joint.acting, &joint.vehicle));
     let ids: Vec<&str> = joint.effects.iter().map(|effect| effect.effect.id()).collect();
     let _ = writeln!(text, "\n[identified]\nmethod = \"WEAK\"\nwith = {ids:?}");
     let _ = writeln!(text, "# what the flight did not determine keeps its nominal value in [body]");

@@ -3,6 +3,7 @@
 use crate::diagnose::NO_LATENCY;
 use crate::diagnose::joint::{EffectFound, Found, JointEstimate, ParameterFound};
 use crate::estimate::{Finding, Parameter, theta_of};
+use crate::physics::WHICH_ROTOR;
 use crate::study::{IdentifyStudy, Misfit, WithEffects};
 use std::fmt::Write;
 
@@ -115,6 +116,8 @@ fn effect_line(effect: &EffectFound, parameter: &ParameterFound) -> String {
                 beyond(parameter, *unbounded, *std)
             )
         }
+        // the motor in words says more than its place from 0
+        Found::Given { why, .. } if parameter.name == WHICH_ROTOR => format!("{name:<34} {why}"),
         Found::Given { value, why } => {
             format!("{name:<34}{:>13}{:>13}  {unit}; {why}", number(*value), "(set)")
         }

@@ -10,8 +10,7 @@ impl ExplainStudy {
     pub fn motor_of(&self, named: &Named) -> Option<usize> {
         let signature = signature_of(named.id)?;
         let name = signature.effect.parameters().get(signature.role.which?)?.name;
-        let number = named.get(name)?.value;
-        (0..self.vehicle().rotors.len()).find(|&rotor| (rotor as f64 - number).abs() < 0.5)
+        self.vehicle().rotor_of(named.get(name)?.value)
     }
 
     /// The name of the parameter that says which motor an effect is about.

@@ -1,7 +1,8 @@
 //! Whether an explanation is certain, and how well its sizes are known.
 
 use super::result::ExplainStudy;
-use crate::diagnose::{Named, Verdict};
+use crate::diagnose::{ByPart, Named, Verdict, by_part};
+use crate::note::{About, Note};
 
 impl ExplainStudy {
     /// No further flight is needed: nothing is left over, and no name could be another one's.
@@ -13,6 +14,23 @@ impl ExplainStudy {
             && self.doubts().is_empty()
             && self.other_vehicle().is_none()
             && self.effects.iter().all(|effect| effect.confusable_with.is_empty())
+            && self.unsettled().next().is_none()
+    }
+
+    /// Named effects that not each part of the flights shows by itself.
+    pub fn unsettled(&self) -> impl Iterator<Item = &ByPart> {
+        self.by_part.iter().filter(|of| !of.is_in_each())
+    }
+
+    /// Fits the named effects to each part of the flights.
+    pub(super) fn tell_by_part(&mut self) {
+        match by_part(&self.traces, &self.explanation) {
+            Ok(found) => self.by_part = found,
+            Err(error) => {
+                let text = format!("whether each part of the flights shows the names: {error}");
+                self.notes.push(Note::warning(About::Estimate, text));
+            }
+        }
     }
 
     /// Relative standard error (-) of the size of an effect: of its best known parameter with a unit. `None` where no

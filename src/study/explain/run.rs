@@ -99,6 +99,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     study.traces = traces.collect();
     study.drafted = draft;
     if request.design_next {
+        study.tell_by_part();
         progress.stage(Stage::Designing);
         let inside = Vehicle { limits: next_limits.unwrap_or(vehicle.limits), ..vehicle.clone() };
         let settings = NextSettings::default();
@@ -159,6 +160,7 @@ impl Task<'_> {
         (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
     ) -> ExplainStudy {
         let mut study = ExplainStudy::new(given, explanation);
+        study.keep_stated_moments(flights);
         study.notes.extend_from_slice(self.notes);
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
