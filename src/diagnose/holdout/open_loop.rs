@@ -12,7 +12,7 @@ use crate::compare::{
 };
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
-use crate::physics::{ActiveEffect, Model, PhysicsError, RotorLag};
+use crate::physics::{ActiveEffect, Model, PhysicsError};
 use rayon::prelude::*;
 
 /// Time from one window's start to the next one's, s. Motions that repeat must not always be met at the same place.
@@ -110,7 +110,7 @@ pub(super) fn predicting(base: &Base, rate_law: Option<RateLaw>) -> Result<Model
 fn path_of<'a>(ready: &'a Ready) -> Result<Path<'a>, HoldoutError> {
     let (_, base) = ready.pair.predicting();
     let (model, signals) = (model_of(base)?, ready.flight.signals);
-    let torques_nm = torques_along((&model, &base.vehicle), signals, &playback_of(HALF_S, &[base]))
+    let torques_nm = torques_along((&model, &base.vehicle), signals, &playback_of(HALF_S))
         .map_err(|source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source })?;
     Ok(Path { signals, torques_nm, body: model.body })
 }
@@ -121,20 +121,9 @@ pub(super) fn rate_law(ready: &[Ready]) -> Result<Option<RateLaw>, HoldoutError>
     Ok(RateLaw::fit(&paths, (HALF_S, STRIDE_S)))
 }
 
-/// Longest step of a prediction, s. A Runge-Kutta step of the fourth order that is so long follows a motion of 5 Hz to 1e-4 of its
-/// phase, and a motor with a lag of 20 ms to 4e-4 of its answer: (w h)^4 / 120, and the rest of the exponential's series.
-const STEP_S: f64 = 0.01;
-/// The same for rotors whose lag is shorter than two such steps.
-const SHORT_STEP_S: f64 = 0.004;
-
-/// Playback over windows of this length, s, of models of these bases.
-pub(super) fn playback_of(window_s: f64, bases: &[&Base]) -> PlaybackSettings {
-    let is_fast = |base: &&Base| {
-        let RotorLag { rising_s, falling_s } = base.latency.rotor_lag();
-        base.latency.lag_s > 0.0 && rising_s.min(falling_s) < 2.0 * STEP_S
-    };
-    let step_s = if bases.iter().any(is_fast) { SHORT_STEP_S } else { STEP_S };
-    PlaybackSettings { window_s, stride_s: STRIDE_S, step_s, ..PlaybackSettings::default() }
+/// Playback over windows of this length, s. Grids are seldom faster than 4 ms: one step an instant.
+pub(super) fn playback_of(window_s: f64) -> PlaybackSettings {
+    PlaybackSettings { window_s, stride_s: STRIDE_S, step_s: 0.004, ..PlaybackSettings::default() }
 }
 
 /// One flight's windows, as predicted by each.
@@ -162,14 +151,13 @@ fn by_length(
     empirical: Option<&Empirical>,
     seed: u64,
 ) -> Result<Vec<Played>, CompareError> {
-    let signals = ready.flight.signals;
-    let (base_before, base_after) = ready.pair.predicting();
-    let playback = playback_of(HALF_S, &[base_before, base_after, &ready.pair.after]);
+    let (signals, playback) = (ready.flight.signals, playback_of(HALF_S));
     let run = |model: &Model, base: &Base, empirical: Option<&Empirical>, floor: Option<FloorNoise>| {
         let push = empirical.map(Empirical::push);
         let push = push.as_ref().map(|push| push as crate::simulate::Push);
         playback_lengths((model, &base.vehicle), push, signals, (&playback, &WINDOWS_S), floor)
     };
+    let (base_before, base_after) = ready.pair.predicting();
     let noise = FloorNoise { state: &models.noise, commands: models.commands.as_ref(), seed };
     let own = std::ptr::eq(base_after, &ready.pair.after);
     let (before, (after, other)) = rayon::join(
@@ -186,7 +174,7 @@ fn by_length(
     }
     let each = WINDOWS_S.iter().zip(before).zip(after);
     each.map(|((&window_s, before), after)| {
-        let unchanged = unchanged_windows(signals, &playback_of(window_s, &[]))?;
+        let unchanged = unchanged_windows(signals, &playback_of(window_s))?;
         Ok(Played { unchanged, before: before.windows, after: after.windows, noise: after.floor })
     })
     .collect()

@@ -61,7 +61,7 @@ fn errors_without(ready: &[Ready], terms: &[&str]) -> Result<Vec<WindowError>, H
     for of in ready {
         let base = left_out(of.pair.predicting().1, terms);
         let model = predicting(&base, of.pair.rate_law)?;
-        let settings = playback_of(WINDOWS_S[0], &[&base]);
+        let settings = playback_of(WINDOWS_S[0]);
         let played =
             playback_lengths((&model, &base.vehicle), None, of.flight.signals, (&settings, &WINDOWS_S), None)
                 .map_err(|source| HoldoutError::Compare { flight: of.flight.name.to_owned(), source })?;
