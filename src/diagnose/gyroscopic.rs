@@ -76,7 +76,6 @@ impl Fitted {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
-    use super::*;
     use crate::diagnose::{ExplainSettings, Explanation, explain};
     use crate::signals::{ConditionSettings, condition};
     use crate::simulate::{

@@ -52,7 +52,7 @@ impl TorqueLaw {
 const ABOUT_Z: usize = 6;
 /// An exponent nearer to one than this is ordinary: the ratio of torque and thrust changes by a tenth with Reynolds number over the range of
 /// a rotor.
-const ORDINARY: f64 = 0.25;
+const ORDINARY: f64 = 0.2;
 /// Added to the least number of standard errors of a name: no name is expected of it, and it must not be said of a vehicle without
 /// reason.
 const EXTRA_Z: f64 = 1.0;
