@@ -113,7 +113,7 @@ mod tests {
     fn colours_take_no_columns() {
         let line = "  \u{1b}[1m--room\u{1b}[0m the free room in metres";
         assert_eq!(to_width(line, 32), [line]);
-        assert_eq!(to_width(line, 24), ["  \u{1b}[1m--room\u{1b}[0m the free", "    room in metres"]);
+        assert_eq!(to_width(line, 24), ["  \u{1b}[1m--room\u{1b}[0m the free room", "    in metres"]);
     }
 
     #[test]
