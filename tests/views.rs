@@ -8,6 +8,7 @@
 use std::path::PathBuf;
 
 use mavid::config::read_vehicle;
+use mavid::diagnose::locate::Bin;
 use mavid::inspect::inspect;
 use mavid::log::OpenOptions;
 use mavid::report::{
@@ -127,4 +128,32 @@ fn an_inspection() {
     let name = log.to_str().unwrap();
     insta::assert_snapshot!("inspection_text", inspection_text(name, &inspection));
     insta::assert_snapshot!("inspection_json", outlined(&InspectionDocument::new(name, &inspection)));
+}
+
+/// The picture that leads the report of a lag: not the noise along time, but a line whose slope is the latency.
+#[test]
+fn a_lag_is_the_slope_of_what_is_commanded_over_the_rate_of_change_of_the_torque() {
+    let request = ExplainRequest {
+        logs: vec![fixture("p04_identify_10_22s.tlog")],
+        vehicle: fixture("p04_vehicle.toml").into(),
+        transient_s: ExplainRequest::TRANSIENT_S,
+        ..ExplainRequest::default()
+    };
+    let study = explain(&request, &Silent).unwrap();
+    assert_eq!(study.effects.iter().map(|effect| effect.id).collect::<Vec<_>>(), ["motor_lag"]);
+    let picture = study.figures().portrait.unwrap();
+    assert!(picture.id == "motor_lag" && (3..6).contains(&picture.channel), "{picture:?}");
+    let slope = |bins: &[Bin]| {
+        let (first, last) = (bins.first().unwrap(), bins.last().unwrap());
+        (last.mean - first.mean) / (last.center - first.center)
+    };
+    let latency_s = study.latency().parts.total_s();
+    assert!((0.05..0.09).contains(&latency_s), "{latency_s}");
+    assert!((slope(&picture.model) / latency_s - 1.0).abs() < 1e-6, "{}", slope(&picture.model));
+    assert!((slope(&picture.recorded) / latency_s - 1.0).abs() < 0.15, "{picture:?}");
+    // most of what was recorded is away from nothing by more than its band
+    let is_away = |bin: &&Bin| bin.high < 0.0 || bin.low > 0.0;
+    assert!(picture.recorded.iter().filter(is_away).count() >= 7, "{picture:?}");
+    let page = explanation_html(&study);
+    assert!(page.contains("beyond the needed") && page.contains("the slope of the line"), "no such picture");
 }

@@ -37,5 +37,5 @@ pub use recording::{
     ExplainArgs, IdentifyArgs, InspectArgs, PageFormat, ProveArgs, RedactArgs, ValidateArgs,
 };
 pub use run::RunArgs;
-pub use verb::{Cli, Verb};
+pub use verb::{Cli, Verb, color_of};
 pub use verbosity::Verbosity;

@@ -164,7 +164,7 @@ impl Cli {
 }
 
 /// What `--color` says, before anything else is parsed.
-fn color_of(arguments: &[OsString]) -> ColorChoice {
+pub fn color_of(arguments: &[OsString]) -> ColorChoice {
     let words = || arguments.iter().filter_map(|argument| argument.to_str());
     let behind =
         words().zip(words().skip(1)).find(|(option, _)| *option == "--color").map(|(_, choice)| choice);

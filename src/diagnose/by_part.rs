@@ -31,7 +31,7 @@ impl ByPart {
     /// Each part shows it by itself, in the same direction.
     #[must_use]
     pub fn is_in_each(&self) -> bool {
-        let away = |(value, std): &(f64, f64)| (value - self.nothing) / std.max(f64::MIN_POSITIVE);
+        let away = |(value, std): &(f64, f64)| if *std > 0.0 { (value - self.nothing) / std } else { 0.0 };
         let by = |sign: f64| self.parts.iter().all(|part| sign * away(part) >= SHOWN);
         by(1.0) || by(-1.0)
     }

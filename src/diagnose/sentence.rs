@@ -150,6 +150,9 @@ mod tests {
             assert_ne!(called(effect.id()), effect.id());
         }
         let rotor = clause(&named("weak_rotor", &[("rotor", 1.0, 0.0), ("factor", 0.97, 0.001)]), &vehicle);
-        assert!(rotor.starts_with("Rotor ") && rotor.contains("3.00 +- 0.10 % less"), "{rotor}");
+        assert!(
+            rotor.starts_with("Motor 2 (rear left) is weak") && rotor.contains("3.00 +- 0.10 % less"),
+            "{rotor}"
+        );
     }
 }

@@ -31,13 +31,39 @@ const PROMPT: &str = "$ ";
 /// At the end of each line of a command but its last: a shell then takes the next line with it.
 const GOES_ON: &str = " \\";
 
+/// Bytes of each letter and its columns: sequences that set a colour take none.
+fn letters(text: &str) -> impl Iterator<Item = (usize, usize)> {
+    let mut in_sequence = false;
+    text.char_indices().map(move |(at, letter)| {
+        in_sequence |= letter == '\u{1b}';
+        let columns = usize::from(!in_sequence);
+        in_sequence &= letter != 'm';
+        (at, columns)
+    })
+}
+
+/// Columns that a terminal takes for a text.
+fn columns_of(text: &str) -> usize {
+    letters(text).map(|(_, columns)| columns).sum()
+}
+
+/// Bytes of the beginning of a text that takes so many columns.
+fn beginning(text: &str, columns: usize) -> usize {
+    let mut taken = 0;
+    let behind = letters(text).find(|(_, own)| {
+        taken += own;
+        taken > columns
+    });
+    behind.map_or(text.len(), |(at, _)| at)
+}
+
 /// A line as it was written, in lines of at most so many columns: broken between words, those after the first moved in by two more than
 /// the line itself. A command after `$ ` still is one when it is copied. A word that is longer than a line stays whole.
 #[must_use]
 pub fn to_width(line: &str, columns: usize) -> Vec<String> {
     let columns = columns.max(20);
     let text = line.trim_end();
-    if text.chars().count() <= columns {
+    if columns_of(text) <= columns {
         return vec![line.to_owned()];
     }
     let indent: String = text.chars().take_while(|letter| *letter == ' ').chain(INDENT.chars()).collect();
@@ -45,10 +71,10 @@ pub fn to_width(line: &str, columns: usize) -> Vec<String> {
     let room = columns - end.len();
     let mut lines = Vec::new();
     let mut rest = text.to_owned();
-    while rest.chars().count() > columns {
+    while columns_of(&rest) > columns {
         let first = rest.len() - rest.trim_start().len();
         // the last space within the line, else the first one behind it
-        let fits = rest.char_indices().nth(room + 1).map_or(rest.len(), |(at, _)| at);
+        let fits = beginning(&rest, room + 1).max(first);
         let within = rest[first..fits].rfind(' ').map(|at| first + at);
         let Some(at) = within.or_else(|| rest[fits..].find(' ').map(|at| fits + at)) else { break };
         lines.push(format!("{}{end}", rest[..at].trim_end()));
@@ -81,6 +107,13 @@ mod tests {
         );
         assert_eq!(to_width(&path, 30), [path]);
         assert_eq!(to_width("ä ö ü é è ê ñ õ ã ç ß ø", 20), ["ä ö ü é è ê ñ õ ã ç", "  ß ø"]);
+    }
+
+    #[test]
+    fn colours_take_no_columns() {
+        let line = "  \u{1b}[1m--room\u{1b}[0m the free room in metres";
+        assert_eq!(to_width(line, 32), [line]);
+        assert_eq!(to_width(line, 24), ["  \u{1b}[1m--room\u{1b}[0m the free room", "    in metres"]);
     }
 
     #[test]

@@ -30,10 +30,15 @@ impl Tone {
 
 /// Settles it for messages and for the view of a flight: as `--color` says, and else on a terminal that may have colours.
 pub(super) fn settle(choice: ColorChoice) -> bool {
-    let [no_color, term] = ["NO_COLOR", "TERM"].map(std::env::var_os);
-    let has_colors = has_colors(choice, io::stderr().is_terminal(), no_color.as_deref(), term.as_deref());
+    let has_colors = help_has_colors(choice, io::stderr().is_terminal());
     force_color_output(has_colors);
     has_colors
+}
+
+/// The same for help, which goes to standard output or, after a mistake, to standard error: `is_terminal` says of which.
+pub fn help_has_colors(choice: ColorChoice, is_terminal: bool) -> bool {
+    let [no_color, term] = ["NO_COLOR", "TERM"].map(std::env::var_os);
+    has_colors(choice, is_terminal, no_color.as_deref(), term.as_deref())
 }
 
 fn has_colors(

@@ -12,6 +12,7 @@ mod lines;
 mod target;
 mod teller;
 
+pub use color::help_has_colors;
 pub use handle::StandardError;
 pub use layers::install;
 pub use target::MESSAGE;

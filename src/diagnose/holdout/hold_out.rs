@@ -112,7 +112,12 @@ pub fn on_identification(
     settings: &HoldoutSettings,
 ) -> Result<IdentificationFit, HoldoutError> {
     let _stage = tracing::info_span!("predict", holdout = false, flights = flights.len()).entered();
-    let mut ready = used(explained, flights, vehicle, settings)?;
+    let mut ready = Vec::with_capacity(flights.len());
+    for flight in flights {
+        let trace = trace_of(flight, vehicle, settings)?;
+        let pair = pair(explained, vehicle, trace.command_period_s);
+        ready.push(Ready { flight, trace, pair });
+    }
     let shown = |ready: &[Ready], rate_law| {
         let (open_loop, improvement_percent, _) = open_loop::open_loop(ready, explained.empirical, settings)?;
         Ok::<_, HoldoutError>(IdentificationFit { open_loop, improvement_percent, rate_law })
@@ -126,35 +131,4 @@ pub fn on_identification(
     ready.iter_mut().for_each(|ready| ready.pair.rate_law = Some(law));
     let lawful = shown(&ready, Some(law))?;
     Ok(if lawful.worse().0 < worse { lawful } else { plain })
-}
-
-/// Errors of the model as it is written, on flights that were used: without a law of the rates, however it predicts. One entry a length of
-/// window.
-///
-/// # Errors
-/// [`HoldoutError`] where a flight cannot be played back.
-pub fn without_law(
-    explained: Explained,
-    flights: &[HeldOut],
-    vehicle: &Vehicle,
-    settings: &HoldoutSettings,
-) -> Result<Vec<OpenLoop>, HoldoutError> {
-    let ready = used(Explained { rate_law: None, ..explained }, flights, vehicle, settings)?;
-    let (open_loop, ..) = open_loop::open_loop(&ready, explained.empirical, settings)?;
-    Ok(open_loop)
-}
-
-/// Flights that were used, with the two models.
-fn used<'a>(
-    explained: Explained,
-    flights: &'a [HeldOut<'a>],
-    vehicle: &Vehicle,
-    settings: &HoldoutSettings,
-) -> Result<Vec<Ready<'a>>, HoldoutError> {
-    let one = |flight: &'a HeldOut<'a>| {
-        let trace = trace_of(flight, vehicle, settings)?;
-        let pair = pair(explained, vehicle, trace.command_period_s);
-        Ok(Ready { flight, trace, pair })
-    };
-    flights.iter().map(one).collect()
 }

@@ -25,7 +25,7 @@ pub use bootstrap::{AtEnd, Compared, Interval};
 pub use closed_loop::ClosedLoop;
 pub use error::HoldoutError;
 pub use floor::{command_noise, state_noise};
-pub use hold_out::{IdentificationFit, on_holdout, on_identification, on_left_out, without_law};
+pub use hold_out::{IdentificationFit, on_holdout, on_identification, on_left_out};
 pub use holdout_fit::HoldoutFit;
 pub use open_loop::{HALF_S, OpenLoop, WINDOWS_S};
 pub use other_vehicle::{Agreement, Difference, OtherVehicle, differing};

@@ -155,29 +155,6 @@ fn where_torques_are_averaged_a_guessed_balance_leaves_a_weak_rotor_uncertain() 
 }
 
 #[test]
-fn a_lag_is_the_slope_of_what_is_commanded_over_the_rate_of_change_of_the_torque() {
-    let (signals, vehicle) = flown(6007, |truth, _| truth.effects.push(effect("motor_lag", &[0.06])));
-    let settings = ExplainSettings::default();
-    let found = explain(std::slice::from_ref(&signals), &vehicle, &settings).unwrap();
-    assert_eq!(found.named.iter().map(|named| named.id).collect::<Vec<_>>(), ["motor_lag"]);
-    let traces = [Trace::new(&signals, &vehicle, settings.half_width_s).unwrap()];
-    let picture = portrait(&traces, &found.search.after, "motor_lag").unwrap();
-    assert!(matches!(picture.state, Followed::TorqueRate(_)) && picture.channel >= 3, "{:?}", picture.state);
-    let slope = |bins: &[Bin]| {
-        let (first, last) = (bins.first().unwrap(), bins.last().unwrap());
-        (last.mean - first.mean) / (last.center - first.center)
-    };
-    // the log's sampling is part of the latency
-    let latency_s = found.search.after.base.latency.total_s();
-    assert!((latency_s - 0.06).abs() < 0.012, "{latency_s}");
-    assert!((slope(&picture.model) - latency_s).abs() < 1e-9, "{}", slope(&picture.model));
-    assert!((slope(&picture.recorded) / latency_s - 1.0).abs() < 0.1, "{}", slope(&picture.recorded));
-    // the dots are apart from nothing by far more than from the line
-    let far = |bin: &Bin| bin.high < 0.0 || bin.low > 0.0;
-    assert!(picture.recorded.iter().filter(|bin| far(bin)).count() >= 8, "{:?}", picture.recorded);
-}
-
-#[test]
 fn a_drag_is_in_each_half_of_the_flight() {
     let (signals, vehicle) = flown(6008, |truth, weight_n| {
         let drag = 0.02 * weight_n;

@@ -165,7 +165,10 @@ fn nothing(study: &ExplainStudy) -> String {
         study.explanation.slight.iter().map(|of| called(of.effect.id).to_owned()).collect();
     let traces = match traces.as_slice() {
         [] => String::new(),
-        traces => format!(" Certain, but too small to matter: {}.", list(traces)),
+        traces => format!(
+            " Significant, but too small to get a name, and perhaps of another cause: {}.",
+            list(traces)
+        ),
     };
     format!(
         "Nothing is missing that this flight could show: the rigid body with its rotors explains it down to the \

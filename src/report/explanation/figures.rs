@@ -58,12 +58,15 @@ pub(super) fn recorded_and_simulated(of: &RecordedAndSimulated, after: &str) -> 
 pub(super) fn portrait(of: &Portrait, vehicle: &Vehicle) -> Panel {
     let (axis, state) = (in_words(CHANNEL_NAMES[of.channel]), state_in_words(of.state, vehicle));
     let is_late = matches!(of.state, State::TorqueRate(_));
-    let axis = if is_late { format!("commanded beyond needed {axis}") } else { axis };
     let xy = |bins: &[Bin]| bins.iter().map(|bin| (bin.center, bin.mean)).unzip();
     let (x, y): (Vec<f64>, Vec<f64>) = xy(&of.recorded);
     let (model_x, model_y): (Vec<f64>, Vec<f64>) = xy(&of.model);
     Panel {
-        title: format!("{}: {axis} over {state}", called(of.id)),
+        title: if is_late {
+            format!("{}: {axis} beyond the needed", called(of.id))
+        } else {
+            format!("{}: {axis} over {state}", called(of.id))
+        },
         x_label: format!("{state} ({})", of.state.unit()),
         y_label: unit(of.channel),
         lines: vec![

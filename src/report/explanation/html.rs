@@ -127,7 +127,7 @@ fn traces(study: &ExplainStudy) -> Markup {
     };
     let rows: Vec<Vec<Cell>> = study.explanation.slight.iter().map(row).collect();
     let head = ["effect", "size", "z|", "% of the weight|", "% of the torque|", "% of the misfit|"];
-    table("Traces: certain, but too small to matter. They have no name", &head, &rows)
+    table("Traces: significant, but too small to get a name. Another cause is possible", &head, &rows)
 }
 
 fn empirical(term: &Empirical) -> Markup {

@@ -42,7 +42,7 @@ fn trace_lines(page: &mut String, study: &ExplainStudy) {
     if slight.is_empty() {
         return;
     }
-    page.push_str("\n  certain, but too small to matter\n");
+    page.push_str("\n  significant, but too small to get a name: another cause is possible\n");
     for effect in slight.iter().map(|of| &of.effect) {
         let _ = writeln!(page, "    {:<16} {}", effect.id, sizes(study, effect));
     }

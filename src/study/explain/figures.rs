@@ -139,9 +139,10 @@ impl ExplainStudy {
         }
     }
 
-    /// The axis with the largest share of the misfit; where nothing is missing, the first.
+    /// The axis with the largest share of the misfit; where none is told, that of the first picture, and where nothing is missing, the first.
     fn worst_axis(&self) -> usize {
-        self.located.worst_axis().unwrap_or(0)
+        let shown = || self.portrait().map(|portrait| portrait.channel);
+        self.located.worst_axis().or_else(shown).unwrap_or(0)
     }
 
     /// What is left of an axis over all flights, before; an empirical force is fitted to what the sensors' own part is out

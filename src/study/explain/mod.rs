@@ -6,7 +6,6 @@ mod doubts;
 mod evidence;
 mod figures;
 mod hold_out;
-mod kept;
 mod left_out;
 mod located;
 mod meant;

@@ -83,8 +83,6 @@ pub struct ExplainStudy {
     pub(super) differing: Option<String>,
     /// named effects by each part of the flights, where a next flight is asked for
     pub by_part: Vec<ByPart>,
-    /// moments of inertia that stay as the file has them, by their places, and why
-    pub(super) kept: Vec<(usize, String)>,
     /// names that were taken back, because flights that were not used refute them
     pub refuted: Option<Refuted>,
     /// the vehicle as it was drafted, where it came from no file
@@ -161,7 +159,6 @@ impl ExplainStudy {
             notes: Vec::new(),
             differing: None,
             by_part: Vec::new(),
-            kept: Vec::new(),
             refuted: None,
             drafted: None,
             along: None,
@@ -178,7 +175,7 @@ impl ExplainStudy {
     }
 
     /// The fit that the model rests on: where nothing serves, that of the rigid body alone.
-    pub(super) fn fitted(&self) -> &Fitted {
+    fn fitted(&self) -> &Fitted {
         let search = &self.explanation.search;
         if self.verdict() == Verdict::Unexplained { &search.before } else { &search.after }
     }
@@ -204,9 +201,7 @@ impl ExplainStudy {
         let estimated = self.on_scale(self.fitted()).with_wider_window(self.given.inertia_by_wider_window);
         let is_weighed = |index| index == 0 && self.fitted().base.weighed_kg.is_some();
         let by_control = |index: usize| index > 0 && self.explanation.turned_by_control;
-        let kept = |index: usize| self.kept.iter().find(|(of, _)| *of == index).map(|(_, why)| why.clone());
         let not_determined = |index| match finding(&estimated, &nominal, index) {
-            _ if kept(index).is_some() => kept(index),
             _ if by_control(index) => Some(BY_CONTROL.to_owned()),
             Finding::NotDetermined { reason } if !is_weighed(index) => Some(reason),
             _ => None,

@@ -160,7 +160,6 @@ impl Task<'_> {
         (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
     ) -> ExplainStudy {
         let mut study = ExplainStudy::new(given, explanation);
-        study.keep_stated_moments(flights);
         study.notes.extend_from_slice(self.notes);
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
