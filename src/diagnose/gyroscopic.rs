@@ -3,7 +3,6 @@
 use super::base::Base;
 use super::channels::{AXES, Channels, Nuisance, NuisanceColumn, append};
 use super::fit::Fitted;
-use super::gates::NAME_Z;
 use super::nuisances::gyroscopic_column;
 use super::trace::Trace;
 use crate::note::{About, Note};
@@ -33,6 +32,9 @@ impl GyroscopicShare {
 /// A simulator has the torque or leaves it out: the middle between both.
 const LEFT_OUT: f64 = 0.5;
 
+/// Standard errors by which the share must be below the whole: as for a name.
+const CERTAIN: f64 = 4.0;
+
 /// The start of a fit that estimates the share, where a simulator flew and the flights tell that it leaves the torque out. A real
 /// vehicle always has it.
 pub(super) fn left_out(flights: &[Trace], fitted: &Fitted, start: &Base) -> Option<Base> {
@@ -53,7 +55,7 @@ pub(super) fn left_out(flights: &[Trace], fitted: &Fitted, start: &Base) -> Opti
     let now = fitted.base.vehicle.body.gyroscopic;
     let share = now + more;
     tracing::debug!(share, std, "gyroscopic torque of a simulator tested");
-    if !(share < LEFT_OUT && now - share > NAME_Z * std && std > 0.0) {
+    if !(share < LEFT_OUT && now - share > CERTAIN * std && std > 0.0) {
         return None;
     }
     let mut base = start.clone();
