@@ -66,7 +66,7 @@ fn of_latency(traces: &[Trace], fitted: &Fitted, id: &'static str) -> Option<Por
         view.residual[channel].iter().zip(&rate).map(|(left, rate)| by_s * rate - left).collect();
     let state = Followed::TorqueRate(channel - 3);
     Some(Portrait {
-        id: id,
+        id,
         channel,
         state,
         recorded: binned_over(&view, (state, &rate), &recorded, channel),
