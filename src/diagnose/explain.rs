@@ -28,19 +28,19 @@ use crate::vehicle::Vehicle;
 use std::ops::Range;
 
 /// Settings of an explanation.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct ExplainSettings {
     /// s, half width of the weak form's test function
     pub half_width_s: f64,
     /// conditions of a name
     pub gates: Gates,
     /// effects that are tested; effects from outside of this library may be added to [`ALL`]
-    pub signatures: &'static [&'static Signature],
+    pub signatures: Vec<&'static Signature>,
 }
 
 impl Default for ExplainSettings {
     fn default() -> Self {
-        Self { half_width_s: WEAK_HALF_WIDTH_S, gates: Gates::default(), signatures: ALL }
+        Self { half_width_s: WEAK_HALF_WIDTH_S, gates: Gates::default(), signatures: ALL.to_vec() }
     }
 }
 
@@ -130,7 +130,7 @@ pub fn explain_watched(
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
     let mut pace = Pace::new(tell);
-    let mut found = search(&traces, vehicle, &settings.gates, (settings.signatures, &mut pace))?;
+    let mut found = search(&traces, vehicle, &settings.gates, (&settings.signatures, &mut pace))?;
     refine((flights, &traces), vehicle, (&mut found, &mut pace))?;
     let beyond = tracing::info_span!("locate").in_scope(|| beyond(&traces, &found));
     let explanation = judge(&traces, vehicle, found, beyond);

@@ -1,14 +1,15 @@
 //! What the better model is shown on, and how it does there.
 
 use super::left_out::{of_others, shown_only_by};
-use super::refuted::Refuted;
+use super::refuted::{Refuted, Worthless};
 use super::result::ExplainStudy;
 use super::validation_data::ValidationData;
 use crate::diagnose::holdout::{
     Explained, HeldOut, HoldoutError, HoldoutFit, HoldoutSettings, IdentificationFit, Split, differing,
     on_holdout, on_identification, on_left_out, split_last_periods,
 };
-use crate::diagnose::{Empirical, brief};
+use crate::diagnose::signatures::signature_of;
+use crate::diagnose::{Empirical, Named, brief};
 use crate::note::{About, Note};
 use crate::signals::{Signals, clock_offset};
 use crate::study::flights::{Prepared, shared};
@@ -21,6 +22,10 @@ const BY_RATE_LAW: &str = "over 0.5 s, a constant state predicts body rates or a
                            vehicle under this controller and is no property of the vehicle. model.toml does not contain \
                            it, so a simulation of the model alone predicts them worse than a constant state does. With a \
                            trajectory that turns the vehicle more (`mavid plan`), the torques can be compared";
+
+/// Mean over the quantities of how much smaller errors over 0.5 s have to be without an effect. The model without it has the other
+/// parameters of the model with it, which speaks for the effect; predictions are repeated to a tenth of this.
+const LEAST_BETTER_PERCENT: f64 = 1.0;
 
 /// A flight that was used, or a part of it, shows nothing as a hold-out.
 pub(super) fn refuse_shared(flights: &Prepared, held: &Prepared) -> Result<(), StudyError> {
@@ -108,6 +113,31 @@ impl ExplainStudy {
         let names: Vec<String> = named.map(|named| brief(named, &self.given.vehicle, true)).collect();
         let refuted = worse_percent > 0.0 && !names.is_empty() && self.other_vehicle().is_none();
         refuted.then_some(Refuted { names, worse_percent })
+    }
+
+    /// The named effect without which flights that were not used are predicted better, by most. `None` where there is no such effect, where
+    /// the hold-out is of another vehicle, and where the wind of the explained flights was another one.
+    pub(super) fn worthless(&self) -> Option<Worthless> {
+        let worth = self.worth.as_ref().filter(|worth| !worth.on_explained)?;
+        let same_flight = matches!(self.shown_on, ValidationData::HeldBack { .. });
+        let terms = &self.explanation.search.after.base.effects;
+        if self.other_vehicle().is_some()
+            || !same_flight && terms.iter().any(|term| term.signature.role.of_the_day)
+        {
+            return None;
+        }
+        // a lag has its delay in its place, and a moment is looked for again
+        let is_judged = |id: &str| {
+            signature_of(id).is_some_and(|of| of.role.latency.is_none() && of.role.moment.is_none())
+        };
+        let of = |named: &Named| {
+            let better_percent = worth.better_without_percent(named.id)?;
+            Some(Worthless { id: named.id, name: brief(named, &self.given.vehicle, true), better_percent })
+        };
+        let judged = self.explanation.named.iter().filter(|named| is_judged(named.id)).filter_map(of);
+        judged
+            .filter(|of| of.better_percent > LEAST_BETTER_PERCENT)
+            .max_by(|a, b| a.better_percent.total_cmp(&b.better_percent))
     }
 
     /// What predicts.

@@ -2,6 +2,7 @@
 
 use super::along::with_own_winds;
 use super::hold_out::{hold_back, refuse_shared};
+use super::refuted::Worthless;
 use super::request::ExplainRequest;
 use super::result::{ExplainStudy, Given};
 use super::validation_data::ValidationData;
@@ -121,17 +122,47 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// Explains the flights and shows the better model; what is to be said of the data before comes first.
+    /// Explains the flights and shows the better model; what is to be said of the data before comes first. An effect without which the
+    /// hold-out is predicted better is left out, and the flights are explained again.
     fn explained(
         &self,
         flights: &Prepared,
         (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
     ) -> Result<ExplainStudy, StudyError> {
-        let settings = ExplainSettings::default();
+        let mut settings = ExplainSettings::default();
+        let mut worthless = Vec::new();
+        loop {
+            let explanation = self.explanation(flights, &settings)?;
+            self.progress.stage(Stage::Predicting);
+            let given = self.given(flights, settings.clone());
+            let mut study = self.evaluated(given, explanation, flights, (held, back, shown_on.clone()));
+            if let Some(refuted) = study.refuted_by_holdout() {
+                let ExplainStudy { given, explanation, .. } = study;
+                study = self.evaluated(given, explanation.refuted(), flights, (held, back, shown_on));
+                study.notes.push(refuted.note());
+                study.refuted = Some(refuted);
+                return Ok(study);
+            }
+            let tried = settings.signatures.len();
+            let more = study.worthless();
+            settings.signatures.retain(|signature| more.as_ref().is_none_or(|of| of.id != signature.id()));
+            if settings.signatures.len() == tried {
+                study.notes.extend(worthless.iter().map(Worthless::note));
+                return Ok(study);
+            }
+            worthless.extend(more);
+            self.progress.stage(Stage::ExplainingAgain);
+        }
+    }
+
+    fn explanation(&self, flights: &Prepared, settings: &ExplainSettings) -> Result<Explanation, StudyError> {
         let tell = |done, of| self.progress.about(done, of);
-        let explanation = crate::diagnose::explain_watched(&flights.signals, self.vehicle, &settings, &tell)
-            .map_err(|source| StudyError::Explain { logs: names(&self.request.logs), source })?;
-        let given = Given {
+        crate::diagnose::explain_watched(&flights.signals, self.vehicle, settings, &tell)
+            .map_err(|source| StudyError::Explain { logs: names(&self.request.logs), source })
+    }
+
+    fn given(&self, flights: &Prepared, settings: ExplainSettings) -> Given {
+        Given {
             vehicle: self.vehicle.clone(),
             inputs: flights.inputs.clone(),
             quality: flights.signals.iter().map(|signals| signals.quality.clone()).collect(),
@@ -140,15 +171,7 @@ impl Task<'_> {
             contradicting: contradicting_flights(&flights.signals, self.vehicle),
             settings,
             transient_s: self.request.transient_s,
-        };
-        self.progress.stage(Stage::Predicting);
-        let study = self.evaluated(given, explanation, flights, (held, back, shown_on.clone()));
-        let Some(refuted) = study.refuted_by_holdout() else { return Ok(study) };
-        let ExplainStudy { given, explanation, .. } = study;
-        let mut study = self.evaluated(given, explanation.refuted(), flights, (held, back, shown_on));
-        study.notes.push(refuted.note());
-        study.refuted = Some(refuted);
-        Ok(study)
+        }
     }
 
     /// An explanation with what it does on the flights explained and on those held out.

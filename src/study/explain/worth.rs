@@ -10,3 +10,23 @@ pub struct Worth {
     /// the flights were explained too: there were no others
     pub on_explained: bool,
 }
+
+/// Place of the window of half a second in `WINDOWS_S`.
+const HALF_SECOND: usize = 1;
+
+impl Worth {
+    /// By how much errors over 0.5 s are smaller without an effect, mean over the quantities, %; `None` where it is not in the model.
+    pub(super) fn better_without_percent(&self, id: &str) -> Option<f64> {
+        let of = |wanted: Option<&str>| {
+            self.each.iter().find(|without| without.id == wanted)?.errors.get(HALF_SECOND)
+        };
+        let (with, without) = (of(None)?, of(Some(id))?);
+        let each: Vec<f64> = with
+            .iter()
+            .zip(without)
+            .filter_map(|(with, without)| Some(100.0 * (1.0 - (*without)? / (*with)?)))
+            .filter(|percent| percent.is_finite())
+            .collect();
+        (!each.is_empty()).then(|| each.iter().sum::<f64>() / each.len() as f64)
+    }
+}
