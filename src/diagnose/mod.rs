@@ -7,6 +7,7 @@ mod by_flight;
 mod candidates;
 mod channels;
 mod columns;
+mod common_values;
 mod confusable;
 mod correlation;
 mod drag_law;
