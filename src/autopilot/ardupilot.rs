@@ -6,7 +6,7 @@ use super::geometry::Geometry;
 use super::kind::Autopilot;
 use super::limits::{Bounded, Braking};
 use super::modes::{FlightMode, Numbering, Wishes};
-use super::outputs::{Numbered, NumberedGroup, Outputs, PulseRange};
+use super::outputs::{Numbered, NumberedGroup, Outputs, PulseRange, ThrottleChannel};
 use super::parameters::ParameterType::{self, Int8 as B, Int16 as H, Int32 as I, Real32 as R};
 use super::parameters::units::{
     CDEG, CDEG_S2, CM, CM_S, CM_S2, DEG, DEG_S2, HZ, M, M_S, M_S2, M_S3, MAH, NONE, PER_S, S, US, V,
@@ -74,6 +74,11 @@ pub static ARDUPILOT: Stack = Stack {
         pulses: PulseRange::Shares {
             ends: ("MOT_PWM_MIN", "MOT_PWM_MAX"),
             shares: ("MOT_SPIN_MIN", "MOT_SPIN_MAX"),
+            // before 4.2 a vehicle may have MOT_PWM_MIN and MOT_PWM_MAX at zero
+            otherwise: ThrottleChannel {
+                channel: ("RCMAP_THROTTLE", 3),
+                ends: (numbered("RC", "_MIN"), numbered("RC", "_MAX")),
+            },
         },
         // logged as pulses whatever they go over
         bus: None,

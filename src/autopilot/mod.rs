@@ -37,7 +37,7 @@ pub use log_bytes::{DATAFLASH_MARKER, ULOG_DEEPEST, ULOG_FLAG_BYTES, ULOG_HEAD_B
 pub use log_plan::{LogAwaited, LogChange, LogPlan};
 pub use logging::{LogNeed, LogOff, LogRate, LogSetting, LogSpeed, Logging, OldLogging};
 pub use modes::{FlightMode, FlownBy, Mode, Numbering, Wishes};
-pub use outputs::{MOST_OUTPUTS, Numbered, NumberedGroup, Outputs, PulseRange};
+pub use outputs::{MOST_OUTPUTS, Numbered, NumberedGroup, Outputs, PulseRange, ThrottleChannel};
 pub use parameters::{Parameter, ParameterTable, ParameterType, Purpose, Renamed, Unit};
 pub use pilot::{KillSwitch, POSITIONS, PilotSwitches};
 pub use px4::PX4;

@@ -28,7 +28,28 @@ pub enum PulseRange {
         ends: (&'static str, &'static str),
         /// share of the range at none and at full command
         shares: (&'static str, &'static str),
+        /// whose range it is where the ends are no range
+        otherwise: ThrottleChannel,
     },
+}
+
+/// The transmitter's throttle channel, whose range is that of the motors where they have none of their own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ThrottleChannel {
+    /// parameter with its number, and that number where it does not answer
+    pub channel: (&'static str, usize),
+    /// lower and upper end of each channel, microseconds
+    pub ends: (Numbered, Numbered),
+}
+
+impl ThrottleChannel {
+    fn ends_us(&self, parameter: &impl Fn(&str) -> Option<f64>) -> Option<(f64, f64)> {
+        let (name, usual) = self.channel;
+        let is_asked = |number: &usize| parameter(name).is_none_or(|asked| asked == *number as f64);
+        let number = std::iter::once(usual).chain(1..=MOST_OUTPUTS).find(is_asked)?;
+        let (low, high) = self.ends;
+        Some((parameter(&low.name(number))?, parameter(&high.name(number))?))
+    }
 }
 
 impl PulseRange {
@@ -39,8 +60,10 @@ impl PulseRange {
             Self::OfOutputs(banks) => banks
                 .iter()
                 .find_map(|(low, high)| Some((parameter(&low.name(1))?, parameter(&high.name(1))?))),
-            Self::Shares { ends: (low, high), shares: (none, full) } => {
-                let (low_us, high_us) = (parameter(low)?, parameter(high)?);
+            Self::Shares { ends: (low, high), shares: (none, full), otherwise } => {
+                let own = (parameter(low)?, parameter(high)?);
+                let is_range = own.0 > 0.0 && own.1 > own.0;
+                let (low_us, high_us) = if is_range { own } else { otherwise.ends_us(&parameter)? };
                 let (none, full) = (parameter(none)?, parameter(full)?);
                 let span_us = high_us - low_us;
                 Some((low_us + none * span_us, low_us + full * span_us))
@@ -142,5 +165,26 @@ impl Outputs {
     #[must_use]
     pub fn is_gain(&self, name: &str) -> bool {
         self.gains.iter().any(|beginning| name.starts_with(beginning))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::autopilot::ARDUPILOT;
+
+    #[test]
+    fn motors_without_a_range_of_their_own_have_that_of_the_throttle_channel() {
+        let of = |stated: &[(&str, f64)]| {
+            let known = [("MOT_SPIN_MIN", 0.15), ("MOT_SPIN_MAX", 0.95)];
+            let find = |name: &str| known.iter().chain(stated).find(|of| of.0 == name).map(|of| of.1);
+            ARDUPILOT.outputs.pulses.ends_us(find).map(|(none, full)| (none.round(), full.round()))
+        };
+        assert_eq!(of(&[("MOT_PWM_MIN", 1000.0), ("MOT_PWM_MAX", 2000.0)]), Some((1150.0, 1950.0)));
+        let radio = [("MOT_PWM_MIN", 0.0), ("MOT_PWM_MAX", 0.0), ("RC3_MIN", 1100.0), ("RC3_MAX", 1900.0)];
+        assert_eq!(of(&radio), Some((1220.0, 1860.0)));
+        let other = [("RCMAP_THROTTLE", 1.0), ("RC1_MIN", 1000.0), ("RC1_MAX", 2000.0)];
+        assert_eq!(of(&[&radio[..], &other].concat()), Some((1150.0, 1950.0)));
+        assert_eq!(of(&radio[..2]), None);
+        assert_eq!(of(&radio[2..]), None);
     }
 }

@@ -4,7 +4,6 @@
 //! covariance of what is left has them in it. Put together by their information, such values are what one fit of all flights gives.
 
 use super::base::Base;
-use super::channels::Nuisance;
 use super::explain::ExplainSettings;
 use super::explanation::{Explanation, Verdict};
 use super::feedback_noise::is_fed_back;
@@ -22,7 +21,7 @@ use super::signatures::{ALL, signature_of};
 use super::tested::Search;
 use super::torques_by_instruments::torques_by_instruments;
 use super::trace::Trace;
-use crate::estimate::{INERTIA_ENTRIES, NAMES, UNITS};
+use crate::estimate::{NAMES, UNITS};
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
@@ -79,7 +78,9 @@ pub fn by_flight(
         Some(parameters(&fit, explanation.turned_by_control, &terms, None))
     };
     let each: Vec<_> = flights.par_iter().zip(explanations).map(one).collect();
-    each.into_iter().map(Option::unwrap_or_default).collect()
+    let mut each: Vec<Vec<FlightParameter>> = each.into_iter().map(Option::unwrap_or_default).collect();
+    one_axial_name(&mut each);
+    each
 }
 
 /// The parameters of each flight, fitted alone to the model of one explanation of all of them. A flight that drifts is seen with its own
@@ -201,59 +202,6 @@ pub fn rigid_by_flight(
     flights.par_iter().map(one).map(Option::unwrap_or_default).collect()
 }
 
-impl Explanation {
-    /// The same models, `before` and `after`, with other values and standard errors: mass, moments of inertia and effects by the names of
-    /// [`FlightParameter`], SI. What is not among them stays.
-    #[must_use]
-    pub fn with_values(&self, before: &[(&str, (f64, f64))], after: &[(&str, (f64, f64))]) -> Self {
-        let mut moved = self.clone();
-        set_values(&mut moved.search.before, before);
-        set_values(&mut moved.search.after, after);
-        moved
-    }
-}
-
-fn set_values(fitted: &mut Fitted, values: &[(&str, (f64, f64))]) {
-    let of = |name: &str| values.iter().find(|(known, _)| *known == name).map(|(_, estimate)| *estimate);
-    for index in 0..fitted.rows.nuisances.len() {
-        let body = &mut fitted.base.vehicle.body;
-        let known = match fitted.rows.nuisances[index].nuisance {
-            // a vehicle that was weighed has its mass
-            Nuisance::Mass if fitted.base.weighed_kg.is_some() => None,
-            Nuisance::Mass => of(NAMES[0]).inspect(|known| body.mass_kg = known.0),
-            Nuisance::Inertia(entry) => {
-                let (row, column) = INERTIA_ENTRIES[entry];
-                let moment = (row == column).then(|| of(NAMES[1 + entry])).flatten();
-                moment.inspect(|known| body.inertia_kg_m2[(row, column)] = known.0)
-            }
-            _ => None,
-        };
-        if let Some((_, std)) = known {
-            set_std(&mut fitted.covariance, index, std);
-        }
-    }
-    let mut index = fitted.rows.nuisances.len();
-    for present in &mut fitted.base.effects {
-        for slot in present.free.clone() {
-            let name = present.parameter(slot).map(|parameter| named(present, parameter.name));
-            if let Some((value, std)) = name.and_then(|name| of(&name)) {
-                present.values[slot] = value;
-                set_std(&mut fitted.covariance, index, std);
-            }
-            index += 1;
-        }
-    }
-}
-
-/// Another standard error of one coefficient, with the correlations as they are.
-fn set_std(covariance: &mut DMatrix<f64>, index: usize, std: f64) {
-    let by = std / covariance[(index, index)].max(0.0).sqrt();
-    if by.is_finite() && by > 0.0 {
-        covariance.row_mut(index).scale_mut(by);
-        covariance.column_mut(index).scale_mut(by);
-    }
-}
-
 /// Whether the parameter is that of a force of the air.
 fn is_of_air(parameter: &FlightParameter) -> bool {
     let signature = parameter.effect.and_then(signature_of);
@@ -285,6 +233,37 @@ fn of_the_vehicle(explanations: &[&Explanation]) -> Vec<EffectTerm> {
     terms
 }
 
+/// Whether an effect estimates along body z what another one has as its law there.
+fn has_axial(present: &EffectTerm, other: &EffectTerm) -> bool {
+    let is_whole = other.signature.role.axial_part_of.is_some_and(|whole| whole.id() == present.id());
+    is_whole && present.signature.role.axial.is_some_and(|slot| present.free.contains(&slot))
+}
+
+/// Drag along body z has one law and two names: where one flight has it as a part of its drag, the flights that have it by itself call it
+/// so too.
+fn one_axial_name(each: &mut [Vec<FlightParameter>]) {
+    let parts = ALL.iter().filter_map(|part| Some((part, part.role.axial?, part.role.axial_part_of?)));
+    for (part, slot, whole) in parts {
+        let Some(of_whole) = signature_of(whole.id()).and_then(|of| whole.parameters().get(of.role.axial?))
+        else {
+            continue;
+        };
+        let Some(own) = part.effect.parameters().get(slot) else { continue };
+        let (own, of_whole) =
+            (format!("{}.{}", part.id(), own.name), format!("{}.{}", whole.id(), of_whole.name));
+        let has = |name: &str, of: &[FlightParameter]| of.iter().any(|parameter| parameter.name == name);
+        if !each.iter().any(|of| has(&of_whole, of)) {
+            continue;
+        }
+        for of in each.iter_mut().filter(|of| !has(&of_whole, of)) {
+            for parameter in of.iter_mut().filter(|parameter| parameter.name == own) {
+                parameter.name.clone_from(&of_whole);
+                parameter.effect = Some(whole.id());
+            }
+        }
+    }
+}
+
 fn is_same(one: &EffectTerm, other: &EffectTerm) -> bool {
     let which = one.signature.role.which;
     one.id() == other.id() && which.is_none_or(|slot| one.values[slot] == other.values[slot])
@@ -297,7 +276,7 @@ fn with_terms(explanation: &Explanation, terms: &[EffectTerm], (vehicle, trace):
     let mut base = own.base.clone();
     let recorded = Recorded::new(vehicle, std::slice::from_ref(trace));
     for term in terms {
-        let is_there = base.effects.iter().any(|present| is_same(present, term));
+        let is_there = base.effects.iter().any(|present| is_same(present, term) || has_axial(present, term));
         if !is_there && recorded.lacks(term.signature.needs).is_none() {
             base.effects.push(term.clone());
         }
@@ -381,7 +360,7 @@ fn parameters(
 }
 
 /// `effect.parameter`, of a rotor with its number.
-fn named(term: &EffectTerm, parameter: &str) -> String {
+pub(super) fn named(term: &EffectTerm, parameter: &str) -> String {
     match term.signature.role.which {
         Some(slot) => format!("{}[{}].{parameter}", term.id(), term.values[slot]),
         None => format!("{}.{parameter}", term.id()),

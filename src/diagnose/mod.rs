@@ -8,6 +8,7 @@ mod by_part;
 mod candidates;
 mod channels;
 mod columns;
+mod common_values;
 mod confusable;
 mod correlation;
 mod drag_law;

@@ -7,7 +7,7 @@ use crate::config::parse_vehicle;
 use crate::diagnose::Owner;
 use crate::note::{About, Note};
 use crate::study::{CompareStudy, ComparedFlight, InputFile, Track};
-use crate::trim::{Leg, balance};
+use crate::trim::{Leg, balance, rotor_tracks};
 use crate::vehicle::Vehicle;
 
 /// Flights of a vehicle that its history has at most, the latest: time grows with the square of their number. It
@@ -103,10 +103,12 @@ impl All<'_> {
                 format!("of its flights the latest {MOST_FLIGHTS} are shown"),
             ));
         }
+        let balance = balance(legs);
         let study = CompareStudy {
             is_known,
             flights: kept.iter().map(|flight| self.flight(flight, uri(flight))).collect(),
-            balance: balance(legs),
+            rotors: rotor_tracks(&balance, &vehicle),
+            balance,
             tracks: self.tracks(&kept),
             groups: None,
             compared: None,

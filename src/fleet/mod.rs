@@ -8,7 +8,6 @@ mod outliers;
 mod parts;
 mod place;
 mod report;
-mod rotors;
 mod rows;
 mod schema;
 mod sources;
@@ -22,7 +21,6 @@ pub use of_log::{error_rows, log_rows};
 pub use outliers::{Outlier, outliers};
 pub use parts::{Listed, PartForm, PartList, PartsError, PartsFolder};
 pub use report::{FleetReport, ReportSettings, ReportedVehicle};
-pub use rotors::{RotorTrack, rotor_tracks};
 pub use rows::{
     EffectRow, FlightRow, LegRow, LogRow, LogRows, ParameterRow, ProvenanceRow, ResidualRow, SCHEMA,
     WarningRow,

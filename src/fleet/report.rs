@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use super::alarms::{FalseAlarms, calibrated, judge};
 use super::history::{VehicleHistory, histories};
 use super::outliers::{Outlier, outliers};
-use super::rotors::{RotorTrack, rotor_tracks};
 use super::rows::LogRows;
 use rayon::prelude::*;
 
@@ -31,8 +30,6 @@ pub struct FleetReport {
 pub struct ReportedVehicle {
     /// its flights, and where along them something changed
     pub history: VehicleHistory,
-    /// thrust for a command of each rotor along the flights
-    pub rotors: Vec<RotorTrack>,
 }
 
 impl ReportedVehicle {
@@ -70,7 +67,7 @@ impl FleetReport {
         let mut errors: Vec<(String, String)> =
             failed.map(|log| (log.uri.clone(), log.error.clone().unwrap_or_default())).collect();
         errors.sort();
-        let reported = |history: VehicleHistory| ReportedVehicle { rotors: rotor_tracks(&history), history };
+        let reported = |history: VehicleHistory| ReportedVehicle { history };
         Self {
             vehicles: found.into_iter().map(reported).collect(),
             without_history,

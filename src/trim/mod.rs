@@ -4,6 +4,8 @@
 
 mod balance;
 mod legs;
+mod rotors;
 
 pub use balance::{AIR_LEVER_SPREAD, Balance, FlightBalance, WANDER, balance};
 pub use legs::{AXES, LEAST_LEGS, LEG_S, Leg, TrimError, legs, mean_arm_m};
+pub use rotors::{RotorTrack, rotor_tracks};

@@ -2,7 +2,7 @@
 
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Form, Naming, OfTheVehicle, Role, Signature};
+use crate::diagnose::signature::{Form, Naming, Role, Signature};
 use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::diagnose::words::axes;
@@ -15,8 +15,8 @@ pub static SIGNATURE: Signature = Signature {
     forms: |_| forms(),
     naming: Naming { usual, ..Naming::PLAIN },
     role: Role {
+        // nor is it what tells a vehicle from another: the phase of a log's commands and the law of the rotors' torque move it by its size
         like_latency: Some(|| SIGNATURE.whole()),
-        of_the_vehicle: Some(OfTheVehicle::of(&[0, 1, 2])),
         ..Role::NONE
     },
     picture: Picture::of(&[3, 4, 5], Over::Rate),

@@ -1,13 +1,16 @@
 //! `report.html` of `compare`: each section is one function, and one call in [`comparison_html`].
 
 use super::drawing::drawing;
-use super::words::{FLIGHTS_OWN_ERRORS, answer, name, open, returned, sentence, size};
+use super::plots::plots;
+use super::words::{
+    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_from, name, open, returned, sentence, size, value_of,
+};
 use crate::change::interval_95;
 use crate::diagnose::Owner;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::{interval, significant, with_error};
 use crate::report::page::page;
-use crate::study::{Change, CompareStudy};
+use crate::study::{Change, Changed, CompareStudy};
 use maud::{Markup, html};
 
 /// The report: one file, nothing loaded from anywhere.
@@ -24,6 +27,7 @@ pub fn comparison_html(study: &CompareStudy) -> String {
         (changed(study))
         (unseen(study))
         (flights(study))
+        (rotors(study))
         (tracks(study))
         (history(study))
         (remarks(study))
@@ -123,23 +127,50 @@ fn flights(study: &CompareStudy) -> Markup {
     )
 }
 
+/// Heads of a table along the flights: those given, one a flight, and where it changed.
+fn heads_along(study: &CompareStudy, first: &[&str]) -> Vec<String> {
+    let each = (0..study.flights.len()).map(|place| format!("flight {}|", place + 1));
+    first.iter().map(|head| (*head).to_owned()).chain(each).chain([String::new()]).collect()
+}
+
+fn table_along(caption: &str, heads: &[String], rows: &[Vec<Cell>]) -> Markup {
+    table(caption, &heads.iter().map(String::as_str).collect::<Vec<_>>(), rows)
+}
+
+fn rotors(study: &CompareStudy) -> Markup {
+    if study.rotors.is_empty() {
+        return Markup::default();
+    }
+    let rows: Vec<Vec<Cell>> = study
+        .rotors
+        .iter()
+        .enumerate()
+        .map(|(place, track)| {
+            let what = Changed::Rotor(place);
+            let mut cells = vec![text(name(study, what))];
+            cells.extend(track.iter().map(|(value, std)| number(with_error(*value, *std))));
+            cells.push(text(changed_from(study, what)));
+            cells
+        })
+        .collect();
+    let caption = format!("Thrust of each rotor for a command, {OF_MEAN_ROTOR}");
+    section("Rotors along the flights", &table_along(&caption, &heads_along(study, &["rotor"]), &rows))
+}
+
 fn tracks(study: &CompareStudy) -> Markup {
     if study.tracks.is_empty() {
         return Markup::default();
     }
-    let rows = study.tracks.iter().map(|track| {
+    let rows = study.tracks.iter().enumerate().map(|(place, track)| {
         let own = if track.owner == Owner::Flight { "the flight's own" } else { "the vehicle's" };
         let mut cells = vec![text(track.name.as_str()), text(track.unit), text(own)];
-        cells.extend(track.values.iter().map(|value| {
-            number(value.map_or_else(|| "-".to_owned(), |(value, std)| with_error(value, std)))
-        }));
+        cells.extend(track.values.iter().map(|value| number(value_of(track, *value))));
+        cells.push(text(changed_from(study, Changed::Parameter(place))));
         cells
     });
-    let mut heads = vec!["parameter".to_owned(), "unit".to_owned(), "whose".to_owned()];
-    heads.extend((0..study.flights.len()).map(|place| format!("flight {}|", place + 1)));
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let caption = format!("With {FLIGHTS_OWN_ERRORS}");
-    section("Parameters along the flights", &table(&caption, &heads, &rows.collect::<Vec<_>>()))
+    let heads = heads_along(study, &["parameter", "unit", "whose"]);
+    section("Parameters along the flights", &table_along(&caption, &heads, &rows.collect::<Vec<_>>()))
 }
 
 fn history(study: &CompareStudy) -> Markup {
@@ -156,6 +187,7 @@ fn history(study: &CompareStudy) -> Markup {
                 returned(study, step)
             )))
         } }
+        @for plot in plots(study) { (figure(&plot, "Bands: 95 % intervals. Shaded: where it changed.")) }
     };
     section("History", &steps)
 }

@@ -4,7 +4,7 @@ use super::words::{answer, open, rival_name, sentence};
 use crate::change::{Moved, Undecided};
 use crate::diagnose::Owner;
 use crate::note::Note;
-use crate::study::{Change, Changed, CompareStudy, InputFile, LeastChange, Track};
+use crate::study::{Change, Changed, CompareStudy, InputFile, LeastChange};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -28,6 +28,9 @@ pub struct ComparisonDocument {
     smallest_changes: Option<Vec<LeastEntry>>,
     /// one entry a flight
     flights: Vec<FlightEntry>,
+    /// thrust of each rotor for a command along the flights, over that of the mean of all rotors: by the balance, with the centre of mass
+    /// where the vehicle has it; of more than four rotors the smallest difference between them that makes it
+    rotors: Vec<RotorEntry>,
     /// each parameter along the flights; empty where the balance alone was compared
     parameters: Vec<TrackEntry>,
     /// where along all flights something changed
@@ -157,6 +160,18 @@ struct OwnEntry {
     power_w: Option<f64>,
 }
 
+/// A rotor along the flights.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct RotorEntry {
+    name: String,
+    /// autopilot's number, from 1
+    motor: usize,
+    /// one entry a flight; the errors hold what wanders from flight to flight
+    thrust_per_command: Vec<Estimate>,
+    /// places of the flights from which on it is named as changed
+    changed_from: Vec<usize>,
+}
+
 /// A parameter along the flights.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct TrackEntry {
@@ -169,6 +184,8 @@ struct TrackEntry {
     values: Vec<Option<Estimate>>,
     /// of all flights, as of a vehicle that did not change
     together: Option<Estimate>,
+    /// places of the flights from which on it is named as changed
+    changed_from: Vec<usize>,
 }
 
 /// A place in the row of flights from which on something is otherwise.
@@ -199,7 +216,8 @@ impl ComparisonDocument {
             smallest_changes: compared
                 .map(|compared| compared.least.iter().map(|least| least_entry(study, least)).collect()),
             flights: (0..study.flights.len()).map(|place| flight(study, place)).collect(),
-            parameters: study.tracks.iter().map(track).collect(),
+            rotors: (0..study.rotors.len()).map(|place| rotor(study, place)).collect(),
+            parameters: (0..study.tracks.len()).map(|place| track(study, place)).collect(),
             history: study
                 .history
                 .iter()
@@ -288,13 +306,25 @@ fn flight(study: &CompareStudy, place: usize) -> FlightEntry {
     }
 }
 
-fn track(of: &Track) -> TrackEntry {
+fn rotor(study: &CompareStudy, place: usize) -> RotorEntry {
+    RotorEntry {
+        name: study.rotor(place).to_owned(),
+        motor: place + 1,
+        thrust_per_command: study.rotors[place].iter().copied().map(estimate).collect(),
+        changed_from: study.changed_from(Changed::Rotor(place)).collect(),
+    }
+}
+
+fn track(study: &CompareStudy, place: usize) -> TrackEntry {
+    let of = &study.tracks[place];
+    let determined = |estimate: &(f64, f64)| of.is_determined(*estimate);
     TrackEntry {
         name: of.name.clone(),
         unit: of.unit,
         owner: if of.owner == Owner::Flight { OwnerName::Flight } else { OwnerName::Vehicle },
         spread: of.spread.relative,
-        values: of.values.iter().map(|value| value.map(estimate)).collect(),
-        together: of.pooled().map(estimate),
+        values: of.values.iter().map(|value| value.filter(determined).map(estimate)).collect(),
+        together: of.pooled().filter(determined).map(estimate),
+        changed_from: study.changed_from(Changed::Parameter(place)).collect(),
     }
 }

@@ -3,10 +3,12 @@
 mod drawing;
 mod html;
 mod json;
+mod plots;
 mod text;
 mod words;
 
 pub use html::comparison_html;
 pub use json::ComparisonDocument;
+pub(super) use plots::plots;
 pub use text::comparison_text;
-pub(super) use words::sentence;
+pub(super) use words::{sentence, value_of};

@@ -1,9 +1,12 @@
 //! The page of `compare` for the terminal.
 
-use super::words::{FLIGHTS_OWN_ERRORS, answer, name, open, returned, sentence, size, spaced};
+use super::words::{
+    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_from, name, open, returned, sentence, size, spaced,
+    value_of,
+};
 use crate::diagnose::Owner;
 use crate::report::number::{significant, with_error};
-use crate::study::{Change, CompareStudy, Compared};
+use crate::study::{Change, Changed, CompareStudy, Compared};
 use std::fmt::Write;
 
 /// The page for the terminal.
@@ -14,6 +17,7 @@ pub fn comparison_text(study: &CompareStudy) -> String {
         changes(&mut page, study, compared);
     }
     flights(&mut page, study);
+    rotors(&mut page, study);
     tracks(&mut page, study);
     history(&mut page, study);
     page.trim_end().to_owned()
@@ -90,23 +94,39 @@ fn flights(page: &mut String, study: &CompareStudy) {
     }
 }
 
+/// What a track says in words behind its values.
+fn told(study: &CompareStudy, what: Changed) -> String {
+    let from = changed_from(study, what);
+    if from.is_empty() { from } else { format!("; {from}") }
+}
+
+fn rotors(page: &mut String, study: &CompareStudy) {
+    if study.rotors.is_empty() {
+        return;
+    }
+    let _ = writeln!(page, "\n  thrust of each rotor for a command along the flights, {OF_MEAN_ROTOR}");
+    for (place, track) in study.rotors.iter().enumerate() {
+        let values: Vec<String> = track.iter().map(|(value, std)| with_error(*value, *std)).collect();
+        let what = Changed::Rotor(place);
+        let _ = writeln!(page, "    {:<24} {}{}", name(study, what), values.join(", "), told(study, what));
+    }
+}
+
 fn tracks(page: &mut String, study: &CompareStudy) {
     if study.tracks.is_empty() {
         return;
     }
     let _ = writeln!(page, "\n  parameters along the flights, in their order; {FLIGHTS_OWN_ERRORS}");
-    for track in &study.tracks {
-        let values = track
-            .values
-            .iter()
-            .map(|value| value.map_or_else(|| "-".to_owned(), |(value, std)| with_error(value, std)));
+    for (place, track) in study.tracks.iter().enumerate() {
+        let values = track.values.iter().map(|value| value_of(track, *value));
         let own = if track.owner == Owner::Flight { " (the flight's own)" } else { "" };
         let _ = writeln!(
             page,
-            "    {:<24} {}{}{own}",
+            "    {:<24} {}{}{own}{}",
             track.name,
             values.collect::<Vec<_>>().join(", "),
-            spaced(track.unit)
+            spaced(track.unit),
+            told(study, Changed::Parameter(place))
         );
     }
 }

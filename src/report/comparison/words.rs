@@ -2,11 +2,30 @@
 
 use crate::change::{NAMED_SIGMAS, Step, Undecided, What};
 use crate::report::number::{significant, with_error};
-use crate::study::{Change, Changed, CompareStudy, Compared, LeastChange};
+use crate::study::{Change, Changed, CompareStudy, Compared, LeastChange, Track};
 use crate::text::capital;
 
 /// What the errors of parameters along the flights hold.
 pub(super) const FLIGHTS_OWN_ERRORS: &str = "errors of each flight alone; those of before and after hold the spread between flights of one vehicle as well";
+
+/// What the rotors along the flights are.
+pub(super) const OF_MEAN_ROTOR: &str = "over that of the mean of all rotors; the centre of mass is taken where the vehicle has it, and errors hold what wanders from flight \
+     to flight";
+
+/// A value of one flight with its standard error, or that it has none.
+pub(in crate::report) fn value_of(track: &Track, estimate: Option<(f64, f64)>) -> String {
+    match estimate {
+        None => "-".to_owned(),
+        Some((value, std)) if track.is_determined((value, std)) => with_error(value, std),
+        Some(_) => "not determined".to_owned(),
+    }
+}
+
+/// From which flights on something is otherwise, as a clause; empty where nothing is.
+pub(super) fn changed_from(study: &CompareStudy, what: Changed) -> String {
+    let from: Vec<String> = study.changed_from(what).map(|place| format!("flight {}", place + 1)).collect();
+    if from.is_empty() { String::new() } else { format!("changed from {} on", from.join(" and from ")) }
+}
 
 /// The answer in a sentence or two.
 pub(super) fn answer(study: &CompareStudy) -> String {

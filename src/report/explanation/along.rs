@@ -1,8 +1,8 @@
 //! Several flights: what they have in common, what is each one's own, and which of them carry a name.
 
-use crate::diagnose::Owner;
+use crate::diagnose::{Named, NamedParameter, Owner, brief};
+use crate::report::comparison::value_of;
 use crate::report::html::{Cell, note, number, section, table, text};
-use crate::report::number::with_error;
 use crate::study::{AlongFlights, ExplainStudy, Track};
 use maud::{Markup, html};
 use schemars::JsonSchema;
@@ -16,6 +16,10 @@ pub(super) struct AlongValue {
     parameters: Vec<TrackValue>,
     /// places of the flights that each show a named effect alone
     carried_by: BTreeMap<&'static str, Option<Vec<usize>>>,
+    /// places of the flights that the size of a named effect is of, where it differs between the flights
+    sized_by: BTreeMap<&'static str, Vec<usize>>,
+    /// what a flight has alone and the flights together have not
+    of_one_flight: Vec<OfOneFlight>,
     /// north and west, m/s
     winds_m_s: Vec<Option<[f64; 2]>>,
 }
@@ -25,8 +29,27 @@ struct TrackValue {
     name: String,
     unit: &'static str,
     owner: &'static str,
+    /// null where it is the flights' own, and where they do not determine it
     together: Option<EstimateValue>,
+    /// of each flight alone; null where it does not determine it
     values: Vec<Option<EstimateValue>>,
+}
+
+/// A name that a flight has alone.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct OfOneFlight {
+    /// place of the flight
+    flight: usize,
+    /// identifier of the effect
+    id: &'static str,
+    parameters: BTreeMap<&'static str, EstimateValue>,
+}
+
+impl OfOneFlight {
+    fn new((flight, named): &(usize, Named)) -> Self {
+        let value = |of: &NamedParameter| (of.name, EstimateValue { value: of.value, std: of.std });
+        Self { flight: *flight, id: named.id, parameters: named.parameters.iter().map(value).collect() }
+    }
 }
 
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
@@ -37,17 +60,22 @@ struct EstimateValue {
 
 impl AlongValue {
     pub(super) fn new(along: &AlongFlights) -> Self {
-        let estimate = |(value, std)| EstimateValue { value, std };
+        let estimate = |track: &Track, estimate: Option<(f64, f64)>| {
+            let told = estimate.filter(|estimate| track.is_determined(*estimate));
+            told.map(|(value, std)| EstimateValue { value, std })
+        };
         let track = |track: &Track| TrackValue {
             name: track.name.clone(),
             unit: track.unit,
             owner: whose(track),
-            together: track.pooled().filter(|_| track.owner == Owner::Vehicle).map(estimate),
-            values: (0..track.values.len()).map(|flight| track.alone(flight).map(estimate)).collect(),
+            together: estimate(track, track.pooled().filter(|_| track.owner == Owner::Vehicle)),
+            values: (0..track.values.len()).map(|flight| estimate(track, track.alone(flight))).collect(),
         };
         Self {
             parameters: along.tracks.iter().map(track).collect(),
             carried_by: along.carried_by.iter().cloned().collect(),
+            sized_by: along.sized_by.iter().cloned().collect(),
+            of_one_flight: along.of_one_flight.iter().map(OfOneFlight::new).collect(),
             winds_m_s: along.winds_m_s.clone(),
         }
     }
@@ -55,10 +83,6 @@ impl AlongValue {
 
 fn whose(track: &Track) -> &'static str {
     if track.owner == Owner::Flight { "flight" } else { "vehicle" }
-}
-
-fn said(estimate: Option<(f64, f64)>) -> String {
-    estimate.map_or_else(|| "-".to_owned(), |(value, std)| with_error(value, std))
 }
 
 fn winds(along: &AlongFlights) -> Vec<String> {
@@ -74,14 +98,18 @@ pub(super) fn along_lines(page: &mut String, study: &ExplainStudy) {
     let Some(along) = &study.along else { return };
     page.push_str("\n  together, and each flight alone\n");
     for track in &along.tracks {
-        let together =
-            if track.owner == Owner::Flight { "each flight's own".to_owned() } else { said(track.pooled()) };
-        let each: Vec<String> = (0..track.values.len()).map(|flight| said(track.alone(flight))).collect();
+        let together = together(track);
+        let each: Vec<String> =
+            (0..track.values.len()).map(|flight| value_of(track, track.alone(flight))).collect();
         let _ = writeln!(page, "    {:<22} {together:<22} {}  {}", track.name, each.join(", "), track.unit);
     }
     if along.winds_m_s.iter().any(Option::is_some) {
         let _ =
             writeln!(page, "    wind to north, west (m/s), each flight's own: {}", winds(along).join("; "));
+    }
+    for (flight, named) in &along.of_one_flight {
+        let path = &study.given.inputs[*flight].path;
+        let _ = writeln!(page, "    {path} alone: {}", brief(named, study.vehicle(), true));
     }
     for (id, flights) in &along.carried_by {
         let path = |flight: &usize| study.given.inputs[*flight].path.clone();
@@ -117,7 +145,14 @@ pub(super) fn along_section(study: &ExplainStudy) -> Markup {
     let line = |(id, flights): &(&str, Option<Vec<usize>>)| {
         format!("{}.", carried(id, flights.as_deref(), "flight ", number))
     };
-    let carried: Vec<String> = along.carried_by.iter().map(line).collect();
+    let alone = along.of_one_flight.iter().map(|(flight, named)| {
+        format!(
+            "Flight {} alone: {}. The model does not hold it.",
+            flight + 1,
+            brief(named, study.vehicle(), true)
+        )
+    });
+    let carried: Vec<String> = along.carried_by.iter().map(line).chain(alone).collect();
     section(
         "The flights together",
         &html! {
@@ -127,10 +162,17 @@ pub(super) fn along_section(study: &ExplainStudy) -> Markup {
     )
 }
 
+/// A parameter by all flights, in words.
+fn together(track: &Track) -> String {
+    if track.owner == Owner::Flight {
+        "each flight's own".to_owned()
+    } else {
+        value_of(track, track.pooled())
+    }
+}
+
 fn row(track: &Track) -> Vec<Cell> {
-    let together =
-        if track.owner == Owner::Flight { "each flight's own".to_owned() } else { said(track.pooled()) };
-    let mut cells = vec![text(track.name.as_str()), text(track.unit), number(together)];
-    cells.extend((0..track.values.len()).map(|flight| number(said(track.alone(flight)))));
+    let mut cells = vec![text(track.name.as_str()), text(track.unit), number(together(track))];
+    cells.extend((0..track.values.len()).map(|flight| number(value_of(track, track.alone(flight)))));
     cells
 }

@@ -42,7 +42,10 @@ fn no_model(study: &ExplainStudy) -> String {
 
 fn found(study: &ExplainStudy) -> String {
     match study.verdict() {
-        Verdict::NothingMissing => nothing(study),
+        Verdict::NothingMissing => match of_one_flight(study).trim_start_matches("; ") {
+            "" => nothing(study),
+            alone => format!("{} But {alone}.", nothing(study)),
+        },
         Verdict::Explained => format!("{}{}.{}", left_out(study), gain(study), not_told_apart(study)),
         Verdict::PartlyExplained => format!(
             "{}{}. There is another deviation that no known effect explains: {}.{}",
@@ -58,21 +61,47 @@ fn found(study: &ExplainStudy) -> String {
 /// The named effects: one effect in full, several with their sizes, the rest without.
 fn left_out(study: &ExplainStudy) -> String {
     let vehicle = study.vehicle();
+    let of_one_flight = of_one_flight(study);
     if let [one] = study.effects.as_slice() {
-        return clause(one, vehicle);
+        return format!("{}{}{of_one_flight}", clause(one, vehicle), in_flights(study, one));
     }
     let sized = if study.effects.len() <= SIZED { SIZED } else { SIZED - 1 };
     let (large, small) = study.effects.split_at(sized.min(study.effects.len()));
     let words = |effects: &[Named], with_size| -> Vec<String> {
-        effects.iter().map(|effect| brief(effect, vehicle, with_size)).collect()
+        effects
+            .iter()
+            .map(|effect| format!("{}{}", brief(effect, vehicle, with_size), in_flights(study, effect)))
+            .collect()
     };
     let large = words(large, true);
     match words(small, false).as_slice() {
-        [] => format!("Several effects were left out: {}", list(&large)),
+        [] => format!("Several effects were left out: {}{of_one_flight}", list(&large)),
         small => {
-            format!("Several effects were left out: {}; and to a lesser degree {}", list(&large), list(small))
+            let (large, small) = (list(&large), list(small));
+            format!("Several effects were left out: {large}; and to a lesser degree {small}{of_one_flight}")
         }
     }
+}
+
+/// The flights that a name is of, where not all of them have it, or each has its own.
+fn in_flights(study: &ExplainStudy, effect: &Named) -> String {
+    let sized = study.along.iter().flat_map(|along| &along.sized_by);
+    let of = sized.into_iter().find(|(id, _)| *id == effect.id);
+    of.map_or_else(String::new, |(_, flights)| format!(" in {}", paths(study, flights)))
+}
+
+/// What single flights have alone, as a clause.
+fn of_one_flight(study: &ExplainStudy) -> String {
+    let alone = study.along.iter().flat_map(|along| &along.of_one_flight);
+    let said = alone.map(|(flight, named)| {
+        format!("; in {} alone {}", paths(study, &[*flight]), brief(named, study.vehicle(), true))
+    });
+    said.collect()
+}
+
+fn paths(study: &ExplainStudy, flights: &[usize]) -> String {
+    let path = |flight: &usize| study.given.inputs[*flight].path.clone();
+    list(&flights.iter().map(path).collect::<Vec<_>>())
 }
 
 /// A sentence on the effects that the flight does not distinguish from a named one.

@@ -1,9 +1,9 @@
 //! `report.html` of a fleet: each section is one function, and one call in [`fleet_html`].
 
-use super::plots::plots;
 use super::words::{alarms, answer, change_sentence, differs, logs};
 use crate::diagnose::Owner;
 use crate::fleet::{FleetReport, ReportedVehicle};
+use crate::report::comparison::plots;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::with_error;
 use crate::report::page::page;
@@ -33,7 +33,7 @@ fn changed(report: &FleetReport) -> Markup {
     let each = html! {
         @for vehicle in report.changed() {
             (paragraph(&change_sentence(vehicle)))
-            @for plot in plots(vehicle) { (figure(&plot, "Bands: 95 % intervals. Shaded: where it changed.")) }
+            @for plot in plots(&vehicle.history.study) { (figure(&plot, "Bands: 95 % intervals. Shaded: where it changed.")) }
             (remarks(vehicle))
         }
         (note(&alarms(report)))
@@ -68,7 +68,7 @@ fn vehicles(report: &FleetReport) -> Markup {
 fn row(vehicle: &ReportedVehicle) -> Vec<Cell> {
     let study = &vehicle.history.study;
     let last = |track: &Vec<(f64, f64)>| track.last().map(|(value, std)| with_error(*value, *std));
-    let rotors: Vec<String> = vehicle.rotors.iter().filter_map(last).collect();
+    let rotors: Vec<String> = study.rotors.iter().filter_map(last).collect();
     let own = study.tracks.iter().filter(|track| track.owner == Owner::Vehicle);
     let latest = own.filter_map(|track| {
         let (value, std) = track.values.iter().rev().flatten().next()?;
@@ -93,7 +93,7 @@ fn unchanged(report: &FleetReport) -> Markup {
         @for vehicle in shown.take(MOST_DRAWN) {
             details {
                 summary { (vehicle.history.name) }
-                @for plot in plots(vehicle) { (figure(&plot, "Bands: 95 % intervals.")) }
+                @for plot in plots(&vehicle.history.study) { (figure(&plot, "Bands: 95 % intervals.")) }
                 (remarks(vehicle))
             }
         }

@@ -97,7 +97,7 @@ fn vehicle(of: &ReportedVehicle) -> VehicleEntry {
         flights: study.flights.len(),
         flights_left_out: of.history.left_out,
         start_utc_us: of.history.start_utc_us.clone(),
-        rotors: of.rotors.iter().enumerate().map(rotor).collect(),
+        rotors: study.rotors.iter().enumerate().map(rotor).collect(),
         comparison: ComparisonDocument::new(study),
     }
 }

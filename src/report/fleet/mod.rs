@@ -2,7 +2,6 @@
 
 mod html;
 mod json;
-mod plots;
 mod text;
 mod words;
 

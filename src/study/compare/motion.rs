@@ -33,7 +33,7 @@ pub(super) fn tracks(
     let compared = |parameters: Vec<FlightParameter>| parameters.into_iter().filter(is_compared).collect();
     let each = places.into_iter().zip(each.into_iter().map(compared)).collect();
     let reasons = explained.into_iter().map(Result::err).collect();
-    (Track::all(each, signals.len()), reasons)
+    (Track::all(each, signals.len(), vehicle), reasons)
 }
 
 /// Where the thrust acts, the balance tells better: offsets, and what one rotor gives.

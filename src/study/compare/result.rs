@@ -3,7 +3,7 @@
 use crate::change::{BalanceChange, Groups, Moved, NAMED, Step, Undecided, What};
 use crate::note::Note;
 use crate::study::{InputFile, Track};
-use crate::trim::{Balance, mean_arm_m};
+use crate::trim::{Balance, RotorTrack, mean_arm_m};
 use crate::vehicle::Vehicle;
 
 /// The whole answer.
@@ -17,6 +17,8 @@ pub struct CompareStudy {
     pub flights: Vec<ComparedFlight>,
     /// their balance
     pub balance: Balance,
+    /// thrust for a command of each rotor along the flights, by that balance
+    pub rotors: Vec<RotorTrack>,
     /// each parameter along the flights
     pub tracks: Vec<Track>,
     /// flights before and after, where two groups were given
@@ -127,6 +129,13 @@ impl CompareStudy {
             Some(compared) => !compared.changes.is_empty(),
             None => !self.history.is_empty(),
         }
+    }
+
+    /// Places of the flights from which on something is otherwise than before.
+    pub fn changed_from(&self, what: Changed) -> impl Iterator<Item = usize> {
+        let is_of =
+            move |step: &&Step<Compared>| step.change.changes.iter().any(|change| change.what == what);
+        self.history.iter().filter(is_of).map(|step| step.from)
     }
 
     /// m of an arm; `None` where lengths are not known.

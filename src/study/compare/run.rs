@@ -18,7 +18,7 @@ use crate::study::one_vehicle::{doubt_one_vehicle, refuse_others};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{InputFile, Progress, Stage, StudyError, Track, VehicleGiven};
-use crate::trim::{Leg, balance, legs};
+use crate::trim::{Leg, balance, legs, rotor_tracks};
 use crate::vehicle::Vehicle;
 
 /// A vehicle of which nothing is known: its mass sets a scale that no result shows.
@@ -94,6 +94,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     Ok(CompareStudy {
         flights: each_compared(&flights, reasons),
         is_known: request.vehicle.is_some(),
+        rotors: rotor_tracks(&balance, &vehicle),
         vehicle,
         balance,
         tracks,

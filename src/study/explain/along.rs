@@ -1,11 +1,17 @@
 //! Several flights: what they have in common, what is each one's own, and which flights carry a name.
 
 use super::along_flights::AlongFlights;
+use super::readers::for_readers;
 use super::result::ExplainStudy;
-use crate::diagnose::{ExplainSettings, each_with_model_of_all, own_wind, relative_to_air};
+use crate::diagnose::signature::Role;
+use crate::diagnose::signatures::signature_of;
+use crate::diagnose::{
+    ExplainSettings, Named, Owner, Verdict, each_with_model_of_all, explain, own_wind, relative_to_air,
+};
 use crate::signals::Signals;
 use crate::study::Track;
 use crate::study::flights::Prepared;
+use crate::study::track::CARRIES;
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -30,7 +36,7 @@ impl ExplainStudy {
         let (vehicle, settings) = (&self.given.vehicle, &self.given.settings);
         let drifts: Vec<bool> = winds_m_s.iter().map(Option::is_some).collect();
         let each = each_with_model_of_all(flights, &drifts, &self.explanation, (vehicle, settings));
-        let mut tracks = Track::all(each.into_iter().enumerate().collect(), flights.len());
+        let mut tracks = Track::all(each.into_iter().enumerate().collect(), flights.len(), vehicle);
         if drifts.iter().any(|drifts| *drifts) {
             // what was left of a wind belongs to it
             for (track, axis) in tracks.iter().filter_map(|track| Some((track, track.wind_axis?))) {
@@ -49,7 +55,75 @@ impl ExplainStudy {
             let shows = |flight: &usize| own.iter().any(|track| track.is_shown_by(*flight));
             (id, (!own.is_empty()).then(|| (0..flights.len()).filter(shows).collect()))
         };
-        let carried_by = self.explanation.named.iter().map(|named| of(named.id)).collect();
-        self.along = Some(AlongFlights { tracks, winds_m_s, carried_by });
+        let carried_by: Vec<(&'static str, Option<Vec<usize>>)> =
+            self.explanation.named.iter().map(|named| of(named.id)).collect();
+        let sized_by: Vec<(&'static str, Vec<usize>)> = carried_by
+            .iter()
+            .filter_map(|(id, carriers)| Some((*id, sized_by(id, carriers.as_deref()?, &tracks)?)))
+            .collect();
+        // one value of a parameter: in the names and in the model that of the flights together
+        let value = |track: &Track| {
+            let by = sized_by.iter().find(|(id, _)| track.effect == Some(id)).map(|(_, flights)| flights);
+            match (by, track.owner) {
+                (Some(flights), _) => track.only(flights).pooled(),
+                (None, Owner::Vehicle) => track.pooled(),
+                (None, Owner::Flight) => None,
+            }
+        };
+        let common: Vec<(&str, (f64, f64))> =
+            tracks.iter().filter_map(|track| Some((track.name.as_str(), value(track)?))).collect();
+        self.explanation = self.explanation.with_common(&common);
+        self.effects = for_readers(&self.explanation.named);
+        let of_one_flight = self.names_of_one_flight(flights, !sized_by.is_empty());
+        self.along = Some(AlongFlights { tracks, winds_m_s, carried_by, sized_by, of_one_flight });
     }
+
+    /// What flights have alone where something tells that they are not alike: a part of them only carries a name, or a force is left that
+    /// wanders.
+    fn names_of_one_flight(&self, flights: &[Signals], differ: bool) -> Vec<(usize, Named)> {
+        if !differ && self.explanation.aperiodic.wandering().next().is_none() {
+            return Vec::new();
+        }
+        let (vehicle, settings) = (&self.given.vehicle, &self.given.settings);
+        let of = |(place, signals): (usize, &Signals)| -> Vec<(usize, Named)> {
+            let alone = explain(std::slice::from_ref(signals), vehicle, settings);
+            let found = alone.ok().filter(|alone| alone.verdict != Verdict::Unexplained);
+            let is_new = |named: &Named| {
+                let known = self.explanation.named.iter().any(|known| known.id == named.id);
+                !known && signature_of(named.id).is_some_and(|of| is_of_one_flight(&of.role))
+            };
+            let names = found.map_or_else(Vec::new, |found| found.named);
+            names.into_iter().filter(is_new).map(|named| (place, named)).collect()
+        };
+        flights.par_iter().enumerate().flat_map_iter(of).collect()
+    }
+}
+
+/// Whether one flight of a vehicle may have an effect and the others not. What acts on the vehicle in every flight is told by all of them
+/// together, and a substitute of it that one flight has alone is no name.
+fn is_of_one_flight(role: &Role) -> bool {
+    role.moment.is_some() || role.hangs_below || role.of_the_loading || role.which.is_some()
+}
+
+/// The flights that tell the size of a name that differs between the flights: of what is each flight's own the one that shows it the
+/// most, of what the vehicle has those that show it where the others show that they have it not. `None`: all of them.
+fn sized_by(id: &str, carriers: &[usize], tracks: &[Track]) -> Option<Vec<usize>> {
+    let own: Vec<&Track> = tracks.iter().filter(|track| track.effect == Some(id)).collect();
+    if own.iter().all(|track| track.owner == Owner::Flight) {
+        let most = |flight: usize| own.iter().map(|track| track.strength(flight)).fold(0.0, f64::max);
+        return carriers
+            .iter()
+            .copied()
+            .max_by(|a, b| most(*a).total_cmp(&most(*b)))
+            .map(|flight| vec![flight]);
+    }
+    let others = |track: &Track| -> Vec<usize> {
+        (0..track.values.len()).filter(|flight| !carriers.contains(flight)).collect()
+    };
+    let differs = |track: &&Track| {
+        let (with, without) = (track.only(carriers).pooled(), track.only(&others(track)).pooled());
+        with.zip(without)
+            .is_some_and(|(with, without)| (with.0 - without.0).abs() > CARRIES * with.1.hypot(without.1))
+    };
+    own.iter().any(differs).then(|| carriers.to_vec())
 }

@@ -10,7 +10,7 @@ use crate::study::Track;
 pub(super) fn of_others(study: &ExplainStudy, flights: &[Signals]) -> Vec<Explanation> {
     let (vehicle, settings) = (&study.given.vehicle, &study.given.settings);
     let rigid = rigid_by_flight(flights, &study.explanation, vehicle, settings);
-    let before = Track::all(rigid.into_iter().enumerate().collect(), flights.len());
+    let before = Track::all(rigid.into_iter().enumerate().collect(), flights.len(), vehicle);
     let after: &[Track] = study.along.as_ref().map_or(&[], |along| &along.tracks);
     let one = |flight: usize| {
         let [before, after] = [&before, after].map(|tracks| without(tracks, flight));

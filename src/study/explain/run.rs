@@ -190,10 +190,10 @@ impl Task<'_> {
         study.notes.extend(study.gyroscopic().iter().map(GyroscopicShare::note));
         study.tell_flights_apart();
         study.tell_wandering();
-        study.evaluate_explained(flights);
         if flights.signals.len() > 1 {
             study.tell_along(&flights.signals, self.winds_m_s.to_vec());
         }
+        study.evaluate_explained(flights);
         if let ValidationData::LeftOut { .. } = shown_on {
             study.evaluate_left_out(flights);
         } else {

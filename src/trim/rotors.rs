@@ -1,18 +1,18 @@
-//! What each rotor gives for its command along a history, by the balance in still air.
+//! What each rotor gives for its command along flights, by their balance in still air.
 
-use super::history::VehicleHistory;
-use crate::trim::mean_arm_m;
+use super::balance::{Balance, FlightBalance};
+use super::legs::mean_arm_m;
+use crate::vehicle::Vehicle;
 use nalgebra::{Matrix3, Vector3};
 
 /// Thrust of a rotor for its command along the flights, over that of the mean of all rotors: value and standard error; one entry a flight.
 pub type RotorTrack = Vec<(f64, f64)>;
 
 /// Of each rotor of a vehicle, in the order of its description. The balance has three components: of more than four rotors, it is the
-/// smallest difference between them that makes it. Empty where the rotors' places do not tell.
+/// smallest difference between them that makes it. The centre of mass is taken where the description has it. Empty where the rotors' places
+/// do not tell.
 #[must_use]
-pub fn rotor_tracks(history: &VehicleHistory) -> Vec<RotorTrack> {
-    let study = &history.study;
-    let vehicle = &study.vehicle;
+pub fn rotor_tracks(balance: &Balance, vehicle: &Vehicle) -> Vec<RotorTrack> {
     let arm_m = mean_arm_m(vehicle);
     let pulls: Vec<Vector3<f64>> = vehicle
         .rotors
@@ -29,14 +29,14 @@ pub fn rotor_tracks(history: &VehicleHistory) -> Vec<RotorTrack> {
     let of = |pull: &Vector3<f64>| -> RotorTrack {
         // share of the rotor = 1/n + row . (balance - its mean)
         let row = inverse * (pull - mean);
-        let one = |(place, flight): (usize, &crate::trim::FlightBalance)| {
+        let one = |(place, flight): (usize, &FlightBalance)| {
             let lean = Vector3::from(flight.lean) - mean;
-            let std = Vector3::from_fn(|axis, _| study.balance.std(place, axis).hypot(flight.wander[axis]));
+            let std = Vector3::from_fn(|axis, _| balance.lean(place, axis).1);
             let share = 1.0 / count + row.dot(&lean);
             // a rotor that gives less for its command is commanded more
             (1.0 / (count * share), row.component_mul(&std).norm() / (count * share * share))
         };
-        study.balance.flights.iter().enumerate().map(one).collect()
+        balance.flights.iter().enumerate().map(one).collect()
     };
     pulls.iter().map(of).collect()
 }

@@ -1,9 +1,8 @@
-//! The history of a vehicle as charts.
+//! The flights of a vehicle as charts.
 
 use crate::change::interval_95;
-use crate::fleet::ReportedVehicle;
 use crate::report::chart::{Band, Line, Panel, Stroke, inline};
-use crate::study::Track;
+use crate::study::{CompareStudy, Track};
 use maud::Markup;
 
 /// One line along the flights, with its intervals.
@@ -13,26 +12,24 @@ struct Along {
 }
 
 /// The charts of a vehicle along its flights: what its rotors give, its balance, and each parameter that two flights have.
-pub(super) fn plots(vehicle: &ReportedVehicle) -> Vec<Markup> {
-    let study = &vehicle.history.study;
+pub(in crate::report) fn plots(study: &CompareStudy) -> Vec<Markup> {
     let mut charts = Vec::new();
-    if !vehicle.rotors.is_empty() {
+    if !study.rotors.is_empty() {
         let of = |(place, track): (usize, &Vec<(f64, f64)>)| Along {
             label: study.vehicle.motor_words(place),
             values: track.iter().map(|value| Some(*value)).collect(),
         };
-        let lines: Vec<Along> = vehicle.rotors.iter().enumerate().map(of).collect();
-        charts.push(chart(vehicle, ("Thrust for a command, over the mean rotor's", "1"), &lines));
+        let lines: Vec<Along> = study.rotors.iter().enumerate().map(of).collect();
+        charts.push(chart(study, ("Thrust for a command, over the mean rotor's", "1"), &lines));
     }
-    charts.push(balance(vehicle));
+    charts.push(balance(study));
     let is_shown = |track: &&Track| track.values.iter().flatten().count() > 1;
-    charts.extend(study.tracks.iter().filter(is_shown).map(|track| of_track(vehicle, track)));
+    charts.extend(study.tracks.iter().filter(is_shown).map(|track| of_track(study, track)));
     charts
 }
 
 /// Where the thrust acts against the centre of mass.
-fn balance(vehicle: &ReportedVehicle) -> Markup {
-    let study = &vehicle.history.study;
+fn balance(study: &CompareStudy) -> Markup {
     let (arm, unit) = study.arm_m().map_or((1.0, "arms"), |arm_m| (arm_m, "m"));
     let along = |axis: usize, label: &str| Along {
         label: label.to_owned(),
@@ -44,20 +41,20 @@ fn balance(vehicle: &ReportedVehicle) -> Markup {
             .collect(),
     };
     chart(
-        vehicle,
+        study,
         ("Where the thrust acts from the centre of mass", unit),
         &[along(0, "along x"), along(1, "along y")],
     )
 }
 
 /// The chart of one parameter.
-fn of_track(vehicle: &ReportedVehicle, track: &Track) -> Markup {
-    let line = Along { label: track.name.clone(), values: track.values.clone() };
-    chart(vehicle, (&track.name, track.unit), &[line])
+fn of_track(study: &CompareStudy, track: &Track) -> Markup {
+    let told = |value: &Option<(f64, f64)>| value.filter(|estimate| track.is_determined(*estimate));
+    let line = Along { label: track.name.clone(), values: track.values.iter().map(told).collect() };
+    chart(study, (&track.name, track.unit), &[line])
 }
 
-fn chart(vehicle: &ReportedVehicle, (title, unit): (&str, &str), lines: &[Along]) -> Markup {
-    let study = &vehicle.history.study;
+fn chart(study: &CompareStudy, (title, unit): (&str, &str), lines: &[Along]) -> Markup {
     let (mut drawn, mut bands) = (Vec::new(), Vec::new());
     for (colour, along) in lines.iter().enumerate() {
         let known: Vec<(f64, (f64, f64))> = (1_u32..)
