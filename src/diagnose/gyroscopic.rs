@@ -6,6 +6,7 @@ use super::fit::Fitted;
 use super::nuisances::gyroscopic_column;
 use super::trace::Trace;
 use crate::note::{About, Note};
+use crate::vehicle::Guessed;
 
 /// Share of the gyroscopic torque that acts on the vehicle of a simulator.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,16 +30,20 @@ impl GyroscopicShare {
     }
 }
 
-/// A simulator has the torque or leaves it out: the middle between both.
-const LEFT_OUT: f64 = 0.5;
-
 /// Standard errors by which the share must be below the whole: as for a name.
 const CERTAIN: f64 = 4.0;
+
+/// Error of the share beside that of noise: the moments it rests on are known to a few percent, and so is their difference, which is
+/// about a third of them. Simulators leave out all of it, so a share in between is an error of the model.
+const MODEL_STD: f64 = 0.2;
 
 /// The start of a fit that estimates the share, where a simulator flew and the flights tell that it leaves the torque out. A real
 /// vehicle always has it.
 pub(super) fn left_out(flights: &[Trace], fitted: &Fitted, start: &Base) -> Option<Base> {
     let simulated = flights.iter().all(|trace| trace.simulated) && fitted.rows.compares_torques;
+    // with a guessed torque about z, izz is one, and so is what the others turn it by
+    let guessed = [Guessed::TorqueRatio, Guessed::Arms];
+    let simulated = simulated && start.vehicle.guesses.iter().all(|guess| !guessed.contains(&guess.of));
     if !simulated || start.estimates_gyroscopic {
         return None;
     }
@@ -55,7 +60,7 @@ pub(super) fn left_out(flights: &[Trace], fitted: &Fitted, start: &Base) -> Opti
     let now = fitted.base.vehicle.body.gyroscopic;
     let share = now + more;
     tracing::debug!(share, std, "gyroscopic torque of a simulator tested");
-    if !(share < LEFT_OUT && now - share > CERTAIN * std && std > 0.0) {
+    if !(now - share > CERTAIN * std.hypot(MODEL_STD) && std > 0.0) {
         return None;
     }
     let mut base = start.clone();
