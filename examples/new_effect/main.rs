@@ -41,7 +41,7 @@ pub fn found() -> Result<String, Box<dyn Error>> {
 
     let signals = condition(&flight.recording, &pair.nominal, &ConditionSettings::default())?;
     let signatures: Vec<&'static Signature> = ALL.iter().copied().chain([&signature::SIGNATURE]).collect();
-    let settings = ExplainSettings { signatures, ..ExplainSettings::default() };
+    let settings = ExplainSettings { signatures: signatures.leak(), ..ExplainSettings::default() };
     let explanation = explain(&[signals], &pair.nominal, &settings)?;
 
     let mut text = format!("{}\n", explanation.verdict.name());

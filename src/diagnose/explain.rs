@@ -35,12 +35,19 @@ pub struct ExplainSettings {
     /// conditions of a name
     pub gates: Gates,
     /// effects that are tested; effects from outside of this library may be added to [`ALL`]
-    pub signatures: Vec<&'static Signature>,
+    pub signatures: &'static [&'static Signature],
+    /// effects that are tested and never taken, because other flights speak against them
+    pub refused: Vec<&'static str>,
 }
 
 impl Default for ExplainSettings {
     fn default() -> Self {
-        Self { half_width_s: WEAK_HALF_WIDTH_S, gates: Gates::default(), signatures: ALL.to_vec() }
+        Self {
+            half_width_s: WEAK_HALF_WIDTH_S,
+            gates: Gates::default(),
+            signatures: ALL,
+            refused: Vec::new(),
+        }
     }
 }
 
@@ -130,7 +137,8 @@ pub fn explain_watched(
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
     let mut pace = Pace::new(tell);
-    let mut found = search(&traces, vehicle, &settings.gates, (&settings.signatures, &mut pace))?;
+    let mut found =
+        search(&traces, vehicle, &settings.gates, (settings.signatures, &settings.refused, &mut pace))?;
     refine((flights, &traces), vehicle, (&mut found, &mut pace))?;
     let beyond = tracing::info_span!("locate").in_scope(|| beyond(&traces, &found));
     let explanation = judge(&traces, vehicle, found, beyond);

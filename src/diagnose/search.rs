@@ -22,7 +22,7 @@ use super::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
 
-/// Runs the forward search.
+/// Runs the forward search. Effects of the list `never` are tested and not taken.
 ///
 /// # Errors
 /// [`PhysicsError`] where the vehicle is not physical.
@@ -30,7 +30,7 @@ pub fn search(
     flights: &[Trace],
     vehicle: &Vehicle,
     gates: &Gates,
-    (signatures, pace): (&[&'static Signature], &mut Pace<'_>),
+    (signatures, never, pace): (&[&'static Signature], &[&'static str], &mut Pace<'_>),
 ) -> Result<Search, PhysicsError> {
     let _step = tracing::info_span!("search").entered();
     let (before, latency) = fit_latency(flights, Base::anchored(vehicle))?;
@@ -41,6 +41,7 @@ pub fn search(
     let mut settled = 0;
     let mut refused: Vec<&'static str> = Vec::new();
     loop {
+        refused.extend(never);
         let price = Price::of(&after);
         let passed;
         (passed, last) = ranked(flights, (&after, price), gates, signatures, &refused);

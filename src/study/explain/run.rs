@@ -143,14 +143,17 @@ impl Task<'_> {
                 study.refuted = Some(refuted);
                 return Ok(study);
             }
-            let tried = settings.signatures.len();
-            let more = study.worthless();
-            settings.signatures.retain(|signature| more.as_ref().is_none_or(|of| of.id != signature.id()));
-            if settings.signatures.len() == tried {
+            let tried = |of: &Worthless| !settings.refused.contains(&of.id);
+            let Some(more) = study.worthless().filter(tried) else {
                 study.notes.extend(worthless.iter().map(Worthless::note));
                 return Ok(study);
-            }
-            worthless.extend(more);
+            };
+            // what would take its place has no more to stand on
+            let terms = &study.explanation.search.after.base.effects;
+            let stays = |id: &str| id != more.id && terms.iter().any(|term| term.id() == id);
+            let ids = settings.signatures.iter().map(|signature| signature.id());
+            settings.refused = ids.filter(|id| !stays(id)).collect();
+            worthless.push(more);
             self.progress.stage(Stage::ExplainingAgain);
         }
     }

@@ -30,3 +30,26 @@ impl Worth {
         (!each.is_empty()).then(|| each.iter().sum::<f64>() / each.len() as f64)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+    use super::*;
+
+    #[test]
+    fn an_effect_without_which_errors_are_smaller_is_told_by_the_mean_over_what_is_recorded() {
+        let without = |id, errors: [Option<f64>; 4]| Without {
+            id,
+            errors: vec![[Some(9.0); 4], errors, [Some(9.0); 4]],
+        };
+        let each = vec![
+            without(None, [Some(2.0), Some(1.0), Some(0.5), None]),
+            without(Some("inflow"), [Some(1.8), Some(0.8), Some(0.5), None]),
+            without(Some("linear_drag"), [Some(4.0), Some(2.0), Some(0.5), None]),
+        ];
+        let worth = Worth { each, on_explained: false };
+        assert!((worth.better_without_percent("inflow").unwrap() - 10.0).abs() < 1e-9);
+        assert!((worth.better_without_percent("linear_drag").unwrap() + 200.0 / 3.0).abs() < 1e-9);
+        assert_eq!(worth.better_without_percent("tether"), None);
+    }
+}
