@@ -8,7 +8,7 @@ use crate::estimate::{
     theta_of,
 };
 use crate::physics::PhysicsError;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Guessed, Vehicle};
 use nalgebra::{SMatrix, SVector};
 
 /// Standard errors by which an inertia may be moved to the nearest one that a body can have. The usual three: beyond,
@@ -16,7 +16,8 @@ use nalgebra::{SMatrix, SVector};
 pub(super) const WITHIN_ERROR: f64 = 3.0;
 
 /// Moves an inertia that no body can have to the nearest possible one in the metric of its covariance, if that lies within its
-/// error. Otherwise the flight does not determine it: the stated one stays, with an error as large as itself.
+/// error. Otherwise the flight does not determine it: the stated one stays, with an error as large as itself. A guessed torque per thrust
+/// moves with izz.
 ///
 /// # Errors
 /// [`PhysicsError`] where the vehicle is not physical.
@@ -34,6 +35,10 @@ pub(super) fn make_physical(
     let moved = near(fitted, &theta, &Nominal::of(stated));
     let mut base = fitted.base.clone();
     base.vehicle.body.inertia_kg_m2 = inertia_of(&moved.unwrap_or(nominal));
+    if let Some(moved) = moved.filter(|_| guesses_torque(stated)) {
+        // the motion tells the ratio of izz and of this torque
+        base.vehicle.propulsion.torque_per_thrust_m *= moved[ABOUT_Z] / theta[ABOUT_Z];
+    }
     let mut after = fitted.moved_to(flights, base)?;
     if moved.is_none() {
         for (place, column) in after.rows.nuisances.iter().enumerate() {
@@ -49,6 +54,13 @@ pub(super) fn make_physical(
     }
     *fitted = after;
     Ok(())
+}
+
+/// Place of izz in mass and inertia.
+const ABOUT_Z: usize = 6;
+
+fn guesses_torque(vehicle: &Vehicle) -> bool {
+    vehicle.guesses.iter().any(|guess| guess.of == Guessed::TorqueRatio)
 }
 
 /// Where a moment of inertia is not determined, or no body can have the inertia, it stays at what the vehicle file states as far as the
