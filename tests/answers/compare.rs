@@ -83,7 +83,8 @@ fn a_rotor_that_became_weak_is_found_and_an_unchanged_vehicle_is_not_called_chan
     // the same along the row
     assert_eq!(said["history"][0]["from"], 2);
     let report = std::fs::read_to_string(folder.join("out/report.html")).unwrap();
-    assert!(report.contains("<svg") && report.contains(change["of"].as_str().unwrap()));
+    assert_eq!((&change["of"], &change["motor"]), (&"front_left".into(), &3.into()));
+    assert!(report.contains("<svg") && report.contains("motor 3 (front left)"));
     let stored: Value =
         serde_json::from_str(&std::fs::read_to_string(folder.join("out/comparison.json")).unwrap()).unwrap();
     assert_eq!(stored, said);

@@ -1,6 +1,6 @@
 //! What was tried, in the order in which it is told.
 
-use crate::diagnose::{Tested, refused_by};
+use crate::diagnose::{GyroscopicShare, Tested, refused_by};
 
 use super::ExplainStudy;
 
@@ -50,6 +50,12 @@ impl Tried {
 }
 
 impl ExplainStudy {
+    /// Where a simulator leaves the gyroscopic torque out: the share that acts.
+    #[must_use]
+    pub fn gyroscopic(&self) -> Option<GyroscopicShare> {
+        self.fitted().gyroscopic()
+    }
+
     /// What was taken, step by step with its rivals, and what was tried about the final model.
     #[must_use]
     pub fn tried(&self) -> Vec<Tried> {

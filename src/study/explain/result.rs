@@ -11,8 +11,8 @@ use crate::diagnose::experiment::{NextError, NextFlight};
 use crate::diagnose::holdout::{Difference, HoldoutFit, RateLaw};
 use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::{
-    AXES, ByPart, CHANNEL_NAMES, CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, GyroscopicShare,
-    LatencyFinding, Named, Trace, Verdict,
+    AXES, ByPart, CHANNEL_NAMES, CHANNELS, Empirical, ExplainSettings, Explanation, Fitted, LatencyFinding,
+    Named, Trace, Verdict,
 };
 use crate::draft::Draft;
 use crate::estimate::{
@@ -175,7 +175,7 @@ impl ExplainStudy {
     }
 
     /// The fit that the model rests on: where nothing serves, that of the rigid body alone.
-    fn fitted(&self) -> &Fitted {
+    pub(super) fn fitted(&self) -> &Fitted {
         let search = &self.explanation.search;
         if self.verdict() == Verdict::Unexplained { &search.before } else { &search.after }
     }
@@ -184,12 +184,6 @@ impl ExplainStudy {
     #[must_use]
     pub fn vehicle(&self) -> &Vehicle {
         &self.fitted().base.vehicle
-    }
-
-    /// Where a simulator leaves the gyroscopic torque out: the share that acts.
-    #[must_use]
-    pub fn gyroscopic(&self) -> Option<GyroscopicShare> {
-        self.fitted().gyroscopic()
     }
 
     /// Mass and inertia, nominal, alone and with the effects.
