@@ -94,7 +94,7 @@ mod tests {
         };
         assert!(of(&[0, 1, 2]).is_ok());
         let said = of(&[0, 1, 2, 3, 4]).unwrap_err().to_string();
-        assert!(said.contains("5 rotors") && said.contains("for rotors 4 and 5"), "{said}");
+        assert!(said.contains("5 rotors") && said.contains("for motors 4 and 5"), "{said}");
         // at rest two outputs that drift are no flight
         let rest = Stream {
             width: 3,
