@@ -11,7 +11,7 @@ use nalgebra::DMatrix;
 
 impl Explanation {
     /// The same models, `before` and `after`, with other values and standard errors: mass, moments of inertia and effects by the names of
-    /// [`FlightParameter`], SI. What is not among them stays.
+    /// [`FlightParameter`](super::FlightParameter), SI. What is not among them stays.
     #[must_use]
     pub fn with_values(&self, before: &[(&str, (f64, f64))], after: &[(&str, (f64, f64))]) -> Self {
         let mut moved = self.clone();
@@ -22,7 +22,7 @@ impl Explanation {
 }
 
 impl Explanation {
-    /// The final model with the values that flights have in common, by the names of [`FlightParameter`], SI: in its names as well.
+    /// The final model with the values that flights have in common, by the names of [`FlightParameter`](super::FlightParameter), SI: in its names as well.
     #[must_use]
     pub fn with_common(&self, values: &[(&str, (f64, f64))]) -> Self {
         let mut moved = self.with_values(&[], values);
