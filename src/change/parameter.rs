@@ -2,6 +2,7 @@
 
 use super::balance_change::{NAMED, NAMED_SIGMAS};
 use super::groups::{Groups, Moved};
+use super::pooled::PRIOR;
 
 /// How a parameter of one vehicle differs from flight to flight beside its stated error.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,10 +40,6 @@ pub struct Undecided {
 /// A difference is told as undecided from so many standard errors on. Of ten parameters of an unchanged vehicle, one in 40 pairs of
 /// flights is.
 const UNDECIDED: f64 = 3.0;
-
-/// Flights that the stated errors count as where their scatter is learned. With fewer, three flights that agree by
-/// chance would narrow the error; with more, flights that scatter could not widen it.
-const PRIOR: f64 = 4.0;
 
 /// Later flights say the same from so many standard errors on.
 const SAYS: f64 = 2.0;

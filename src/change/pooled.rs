@@ -2,19 +2,20 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
+/// Flights that the stated errors count as where their scatter is learned. With fewer, three flights that agree by
+/// chance would narrow the error; with more, flights that scatter could not widen it.
+pub(super) const PRIOR: f64 = 4.0;
 /// Level of the test that flights scatter by more than their errors (Cochran's Q). Flights that agree would otherwise have a wider error
 /// in every second case.
 const LEVEL: f64 = 0.05;
-/// Times that the interval of the variance between flights is halved: to a share of 1e-9.
-const HALVINGS: usize = 30;
 
 /// Values that were put together.
 struct Pool {
     mean: f64,
-    /// of the parts of the errors that are each flight's own, with the variance between flights
+    /// of the parts of the errors that are each flight's own
     information: f64,
-    /// variance between flights beyond their errors; 0 where a test does not find it
-    between: f64,
+    /// by which the flights scatter more than these parts say; 1 where a test does not find it
+    scale: f64,
     /// least part of the errors that goes the same way in all flights
     shared: f64,
 }
@@ -22,32 +23,6 @@ struct Pool {
 /// Whether a value takes part: it and its standard error are numbers.
 fn is_usable((value, std): &(f64, f64)) -> bool {
     value.is_finite() && *std > 0.0 && std.is_finite()
-}
-
-/// Mean and information of values with their variances, and the sum of squares about it, each over its variance.
-fn weighted(values: &[(f64, f64)], between: f64) -> (f64, f64, f64) {
-    let information: f64 = values.iter().map(|(_, own)| (own + between).recip()).sum();
-    let mean = values.iter().map(|(value, own)| value / (own + between)).sum::<f64>() / information;
-    let squares = values.iter().map(|(value, own)| (value - mean).powi(2) / (own + between)).sum();
-    (mean, information, squares)
-}
-
-/// Variance between flights (Paule and Mandel): with it the sum of squares is what is expected of so many flights. 0 where a test at
-/// [`LEVEL`] does not find it.
-fn between(values: &[(f64, f64)]) -> f64 {
-    let free = values.len() as f64 - 1.0;
-    let (_, _, squares) = weighted(values, 0.0);
-    if !ChiSquared::new(free).is_ok_and(|expected| expected.sf(squares) < LEVEL) {
-        return 0.0;
-    }
-    // with all of the scatter as the variance the sum is at most one
-    let mean = values.iter().map(|(value, _)| value).sum::<f64>() / values.len() as f64;
-    let most: f64 = values.iter().map(|(value, _)| (value - mean).powi(2)).sum();
-    let halved = |(low, high): (f64, f64), _| {
-        let middle = 0.5 * (low + high);
-        if weighted(values, middle).2 > free { (middle, high) } else { (low, middle) }
-    };
-    (0..HALVINGS).fold((0.0, most), halved).1
 }
 
 impl Pool {
@@ -60,30 +35,36 @@ impl Pool {
         if known.is_empty() {
             return None;
         }
-        let own: Vec<(f64, f64)> =
-            known.iter().map(|(value, std, _)| (*value, std * std - shared * shared)).collect();
-        let between = between(&own);
-        let (mean, information, _) = weighted(&own, between);
-        Some(Self { mean, information, between, shared })
+        let weight = |std: f64| (std * std - shared * shared).recip();
+        let information: f64 = known.iter().map(|(_, std, _)| weight(*std)).sum();
+        let mean = known.iter().map(|(value, std, _)| value * weight(*std)).sum::<f64>() / information;
+        let squares: f64 = known.iter().map(|(value, std, _)| (value - mean).powi(2) * weight(*std)).sum();
+        let free = known.len() as f64 - 1.0;
+        let scatters = ChiSquared::new(free).is_ok_and(|expected| expected.sf(squares) < LEVEL);
+        let scale = if scatters { ((PRIOR + squares) / (PRIOR + free)).sqrt().max(1.0) } else { 1.0 };
+        Some(Self { mean, information, scale, shared })
     }
 }
 
-/// Mean of the flights' values by their information, with its standard error. Where a test finds that they scatter by more than their
-/// errors, the variance between them is part of each error, and the mean follows all of them more evenly. Of
+/// Mean of the flights' values by their information, with its standard error: larger where a test finds that they scatter by more than
+/// their errors. Of
 /// each flight's standard error the part `common` goes the same way in all of them, and no number of flights lowers the least of it. A
 /// flight without a value takes no part. `None` where no flight has one.
 #[must_use]
 pub fn pooled_mean(values: &[Option<(f64, f64)>], common: &[f64]) -> Option<(f64, f64)> {
-    let Pool { mean, information, between: _, shared } = Pool::of(values, common)?;
-    Some((mean, information.sqrt().recip().hypot(shared)))
+    let Pool { mean, information, scale, shared } = Pool::of(values, common)?;
+    Some((mean, (scale * information.sqrt().recip()).hypot(shared)))
 }
 
-/// Each flight's value with the standard error that it has for the vehicle: where the flights scatter by more than their errors, the
-/// variance between them is part of it, as in [`pooled_mean`]. What takes no part in that mean stays as it is.
+/// Each flight's value with the standard error that the others leave it: larger where the flights scatter by more than their errors,
+/// by the same factor as that of [`pooled_mean`]. What takes no part in that mean stays as it is.
 #[must_use]
 pub fn with_scatter(values: &[Option<(f64, f64)>], common: &[f64]) -> Vec<Option<(f64, f64)>> {
-    let Some(Pool { between, .. }) = Pool::of(values, common) else { return values.to_vec() };
-    let wider = |std: f64| std.hypot(between.sqrt());
+    let Some(Pool { scale, shared, .. }) = Pool::of(values, common) else { return values.to_vec() };
+    let wider = |std: f64| {
+        let own = (std * std - shared * shared).max(0.0).sqrt();
+        (scale * own).hypot(shared.min(std))
+    };
     let each = |of: (f64, f64)| if is_usable(&of) { (of.0, wider(of.1)) } else { of };
     values.iter().map(|value| value.map(each)).collect()
 }

@@ -229,6 +229,28 @@ fn cut_propellers_are_found_from_20_mm_on_and_smaller_cuts_get_no_name() {
 }
 
 #[test]
+fn a_payload_that_is_dropped_in_a_flight_is_no_change_of_the_vehicle() {
+    let Some(shared) = support::shared() else { return };
+    let folder = shared.join("onboard/sitl");
+    let request = CompareRequest {
+        before: vec![folder.join("px04.ulg")],
+        after: vec![folder.join("px10.ulg")],
+        vehicle: Some(VehicleGiven::File(folder.join("px4-v2.toml"))),
+        transient_s: CompareRequest::TRANSIENT_S,
+        ..CompareRequest::default()
+    };
+    let study = compare(&request, &Silent).unwrap();
+    assert!(!study.has_changed(), "{:?}", study.compared);
+    // drag along body z has one name in both flights, and they agree in it
+    let vertical = study.tracks.iter().find(|track| track.name == "linear_drag.dz").unwrap();
+    let [Some(one), Some(other)] = vertical.values[..] else { panic!("{vertical:?}") };
+    assert!((one.0 - other.0).abs() < 3.0 * one.1.hypot(other.1), "{vertical:?}");
+    assert!(!study.tracks.iter().any(|track| track.name == "inflow.kz"));
+    // and each rotor has a value of each flight
+    assert!(study.rotors.len() == 4 && study.rotors.iter().all(|track| track.len() == 2));
+}
+
+#[test]
 fn an_output_that_left_the_mixer_is_told_with_its_times_and_nothing_hidden_is_searched_for() {
     let Some(shared) = support::shared() else { return };
     let folder = shared.join("onboard/motor_fault_sim");

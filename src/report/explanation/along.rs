@@ -68,8 +68,10 @@ impl AlongValue {
             name: track.name.clone(),
             unit: track.unit,
             owner: whose(track),
-            together: estimate(track, track.pooled().filter(|_| track.owner == Owner::Vehicle)),
-            values: (0..track.values.len()).map(|flight| estimate(track, track.alone(flight))).collect(),
+            together: estimate(track, along.together(track)),
+            values: (0..track.values.len())
+                .map(|flight| estimate(track, along.alone(track, flight)))
+                .collect(),
         };
         Self {
             parameters: along.tracks.iter().map(track).collect(),
@@ -98,9 +100,9 @@ pub(super) fn along_lines(page: &mut String, study: &ExplainStudy) {
     let Some(along) = &study.along else { return };
     page.push_str("\n  together, and each flight alone\n");
     for track in &along.tracks {
-        let together = together(track);
+        let together = together(along, track);
         let each: Vec<String> =
-            (0..track.values.len()).map(|flight| value_of(track, track.alone(flight))).collect();
+            (0..track.values.len()).map(|flight| value_of(track, along.alone(track, flight))).collect();
         let _ = writeln!(page, "    {:<22} {together:<22} {}  {}", track.name, each.join(", "), track.unit);
     }
     if along.winds_m_s.iter().any(Option::is_some) {
@@ -135,7 +137,7 @@ pub(super) fn along_section(study: &ExplainStudy) -> Markup {
     let mut heads = vec!["parameter".to_owned(), "unit".to_owned(), "together|".to_owned()];
     heads.extend((0..study.given.inputs.len()).map(|flight| format!("flight {}|", flight + 1)));
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    let mut rows: Vec<Vec<Cell>> = along.tracks.iter().map(row).collect();
+    let mut rows: Vec<Vec<Cell>> = along.tracks.iter().map(|track| row(along, track)).collect();
     if along.winds_m_s.iter().any(Option::is_some) {
         let mut wind = vec![text("wind to north, west"), text("m/s"), number("each flight's own")];
         wind.extend(winds(along).into_iter().map(number));
@@ -163,16 +165,16 @@ pub(super) fn along_section(study: &ExplainStudy) -> Markup {
 }
 
 /// A parameter by all flights, in words.
-fn together(track: &Track) -> String {
+fn together(along: &AlongFlights, track: &Track) -> String {
     if track.owner == Owner::Flight {
         "each flight's own".to_owned()
     } else {
-        value_of(track, track.pooled())
+        value_of(track, along.together(track))
     }
 }
 
-fn row(track: &Track) -> Vec<Cell> {
-    let mut cells = vec![text(track.name.as_str()), text(track.unit), number(together(track))];
-    cells.extend((0..track.values.len()).map(|flight| number(value_of(track, track.alone(flight)))));
+fn row(along: &AlongFlights, track: &Track) -> Vec<Cell> {
+    let mut cells = vec![text(track.name.as_str()), text(track.unit), number(together(along, track))];
+    cells.extend((0..track.values.len()).map(|flight| number(value_of(track, along.alone(track, flight)))));
     cells
 }

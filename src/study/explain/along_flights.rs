@@ -23,4 +23,29 @@ impl AlongFlights {
     pub fn common(&self) -> impl Iterator<Item = &Track> {
         self.tracks.iter().filter(|track| track.owner == Owner::Vehicle)
     }
+
+    /// The value of a parameter in the answer and in the model, with its standard error: of all flights together, or of those that its
+    /// effect's size is of. `None` for what each flight has its own.
+    #[must_use]
+    pub fn together(&self, track: &Track) -> Option<(f64, f64)> {
+        let own = track.owner == Owner::Flight;
+        let pooled =
+            || self.sizing(track).map_or_else(|| track.pooled(), |flights| track.only(flights).pooled());
+        if own { None } else { pooled() }
+    }
+
+    /// The value of one flight alone. Where an effect differs between the flights, their scatter is no error.
+    #[must_use]
+    pub fn alone(&self, track: &Track, flight: usize) -> Option<(f64, f64)> {
+        match self.sizing(track) {
+            Some(_) => track.values.get(flight).copied().flatten(),
+            None => track.alone(flight),
+        }
+    }
+
+    /// The flights that the size of a parameter's effect is of, where it differs between them.
+    fn sizing(&self, track: &Track) -> Option<&[usize]> {
+        let of = self.sized_by.iter().find(|(id, _)| track.effect == Some(id));
+        of.map(|(_, flights)| flights.as_slice())
+    }
 }
