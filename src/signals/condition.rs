@@ -27,6 +27,10 @@ use std::sync::Arc;
 /// mean over more.
 pub const WEAK_HALF_WIDTH_S: f64 = 0.2;
 
+/// Least and largest step of the grid, s. Faster streams are averaged over a step: the weak form passes motion up to 5 Hz,
+/// which the least step samples twenty times a period, and each instant costs the same.
+const STEP_S: (f64, f64) = (0.01, 0.02);
+
 /// Settings of the conditioning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConditionSettings {
@@ -279,7 +283,7 @@ fn step(
     if !period.is_finite() {
         return Err(SignalsError::NoMotion);
     }
-    Ok(period.clamp(0.002, 0.02))
+    Ok(period.clamp(STEP_S.0, STEP_S.1))
 }
 
 /// The error if no stream of motion can be used.

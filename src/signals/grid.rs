@@ -1,6 +1,7 @@
 //! Uniform time grids and interpolation of recorded streams onto them.
 
 use crate::recording::Stream;
+use crate::stats::median_step;
 
 /// Uniformly spaced instants on the vehicle's clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +64,12 @@ impl Grid {
 /// Values beyond this are damage and count as missing, in SI units: no signal of a flying vehicle reaches it.
 pub const LARGEST_VALUE: f64 = 1e5;
 
-/// Natural cubic spline through a stream's samples, evaluated at the grid's instants plus `shift_s`.
+/// A stream with less than this share of the grid's step between its samples is averaged over a step: samples alone
+/// would fold its vibration into the band that is used.
+const AVERAGED: f64 = 0.75;
+
+/// Natural cubic spline through a stream's samples, evaluated at the grid's instants plus `shift_s`. Where the stream is
+/// faster than the grid, the mean over one step around each instant instead.
 ///
 /// Returns `width` values an instant, one after the other. Outside the samples the nearest value is
 /// held; samples with a missing or absurd value are passed over. `None` with fewer than four whole samples.
@@ -77,11 +83,17 @@ pub fn cubic_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<f64>
     let time: Vec<f64> = whole.iter().map(|&i| stream.time_s[i]).collect();
     let width = stream.width;
     let mut out = vec![0.0; grid.count * width];
-    let brackets = brackets(&time, shift_s, grid);
+    let fast = is_fast(&time, grid);
+    let brackets = if fast { Vec::new() } else { brackets(&time, shift_s, grid) };
     let mut values = vec![0.0; time.len()];
     for channel in 0..width {
         for (value, &index) in values.iter_mut().zip(&whole) {
             *value = stream.sample(index)[channel];
+        }
+        if fast {
+            let means = means_over_steps(&time, &values, shift_s, grid);
+            means.enumerate().for_each(|(instant, mean)| out[instant * width + channel] = mean);
+            continue;
         }
         let curvature = natural_spline_curvature(&time, &values);
         for (instant, &(left, s)) in brackets.iter().enumerate() {
@@ -95,13 +107,23 @@ pub fn cubic_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<f64>
     Some(out)
 }
 
-/// Linear interpolation between samples. See [`cubic_onto`] for the layout.
+/// Linear interpolation between samples; the mean over a step where the stream is faster than the grid. See
+/// [`cubic_onto`] for the layout.
 #[must_use]
 pub fn linear_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<f64>> {
     if stream.len() < 2 {
         return None;
     }
     let width = stream.width;
+    if is_fast(&stream.time_s, grid) && stream.values.iter().all(|value| value.abs() < LARGEST_VALUE) {
+        let mut out = vec![0.0; grid.count * width];
+        for channel in 0..width {
+            let values: Vec<f64> = stream.values.iter().skip(channel).step_by(width).copied().collect();
+            let means = means_over_steps(&stream.time_s, &values, shift_s, grid);
+            means.enumerate().for_each(|(instant, mean)| out[instant * width + channel] = mean);
+        }
+        return Some(out);
+    }
     let mut out = Vec::with_capacity(grid.count * width);
     for (left, s) in brackets(&stream.time_s, shift_s, grid) {
         let (before, after) = (stream.sample(left), stream.sample(left + 1));
@@ -126,6 +148,40 @@ pub fn hold_onto(stream: &Stream, grid: &Grid) -> Option<Vec<f64>> {
         out.extend_from_slice(stream.sample(at));
     }
     Some(out)
+}
+
+fn is_fast(time_s: &[f64], grid: &Grid) -> bool {
+    median_step(time_s) < AVERAGED * grid.step_s
+}
+
+/// Mean of the straight lines between samples over one step around each instant plus `shift_s`; the first and last sample
+/// are held outside.
+fn means_over_steps(
+    time_s: &[f64],
+    values: &[f64],
+    shift_s: f64,
+    grid: &Grid,
+) -> impl Iterator<Item = f64> {
+    let mut integral = Vec::with_capacity(time_s.len());
+    let mut sum = 0.0;
+    for index in 0..time_s.len() {
+        if index > 0 {
+            sum += 0.5 * (values[index] + values[index - 1]) * (time_s[index] - time_s[index - 1]).max(0.0);
+        }
+        integral.push(sum);
+    }
+    let edges = Grid { start_s: grid.start_s - 0.5 * grid.step_s, count: grid.count + 1, ..*grid };
+    let (first_s, last_s) = (time_s[0], time_s[time_s.len() - 1]);
+    let until = |(index, (left, share)): (usize, (usize, f64))| {
+        let t = edges.time_s(index) + shift_s;
+        let h = (time_s[left + 1] - time_s[left]).max(0.0);
+        let within = h * share * (values[left] + 0.5 * share * (values[left + 1] - values[left]));
+        let held = (t - first_s).min(0.0) * values[0] + (t - last_s).max(0.0) * values[values.len() - 1];
+        integral[left] + within + held
+    };
+    let until: Vec<f64> = brackets(time_s, shift_s, &edges).into_iter().enumerate().map(until).collect();
+    let step_s = grid.step_s;
+    (0..grid.count).map(move |instant| (until[instant + 1] - until[instant]) / step_s)
 }
 
 /// For each instant the index of the sample on its left and the share (0..1) of the way to the next.
@@ -170,6 +226,20 @@ mod tests {
         let time_s: Vec<f64> = (0..count).map(|i| period_s * i as f64).collect();
         let values = time_s.iter().map(|&t| f(t)).collect();
         Stream { time_s, width: 1, values }
+    }
+
+    #[test]
+    fn what_is_faster_than_the_grid_is_averaged_without_delay() {
+        let slow = |t: f64| (2.0 * t).sin();
+        let fast = stream(0.001, 3000, |t| slow(t) + (std::f64::consts::TAU * 100.0 * t).cos());
+        let grid = Grid { start_s: 0.5, step_s: 0.01, count: 200 };
+        for out in [cubic_onto(&fast, 0.02, &grid), linear_onto(&fast, 0.02, &grid)] {
+            for (index, value) in out.unwrap().iter().enumerate() {
+                assert!((value - slow(grid.time_s(index) + 0.02)).abs() < 1e-4, "{index}");
+            }
+        }
+        let outside = linear_onto(&fast, 0.0, &Grid { start_s: 3.5, step_s: 0.01, count: 1 }).unwrap();
+        assert!((outside[0] - fast.values[2999]).abs() < 1e-9);
     }
 
     #[test]
