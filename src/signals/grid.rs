@@ -156,12 +156,7 @@ fn is_fast(time_s: &[f64], grid: &Grid) -> bool {
 
 /// Mean of the straight lines between samples over one step around each instant plus `shift_s`; the first and last sample
 /// are held outside.
-fn means_over_steps(
-    time_s: &[f64],
-    values: &[f64],
-    shift_s: f64,
-    grid: &Grid,
-) -> impl Iterator<Item = f64> {
+fn means_over_steps(time_s: &[f64], values: &[f64], shift_s: f64, grid: &Grid) -> impl Iterator<Item = f64> {
     let mut integral = Vec::with_capacity(time_s.len());
     let mut sum = 0.0;
     for index in 0..time_s.len() {

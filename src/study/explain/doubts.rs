@@ -9,6 +9,11 @@ use crate::note::{About, Note};
 use crate::study::doubts::{TWO_VEHICLES, doubts};
 use crate::vehicle::Guessed;
 
+/// Largest ratio of an estimated mass to that of the vehicle file, or its inverse, without a note: a battery or a small payload.
+const ORDINARY_MASS: f64 = 1.15;
+/// Standard errors of the estimate that do not count. The usual 95 %.
+const WITHIN: f64 = 2.0;
+
 impl ExplainStudy {
     /// Mass, thrust and moments of inertia that are far from what the vehicle file states.
     pub(super) fn contradictions(&self) -> Vec<Contradiction> {
@@ -26,6 +31,31 @@ impl ExplainStudy {
         };
         let body = self.body().into_iter().enumerate().filter_map(of_body);
         self.scale().and_then(of_thrust).into_iter().chain(body).collect()
+    }
+
+    /// A note on a mass that differs from the vehicle file's by more than files do, and on what hangs on it. Further apart it is a
+    /// contradiction.
+    pub(super) fn tell_mass(&mut self) {
+        let body = self.body();
+        let Some(mass) = body.first() else { return };
+        let factor = mass.after.value / mass.nominal;
+        let apart = factor.ln().abs() - WITHIN * mass.after.std / mass.after.value.abs();
+        let told = self.contradictions().iter().any(|of| of.name == mass.name);
+        if mass.weighed
+            || told
+            || mass.not_determined.is_some()
+            || apart.is_nan()
+            || apart < ORDINARY_MASS.ln()
+        {
+            return;
+        }
+        let text = format!(
+            "the mass is {factor:.2} times what the vehicle file states, if the rotors give the thrust that it states. If the mass was \
+             weighed, the thrust is {:.2} times what is stated, and so is each force and moment of inertia of this answer: set anchor = \
+             \"mass\" below [identify] in the vehicle file",
+            factor.recip()
+        );
+        self.notes.push(Note::warning(About::Estimate, text));
     }
 
     /// Whether an effect is named that alters the thrust of a command: the masses and moments of inertia of single flights by the

@@ -189,6 +189,7 @@ impl Task<'_> {
         study.notes.extend_from_slice(self.notes);
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
+        study.tell_mass();
         study.notes.extend(study.explanation.torque_law.iter().map(TorqueLaw::note));
         study.notes.extend(study.gyroscopic().iter().map(GyroscopicShare::note));
         study.tell_flights_apart();
