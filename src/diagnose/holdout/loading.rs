@@ -13,8 +13,9 @@ use nalgebra::{Matrix2, Vector2};
 /// Beginning of a held-out flight from which its centre of mass is taken, s; the errors are those of the rest. Longer
 /// would take what is to be predicted, shorter leaves the place vague.
 const FIRST_S: f64 = 5.0;
-/// Length of the blocks whose scatter gives its standard error, s. It is longer than the torques are correlated.
-const BLOCK_S: f64 = 1.0;
+/// Length of the blocks whose scatter gives its standard error, s. It is longer than the weak form's window, over which torques are
+/// correlated; longer ones are too few for a scatter.
+const BLOCK_S: f64 = 0.5;
 /// Standard errors beyond which it was another place. As many as a name needs.
 const SIGMAS: f64 = NAME_Z;
 
