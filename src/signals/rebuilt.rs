@@ -14,8 +14,14 @@ use crate::vehicle::Propulsion;
 
 /// Setpoints must come this many times as often as the commands.
 const FASTER: f64 = 1.5;
-/// A command and the setpoint that it was made from are logged in one cycle of the controller, or the next, s.
-const SAME_CYCLE_S: f64 = 0.006;
+/// A command and the setpoint that it was made from are logged in cycles of the controller that are up to so many of these apart, s.
+const LATE_STEP_S: f64 = 0.001;
+const LATE_STEPS: i32 = 10;
+/// From and to where setpoints are around an instant, s: further than the noise of a controller's output is correlated, nearer than a
+/// motion of the body changes.
+const AROUND_S: (f64, f64) = (0.015, 0.1);
+/// Largest relative standard error of the torques about x and y by instruments. With a greater one, least squares err less.
+const MOST_RELATIVE_STD: f64 = 0.1;
 /// Thrust setpoints further apart are no line between each other, s: PX4 logs them at 17 Hz by default.
 const THRUST_GAP_S: f64 = 0.15;
 /// Commands that are no linear function of the setpoints any more: at their ends.
@@ -48,7 +54,7 @@ pub(super) fn rebuilt(
     let source = asked.source;
     let begin = format!("motor commands ({}) are logged at {slow_hz:.0} Hz", slow.message);
     let Some(allocation) = Allocation::fit(&asked.stream, &slow.stream, command) else {
-        let why = format!("fewer than {LEAST_PAIRS} of them have a setpoint in the same cycle");
+        let why = format!("fewer than {LEAST_PAIRS} of them have setpoints around them");
         return Some(Err(note(format!("{begin}, and are not rebuilt from {source}: {why}"))));
     };
     let told = format!(
@@ -111,12 +117,79 @@ fn between(stream: &Stream, channel: usize, time_s: f64) -> Option<f64> {
     (span_s <= THRUST_GAP_S).then(|| last + (next - last) * (time_s - last_s) / span_s)
 }
 
-/// Index of the stamp nearest to a time, not further than `within_s`.
-fn nearest(stamps_s: &[f64], time_s: f64, within_s: f64) -> Option<usize> {
-    let after = stamps_s.partition_point(|stamp_s| *stamp_s < time_s);
-    let away_s = |index: &usize| (stamps_s[*index] - time_s).abs();
-    let around = after.saturating_sub(1)..stamps_s.len().min(after + 1);
-    around.min_by(|a, b| away_s(a).total_cmp(&away_s(b))).filter(|index| away_s(index) <= within_s)
+/// Setpoints and commands of the same instants.
+struct Pairs {
+    /// a constant and the setpoints, a row an instant
+    asked: DMatrix<f64>,
+    /// a constant and the mean setpoints of the instants around, likewise
+    around: DMatrix<f64>,
+    /// thrusts, one column a rotor
+    wanted: DMatrix<f64>,
+}
+
+impl Pairs {
+    /// Commands that are not at their ends, with the setpoints `late_s` after their stamps; `None` where they are too few.
+    fn of(asked: &Stream, (thrusts, command): (&Stream, &Stream), late_s: f64) -> Option<Self> {
+        let unsaturated = |index: &usize| command.sample(*index).iter().all(|u| UNSATURATED.contains(u));
+        let row = |index: usize| {
+            let time_s = thrusts.time_s[index] + late_s;
+            let mut at = [1.0; COLUMNS];
+            for (channel, value) in at[1..].iter_mut().enumerate() {
+                *value = between(asked, channel, time_s)?;
+            }
+            Some((index, at, mean_around(asked, time_s)?))
+        };
+        let rows: Vec<_> = (0..thrusts.len()).filter(unsaturated).filter_map(row).collect();
+        (rows.len() >= LEAST_PAIRS).then(|| Self {
+            asked: DMatrix::from_fn(rows.len(), COLUMNS, |row, column| rows[row].1[column]),
+            around: DMatrix::from_fn(rows.len(), COLUMNS, |row, column| rows[row].2[column]),
+            wanted: DMatrix::from_fn(rows.len(), thrusts.width, |row, rotor| {
+                thrusts.sample(rows[row].0)[rotor]
+            }),
+        })
+    }
+
+    /// Mean square of what coefficients leave of a thrust, N^2.
+    fn left(&self, coefficients: &DMatrix<f64>) -> f64 {
+        (&self.wanted - &self.asked * coefficients).norm_squared() / self.wanted.len() as f64
+    }
+
+    /// Least squares. A setpoint that never moves has no coefficient: the least solution leaves it at nought.
+    fn by_least_squares(&self) -> Option<DMatrix<f64>> {
+        self.asked.clone().svd(true, true).solve(&self.wanted, 1e-9).ok()
+    }
+
+    /// With the setpoints around each instant as instruments. The controller's answer to the noise of its gyroscopes is another one in
+    /// the cycle that was logged than in that of the command, and lowers the coefficients of least squares. `None` where the slow motion
+    /// does not tell the torques about x and y.
+    fn by_instruments(&self) -> Option<DMatrix<f64>> {
+        let inverse = (self.around.transpose() * &self.asked).try_inverse()?;
+        let coefficients = &inverse * self.around.transpose() * &self.wanted;
+        let spread = &inverse * (self.around.transpose() * &self.around) * inverse.transpose();
+        let left = self.left(&coefficients);
+        let relative = |column: usize| {
+            let size = coefficients.row(column).norm_squared() / coefficients.ncols() as f64;
+            (left * spread[(column, column)] / size).sqrt()
+        };
+        (1..3).all(|column| relative(column) < MOST_RELATIVE_STD).then_some(coefficients)
+    }
+}
+
+/// A constant and the means of the setpoints before and after a time, without those next to it; `None` where there are none on a side.
+fn mean_around(asked: &Stream, time_s: f64) -> Option<[f64; COLUMNS]> {
+    let place = |away_s: f64| asked.time_s.partition_point(|stamp_s| *stamp_s < time_s + away_s);
+    let sides = [(-AROUND_S.1, -AROUND_S.0), AROUND_S].map(|(from_s, to_s)| place(from_s)..place(to_s));
+    let mut means = [1.0; COLUMNS];
+    if sides.iter().any(std::ops::Range::is_empty) {
+        return None;
+    }
+    for (channel, mean) in means[1..].iter_mut().enumerate() {
+        let of = |side: &std::ops::Range<usize>| {
+            side.clone().map(|index| asked.sample(index)[channel]).sum::<f64>() / side.len() as f64
+        };
+        *mean = sides.iter().map(of).sum::<f64>() / 2.0;
+    }
+    Some(means)
 }
 
 /// From setpoints to one thrust a rotor.
@@ -131,28 +204,28 @@ struct Allocation {
 
 impl Allocation {
     fn fit(asked: &Stream, thrusts: &Stream, command: &Stream) -> Option<Self> {
-        let unsaturated = |index: &usize| command.sample(*index).iter().all(|u| UNSATURATED.contains(u));
-        let pair = |index: usize| Some((index, nearest(&asked.time_s, thrusts.time_s[index], SAME_CYCLE_S)?));
-        let pairs: Vec<(usize, usize)> = (0..thrusts.len()).filter(unsaturated).filter_map(pair).collect();
-        if pairs.len() < LEAST_PAIRS {
-            return None;
-        }
-        let columns = DMatrix::from_fn(pairs.len(), COLUMNS, |row, column| {
-            if column == 0 { 1.0 } else { asked.sample(pairs[row].1)[column - 1] }
-        });
-        let wanted =
-            DMatrix::from_fn(pairs.len(), thrusts.width, |row, rotor| thrusts.sample(pairs[row].0)[rotor]);
-        // a setpoint that never moves has no coefficient: the least solution leaves it at nought
-        let coefficients = columns.clone().svd(true, true).solve(&wanted, 1e-9).ok()?;
-        let left = &wanted - columns * &coefficients;
+        // setpoints and commands are stamped at different places of the controller's cycle
+        let at = |late: i32| {
+            let pairs = Pairs::of(asked, (thrusts, command), f64::from(late) * LATE_STEP_S)?;
+            let coefficients = pairs.by_least_squares()?;
+            let left = pairs.left(&coefficients);
+            Some((left, coefficients, pairs))
+        };
+        let each = (-LATE_STEPS..=LATE_STEPS).filter_map(at);
+        let (_, coefficients, pairs) = each.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let coefficients = pairs.by_instruments().unwrap_or(coefficients);
         let mut variance = 0.0;
-        for rotor in 0..wanted.ncols() {
-            let mean = wanted.column(rotor).mean();
-            variance += wanted.column(rotor).map(|thrust_n| (thrust_n - mean).powi(2)).sum();
+        for rotor in 0..pairs.wanted.ncols() {
+            let mean = pairs.wanted.column(rotor).mean();
+            variance += pairs.wanted.column(rotor).map(|thrust_n| (thrust_n - mean).powi(2)).sum();
         }
-        let squares = left.norm_squared();
-        let rms_n = (squares / (pairs.len() * thrusts.width) as f64).sqrt();
-        Some(Self { coefficients, explained: 1.0 - squares / variance.max(f64::MIN_POSITIVE), rms_n })
+        let left = pairs.left(&coefficients);
+        let squares = left * pairs.wanted.len() as f64;
+        Some(Self {
+            coefficients,
+            explained: 1.0 - squares / variance.max(f64::MIN_POSITIVE),
+            rms_n: left.sqrt(),
+        })
     }
 
     fn applied(&self, asked: &Stream) -> Stream {
