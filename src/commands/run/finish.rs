@@ -43,6 +43,11 @@ pub fn rigid_body(context: &Context<'_>, logs: &[PathBuf]) {
     let make = || {
         output::silent_folder(&folder)?;
         context.tell(&step);
+        if !context.is_brief() {
+            output::message(
+                "for the appendix effects are searched once more, beside the rigid body and on the whole flight",
+            );
+        }
         let (study, targets) = identify::make(context.stderr, &step.identify()?)?;
         output::file(&folder.join("identification.txt"), &format!("{}\n", identification_text(&study)))?;
         targets.write(&study)
