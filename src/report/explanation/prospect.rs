@@ -21,7 +21,7 @@ pub fn next_flight_words(study: &ExplainStudy) -> Option<String> {
         }
         Ok(next) => {
             let apart = never_apart(next);
-            format!("{}{apart}There is nothing more that another flight would bring.", known(study))
+            format!("{}{apart}For these names no further flight is needed.", known(study))
         }
         Err(_) if study.unsettled().next().is_some() => {
             format!(
