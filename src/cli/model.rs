@@ -49,8 +49,8 @@ pub struct LoadArgs {
     /// with --undo: put back also what somebody changed since; without it this stays as it is, and noted
     #[arg(long, requires = "undo")]
     pub overwrite: bool,
-    /// set them without a question
-    #[arg(long, conflicts_with = "undo")]
+    /// set them without a question; --undo asks none
+    #[arg(long)]
     pub yes: bool,
     /// leave out what the vehicle does not have; without it nothing is set then
     #[arg(long, conflicts_with = "undo")]

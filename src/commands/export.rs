@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use mavid::autopilot::Autopilot;
 use mavid::config::effects_of;
-use mavid::export::{AircraftParameter, AircraftParameters, Exported, Format, aircraft_parameters, export};
+use mavid::export::{
+    AircraftParameter, AircraftParameters, ExportError, Exported, Format, aircraft_parameters, export,
+};
 use mavid::note::Note;
 use mavid::text;
 use serde::Serialize;
@@ -113,6 +115,35 @@ pub struct Made {
     warnings: Vec<Note>,
 }
 
+/// Why no file was made.
+#[derive(Debug)]
+pub enum NotMade {
+    /// the model does not hold what the format needs: every model of such a vehicle file is so
+    Missing {
+        /// in words
+        what: &'static str,
+        /// the whole sentence
+        why: String,
+    },
+    /// anything else
+    Failed(CommandError),
+}
+
+impl From<CommandError> for NotMade {
+    fn from(error: CommandError) -> Self {
+        Self::Failed(error)
+    }
+}
+
+impl From<NotMade> for CommandError {
+    fn from(error: NotMade) -> Self {
+        match error {
+            NotMade::Missing { why, .. } => Self::Input(why),
+            NotMade::Failed(error) => error,
+        }
+    }
+}
+
 /// The altitude is one, and counts for the format.
 fn checked(args: &ExportArgs) -> Result<(), CommandError> {
     let Some(altitude_m) = args.altitude else { return Ok(()) };
@@ -129,23 +160,29 @@ fn checked(args: &ExportArgs) -> Result<(), CommandError> {
 }
 
 /// Exports, and writes the file that is asked for.
-pub fn make(args: &ExportArgs) -> Result<Made, CommandError> {
+pub fn make(args: &ExportArgs) -> Result<Made, NotMade> {
     checked(args)?;
-    let (loaded, origin) = args.draft.given(args.model.as_ref()).alone()?;
-    let refuse =
-        |error: &dyn std::fmt::Display| CommandError::Input(format!("{}: {error}", text::path(&origin)));
-    let active = effects_of(&loaded.model.effects, &text::path(&origin), &loaded.vehicle)?;
+    let (loaded, origin) = args.draft.given(args.model.as_ref()).alone().map_err(CommandError::from)?;
+    let refuse = |error: ExportError| {
+        let why = format!("{}: {error}", text::path(&origin));
+        match error {
+            ExportError::Missing { what, .. } => NotMade::Missing { what, why },
+            _ => NotMade::Failed(CommandError::Input(why)),
+        }
+    };
+    let active = effects_of(&loaded.model.effects, &text::path(&origin), &loaded.vehicle)
+        .map_err(CommandError::from)?;
     let identified = loaded.model.identified.as_ref();
     let (text, left_out, parameters, callback) = match Target::from(args.to) {
         Target::Simulator(format) => {
             let Exported { text, left_out, callback } =
-                export(&loaded.vehicle, &active, identified, format).map_err(|error| refuse(&error))?;
+                export(&loaded.vehicle, &active, identified, format).map_err(refuse)?;
             (text, left_out, Vec::new(), callback)
         }
         Target::Aircraft(autopilot) => {
             let AircraftParameters { parameters, left_out, text } =
                 aircraft_parameters(&loaded.vehicle, &active, identified, (autopilot, args.altitude))
-                    .map_err(|error| refuse(&error))?;
+                    .map_err(refuse)?;
             (text, left_out, parameters.into_iter().map(ParameterLine::from).collect(), None)
         }
     };

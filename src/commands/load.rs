@@ -228,6 +228,7 @@ fn none_left(put_back: &PutBack, undo: &str) -> Result<(), CommandError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::Parser as _;
 
     fn noted(set: f64) -> Noted {
         Noted { name: "MPC_THR_HOVER".to_owned(), found: 0.5, set, became: None, at: None }
@@ -244,6 +245,13 @@ mod tests {
         ));
         assert!(page(Some(0.5)).contains("does not take 7 and keeps 0.5"));
         assert!(page(None).contains("did not answer"));
+    }
+
+    #[test]
+    fn undo_takes_the_answer_yes_as_loading_does() {
+        let words = ["mavid", "vehicle", "load", "--connect", "udpin:0.0.0.0:14550", "--undo", "--yes"];
+        assert!(crate::cli::Cli::try_parse_from(words).is_ok());
+        assert!(crate::cli::Cli::try_parse_from(&words[..5]).is_err());
     }
 
     #[test]

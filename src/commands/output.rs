@@ -1,7 +1,9 @@
 //! Standard output for results, standard error for the rest.
 
+use std::collections::BTreeMap;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use mavid::files::write_whole;
 use mavid::link::Signing;
@@ -54,9 +56,33 @@ pub fn message(text: &str) {
     tracing::info!(target: MESSAGE, message = text);
 }
 
-/// What the user should know: the same, after `warning: `.
+/// What the user should know: the same, after `warning: `. Each is said once, however many steps of a run find it.
 pub fn warning(text: &str) {
-    tracing::warn!(target: MESSAGE, message = text);
+    if SAID.is_news(text, true) {
+        tracing::warn!(target: MESSAGE, message = text);
+    }
+}
+
+/// What was said since the program began.
+static SAID: Said = Said(Mutex::new(BTreeMap::new()));
+/// So many sentences are remembered; further ones may be said again.
+const REMEMBERED: usize = 1000;
+
+/// Sentences, and whether each was said as a warning.
+struct Said(Mutex<BTreeMap<String, bool>>);
+
+impl Said {
+    /// It was not said yet, or not as a warning and is one now.
+    fn is_news(&self, text: &str, is_warning: bool) -> bool {
+        let mut said = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if said.get(text).is_some_and(|was_warning| *was_warning || !is_warning) {
+            return false;
+        }
+        if said.len() < REMEMBERED {
+            said.insert(text.to_owned(), is_warning);
+        }
+        true
+    }
 }
 
 /// Why the work is not done: a message also where it is to be quiet.
@@ -96,9 +122,14 @@ pub fn warnings(of: &Path, warnings: &[Note]) {
     warnings.iter().for_each(|warning| note(&warning.of_file(&of)));
 }
 
-/// What is to be known beside a result.
+/// What is to be known beside a result; once, as a warning.
 pub fn note(note: &Note) {
-    if note.is_warning() { warning(&note.sentence()) } else { message(&note.sentence()) }
+    let sentence = note.sentence();
+    if note.is_warning() {
+        warning(&sentence);
+    } else if SAID.is_news(&sentence, false) {
+        message(&sentence);
+    }
 }
 
 /// What is odd about the files of a signing key.
@@ -199,4 +230,17 @@ pub fn refuse_overwriting(inputs: &[&PathBuf], outputs: &[&PathBuf]) -> Result<(
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sentence_is_said_once_and_once_more_as_a_warning() {
+        let said = Said(Mutex::default());
+        assert!(said.is_news("rests on guesses", false) && !said.is_news("rests on guesses", false));
+        assert!(said.is_news("rests on guesses", true) && !said.is_news("rests on guesses", true));
+        assert!(!said.is_news("rests on guesses", false) && said.is_news("another", true));
+    }
 }

@@ -28,7 +28,7 @@ impl fmt::Display for Stage {
         f.write_str(match self {
             Self::Reading => "reading the logs",
             Self::Conditioning => "preparing the signals",
-            Self::Identifying => "estimating mass and inertia",
+            Self::Identifying => "estimating mass and inertia, with a search for effects beside them",
             Self::Explaining => "searching for effects",
             Self::ExplainingAgain => "searching for effects in the whole flight",
             Self::Predicting => "predicting flights with each model",

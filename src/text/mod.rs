@@ -19,7 +19,7 @@ pub use excerpt::{excerpt, listed, path};
 pub use format::{line_comment, markup, markup_comment, shell_word, toml_string};
 pub use json::{json_line, json_pretty};
 pub(crate) use number::rounded;
-pub use number::{chance, compact, interval, significant, spoken, with_error};
+pub use number::{chance, compact, interval, parameter_value, significant, spoken, with_error};
 pub use sentence::capital;
 pub use utc::utc;
 pub use wrap::{to_width, wrapped};

@@ -59,6 +59,13 @@ pub fn compact(value: f64) -> String {
     short.to_string()
 }
 
+/// A parameter of an autopilot in the fewest digits that give its value again: its messages hold single precision.
+#[must_use]
+pub fn parameter_value(value: f64) -> String {
+    let single = value as f32;
+    if f64::from(single) == value { single.to_string() } else { value.to_string() }
+}
+
 /// As many significant digits; without power of ten between 1e-4 and 1e6.
 #[must_use]
 pub fn significant(value: f64, digits: i32) -> String {
@@ -131,6 +138,12 @@ mod tests {
         assert_eq!(with_error(2.04e-5, 1.1e-6), "(2.04 +- 0.11)e-5");
         assert_eq!(with_error(-0.001, 0.3), "0.0 +- 0.3");
         assert_eq!(with_error(24.0, 0.0), "24.0");
+    }
+
+    #[test]
+    fn a_parameter_has_the_digits_that_it_was_set_with() {
+        let values = [f64::from(0.15_f32), 100.0, -0.25, 176_126.0, 0.1];
+        assert_eq!(values.map(parameter_value), ["0.15", "100", "-0.25", "176126", "0.1"]);
     }
 
     #[test]

@@ -35,8 +35,22 @@ fn model() -> ViewModel {
         battery: Battery { percent: Some(76.0), voltage_v: Some(15.42), is_low: false },
         attitude: Some(Attitude { roll_deg: -3.2, position_m: [1.0, -2.0, 3.5], ..Attitude::default() }),
         parameters: vec![
-            ParameterRow { name: "mass", unit: "kg", value: Some(2.0614), std: Some(0.0123), history },
-            ParameterRow { name: "ixx", unit: "kg m^2", value: None, std: None, history: Trace::default() },
+            ParameterRow {
+                name: "mass",
+                unit: "kg",
+                value: Some(2.0614),
+                std: Some(0.0123),
+                why: None,
+                history,
+            },
+            ParameterRow {
+                name: "ixx",
+                unit: "kg m^2",
+                value: None,
+                std: None,
+                why: Some("fly more".into()),
+                history: Trace::default(),
+            },
         ],
         parameters_used_s: 21.0,
         ..ViewModel::default()
@@ -66,7 +80,7 @@ fn everything_that_matters_is_on_the_screen() {
         "roll   -3.2",
         "-2.00",
         "2.061 +- 0.012 kg",
-        "not determined yet",
+        "not determined yet: fly more",
         "takeoff done",
         "setpoints late",
         "h hold",
@@ -100,6 +114,7 @@ fn a_tall_screen_has_an_artificial_horizon_the_path_and_the_share_of_the_limit()
             unit: "kg m^2",
             value: Some(0.0224),
             std: Some(0.0012),
+            why: None,
             history: Trace::default(),
         })
         .to_vec();

@@ -94,8 +94,12 @@ fn nothing_counts_on_the_ground_or_before_the_trajectory() {
     let vehicle = vehicle();
     let mut live = live(&vehicle);
     live.set_active(false);
+    assert!(live.waits_for().contains("attitude") && live.waits_for().contains("actuator command"));
     feed(&mut live, &samples(&recording(), 0.0));
     assert!(live.estimate().is_none());
+    assert_eq!(live.waits_for(), "waits for the trajectory");
+    live.set_active(true);
+    assert!(live.waits_for().contains("without a gap"), "{}", live.waits_for());
 }
 
 #[test]

@@ -332,6 +332,19 @@ fn an_aircraft_gets_what_was_identified_and_nothing_else() {
     let momentum = of("EKF2_MCOEF");
     assert!((momentum.value - 0.3 / mass).abs() < 1e-12);
     assert!((momentum.std.unwrap() - (0.01 / mass).hypot(0.01 * 0.3 / mass)).abs() < 1e-9);
+    assert!(momentum.why.contains("along x and 0.300 +- 0.010 along y"), "{}", momentum.why);
+    // an axis that is known worse says less, and errors do not shrink by it
+    let uneven: toml::Table = toml::from_str(
+        "[effects.linear_drag]\ndx = { value = 0.30, std = 0.01 }\ndy = { value = 0.25, std = 0.03 }\n\
+         dz = { value = 0.2, std = 0.01 }\n",
+    )
+    .unwrap();
+    let drag = [effect("linear_drag", &[0.30, 0.25, 0.2])];
+    let uneven = aircraft_parameters(&vehicle, &drag, Some(&uneven), (Autopilot::Px4, None)).unwrap();
+    let momentum = uneven.parameters.iter().find(|parameter| parameter.name == "EKF2_MCOEF").unwrap();
+    assert!((momentum.value - (0.9 * 0.30 + 0.1 * 0.25) / mass).abs() < 1e-12);
+    assert!((momentum.std.unwrap() - (0.9 * 0.01 + 0.1 * 0.03) / mass).abs() < 1e-12);
+    assert!(momentum.why.contains("without the report's z"), "{}", momentum.why);
     // rho m / (2 c) where the drag is told from none, and off where it is not
     assert!((of("EKF2_BCOEF_X").value - 0.5 * 1.225 * mass / 0.03).abs() < 1e-9);
     assert_eq!((of("EKF2_BCOEF_Y").value, of("EKF2_DRAG_CTRL").value), (0.0, 1.0));

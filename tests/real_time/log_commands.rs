@@ -339,7 +339,7 @@ pub fn parameters_of_a_file_are_set_read_back_and_undone() {
     assert!(said.contains("does not have MOT_THST_EXPO: nothing is changed"), "{said}");
     let (status, known, _) = load(&[&foreign, "--yes", "--known-only"]);
     assert_eq!((status, &known["set"]), (Some(0), &true.into()));
-    let (status, undone, said) = load(&["--undo"]);
+    let (status, undone, said) = load(&["--undo", "--yes"]);
     assert_eq!(status, Some(0), "{said}");
     assert_eq!(undone["restored"].as_array().unwrap().len(), 2);
     // what was found first, not what was set in between

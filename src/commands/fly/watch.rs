@@ -108,7 +108,7 @@ fn tell(
         }
     }
     let columns = terminal::size().map_or(0, |(columns, _)| usize::from(columns));
-    let mut log = PlainLog::of_width(columns);
+    let mut log = PlainLog::of_width(columns).before_a_page(true);
     for model in pictures {
         for line in log.lines(&model) {
             output::message(&line);

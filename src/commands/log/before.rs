@@ -5,6 +5,7 @@ use std::time::Duration;
 use mavid::autopilot::LogAwaited;
 use mavid::fetch::Noted;
 use mavid::onboard::{self, ChangedSince};
+use mavid::text::parameter_value;
 use mavid::wire::SystemId;
 
 use super::link::open_as;
@@ -163,10 +164,14 @@ pub fn put_back(args: &FlyArgs, before: &BeforeFlight, tell: &mut impl FnMut(Wor
             }
         }
         Err(error) => {
-            let values = before
-                .noted
-                .iter()
-                .map(|noted| format!("{} is {} and was {} before", noted.name, noted.set, noted.found));
+            let values = before.noted.iter().map(|noted| {
+                format!(
+                    "{} is {} and was {} before",
+                    noted.name,
+                    parameter_value(noted.set),
+                    parameter_value(noted.found)
+                )
+            });
             tell(Word::Warning(format!(
                 "the logging is not put back: {error}; {}; later: {}",
                 values.collect::<Vec<_>>().join(", "),

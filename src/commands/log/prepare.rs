@@ -6,7 +6,7 @@ use std::io::{self, BufRead, IsTerminal};
 use mavid::autopilot::{LogAwaited, LogChange};
 use mavid::fetch::Noted;
 use mavid::onboard::{self, ChangedSince, LoggingState, PutBack, Session};
-use mavid::text;
+use mavid::text::{self, parameter_value};
 use serde::Serialize;
 
 use super::link::open;
@@ -226,7 +226,9 @@ pub fn changes_page(changes: &[LogChange]) -> String {
 
 /// What is said where an earlier run changed something that is not put back.
 pub fn earlier(link: &VehicleLinkArgs, noted: &[Noted]) -> String {
-    let list = noted.iter().map(|noted| format!("{} from {} to {}", noted.name, noted.found, noted.set));
+    let list = noted.iter().map(|noted| {
+        format!("{} from {} to {}", noted.name, parameter_value(noted.found), parameter_value(noted.set))
+    });
     format!(
         "an earlier run changed {} on this vehicle: {} puts it back",
         list.collect::<Vec<_>>().join(", "),
@@ -295,16 +297,22 @@ pub fn all_put_back(put_back: &PutBack, place: &str) -> Result<Outcome, CommandE
 
 /// What was put back, for people.
 pub fn put_back_page(put_back: &PutBack) -> String {
-    let mut lines: Vec<String> =
-        put_back.done.iter().map(|noted| format!("{} is {} again", noted.name, noted.found)).collect();
+    let mut lines: Vec<String> = put_back
+        .done
+        .iter()
+        .map(|noted| format!("{} is {} again", noted.name, parameter_value(noted.found)))
+        .collect();
     for (noted, now) in &put_back.left {
         lines.push(format!(
-            "{} stays {now}: it was set to {}, and somebody changed it since (it was {})",
-            noted.name, noted.set, noted.found
+            "{} stays {}: it was set to {}, and somebody changed it since (it was {})",
+            noted.name,
+            parameter_value(*now),
+            parameter_value(noted.set),
+            parameter_value(noted.found)
         ));
     }
     for (noted, why) in &put_back.failed {
-        lines.push(format!("{} is not put back to {}: {why}", noted.name, noted.found));
+        lines.push(format!("{} is not put back to {}: {why}", noted.name, parameter_value(noted.found)));
     }
     if lines.is_empty() {
         lines.push("nothing to put back on this vehicle".to_owned());

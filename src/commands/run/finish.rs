@@ -8,6 +8,7 @@ use mavid::text;
 
 use super::context::Context;
 use super::step::Step;
+use crate::commands::export::NotMade;
 use crate::commands::{CommandError, export, identify, output};
 
 /// Folder of the appendix: the rigid body alone, without effects.
@@ -42,6 +43,11 @@ pub fn rigid_body(context: &Context<'_>, logs: &[PathBuf]) {
     let make = || {
         output::silent_folder(&folder)?;
         context.tell(&step);
+        if !context.is_brief() {
+            output::message(
+                "for the appendix effects are searched once more, beside the rigid body and on the whole flight",
+            );
+        }
         let (study, targets) = identify::make(context.stderr, &step.identify()?)?;
         output::file(&folder.join("identification.txt"), &format!("{}\n", identification_text(&study)))?;
         targets.write(&study)
@@ -51,14 +57,28 @@ pub fn rigid_body(context: &Context<'_>, logs: &[PathBuf]) {
     }
 }
 
-/// The model for each simulator; the files. A simulator that cannot hold it is said.
+/// The model for each simulator; the files. A simulator that cannot hold it is said; what a model of such a vehicle file never
+/// holds is no warning.
 pub fn exports(context: &Context<'_>) -> Vec<String> {
     let mut files = Vec::new();
+    let mut missing: Vec<(&str, Vec<&str>)> = Vec::new();
     for format in FORMATS {
         match exported(context, format) {
             Ok(file) => files.push(file),
-            Err(error) => output::warning(&format!("not exported to {}: {error}", format.0)),
+            Err(NotMade::Missing { what, .. }) => {
+                match missing.iter_mut().find(|(other, _)| *other == what) {
+                    Some((_, formats)) => formats.push(format.0),
+                    None => missing.push((what, vec![format.0])),
+                }
+            }
+            Err(NotMade::Failed(error)) => {
+                output::warning(&format!("not exported to {}: {error}", format.0));
+            }
         }
+    }
+    for (what, formats) in missing {
+        let formats = formats.join(" and ");
+        output::message(&format!("no file for {formats}: the vehicle file does not state {what}"));
     }
     if !files.is_empty() {
         output::message("run an export command alone to see what its simulator cannot represent");
@@ -70,11 +90,13 @@ pub fn exports(context: &Context<'_>) -> Vec<String> {
 pub fn aircraft(context: &Context<'_>, autopilot: Option<Autopilot>) -> Option<String> {
     let format = autopilot.and_then(aircraft_format)?;
     let made = exported(context, format);
-    made.inspect_err(|error| output::message(&format!("no parameters for the aircraft: {error}"))).ok()
+    let said =
+        |error| output::message(&format!("no parameters for the aircraft: {}", CommandError::from(error)));
+    made.map_err(said).ok()
 }
 
 /// Writes the model in a format, into a file of this name.
-fn exported(context: &Context<'_>, (format, name): (&str, &str)) -> Result<String, CommandError> {
+fn exported(context: &Context<'_>, (format, name): (&str, &str)) -> Result<String, NotMade> {
     let (folder, model) = (context.folder.of(EXPORT), context.folder.of("model.toml"));
     let file = folder.join(name);
     let step = Step::of(&["export"]).word(&model).option("--to", format).option("--out", &file);

@@ -8,6 +8,7 @@ use mavid::fly::parameters::Parameters;
 use mavid::fly::preflight::{LIMIT_RESERVE, LimitShortfall, limit_shortfalls};
 use mavid::fly::{Around, Course};
 use mavid::plan::Extremes;
+use mavid::text::compact;
 use mavid::vehicle::{Limits, Vehicle};
 
 use super::context::Context;
@@ -96,15 +97,15 @@ fn bounds(extremes: &Extremes, shortfalls: &[LimitShortfall]) -> Option<String> 
     Some(across.unwrap_or_default() + &up)
 }
 
-/// What is said of a trajectory that is calmer than the room allows.
+/// What is said before a trajectory is planned that is calmer than the room allows.
 pub fn words(shortfalls: &[LimitShortfall]) -> String {
     let one = |short: &LimitShortfall| {
-        format!("{} = {} ({:.1} would be needed)", short.name, short.value, short.advised)
+        format!("{} to {} or more (now {})", short.name, compact(short.advised), compact(short.value))
     };
     let list: Vec<String> = shortfalls.iter().map(one).collect();
     format!(
-        "planned calmer than the room allows, as the autopilot's limits let it follow: {}. With higher limits a flight tells more: \
-         set them on the vehicle, remove limits.toml and plan.toml, and give the same command again",
+        "the autopilot's own limits are too low for this trajectory: a calmer one is planned, which tells less. For a livelier \
+         flight set {} on the vehicle, remove limits.toml and plan.toml, and give the same command again",
         list.join(", ")
     )
 }
@@ -139,6 +140,6 @@ mod tests {
             "{up}"
         );
         assert_eq!(bounds(&extremes, &[short(Bounded::YawRate, 1.0, 2.0)]), None);
-        assert!(words(&[jerk]).contains("PSC_JERK_XY = 5 (13.0 would be needed)"));
+        assert!(words(&[jerk]).contains("set PSC_JERK_XY to 13 or more (now 5) on the vehicle"));
     }
 }

@@ -36,16 +36,16 @@ pub fn first(context: &Context<'_>, vehicle: &Vehicle) -> Result<PathBuf, Comman
     let step = if context.recipe.is_demo { SHORT.iter().fold(step, Step::word) } else { step };
     let step = step.option("--out", &path);
     let mut study = made(context, step.clone(), &path)?;
-    let mut calmer = None;
-    for _ in 0..CALMER {
+    for time in 0..CALMER {
         let shortfalls = follows::calmed(context, vehicle, &path)?;
         if shortfalls.is_empty() {
             break;
         }
-        calmer.get_or_insert(follows::words(&shortfalls));
+        if time == 0 {
+            output::warning(&follows::words(&shortfalls));
+        }
         study = made(context, step.clone(), &path)?;
     }
-    calmer.iter().for_each(|words| output::message(words));
     let flight_s = study.series.period_s * f64::from(study.repeats);
     let shown = |(name, _): &&(&str, f64)| !PRODUCTS.contains(name);
     let one = |(name, relative): &(&str, f64)| format!("{name} {:.2} %", 100.0 * relative);

@@ -115,7 +115,7 @@ struct FlownFlights {
     flights: usize,
 }
 
-/// Flies until every name is certain, or nobody wants a further flight.
+/// Flies until a further flight would bring nothing that is needed, or nobody wants one.
 fn all_flights(context: &Context<'_>) -> Result<FlownFlights, CommandError> {
     context.stage("Vehicle");
     taken_up::take_up(context)?;
@@ -165,10 +165,7 @@ fn fly_all(
         else {
             break;
         };
-        if study.is_certain()
-            || !matches!(&study.next_flight, Some(Ok(_)))
-            || !wants_next_flight(context, study)?
-        {
+        if !study.would_gain() || !wants_next_flight(context, study)? {
             break;
         }
         context.stage("Next flight");

@@ -70,14 +70,18 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
     let (Some(std_x), Some(std_y)) = (std("dx"), std("dy")) else { return Coefficient::Absent };
     let (dx, dy) = (source.take("linear_drag", "dx"), source.take("linear_drag", "dy"));
     let (mass_kg, mass_std) = mass(source, determined);
-    // what x and y have in common is not known: as if it were all
-    let (mean, mean_std) = (f64::midpoint(dx, dy), f64::midpoint(std_x, std_y));
+    let differ = (dx - dy).abs() > TOLD * std_x.hypot(std_y);
+    // the better known axis says more of one coefficient, but of two it is not more
+    let share_x = if differ { 0.5 } else { std_y * std_y / (std_x * std_x + std_y * std_y) };
+    // what errors along x and y have in common is not known: as if it were all
+    let mean = share_x * dx + (1.0 - share_x) * dy;
+    let mean_std = share_x * std_x + (1.0 - share_x) * std_y;
     let (air_ratio, air) = air(source);
     let value = mean / mass_kg / air_ratio.sqrt();
     if mean < TOLD * mean_std || value < LEAST_MOMENTUM {
         return Coefficient::Absent;
     }
-    if (dx - dy).abs() > TOLD * std_x.hypot(std_y) {
+    if differ {
         source.note(format!(
             "{name} is the same along x and y: from the mean of {} and {} N per m/s",
             with_error(dx, std_x),
@@ -91,12 +95,15 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
         ));
         return Coefficient::Beyond;
     }
-    let std = value * (mean_std / mean).hypot(mass_std);
+    let of = format!("{} along x and {} along y of the body", with_error(dx, std_x), with_error(dy, std_y));
+    // the answer has one figure for all axes that agree, also z, which the estimator does not take
+    let z = if determined.std("linear_drag", "dz").is_some() { ", without the report's z" } else { "" };
     let why = format!(
-        "drag at hover of {} N per m/s over the mass of {mass_kg:.4} kg, {air}; wind was \
-         estimated with it where there was one",
+        "drag at hover of {} N per m/s ({of}{z}) over the mass of {mass_kg:.4} kg, {air}; wind was estimated with it where \
+         there was one",
         with_error(mean, mean_std)
     );
+    let std = value * (mean_std / mean).hypot(mass_std);
     Coefficient::Found(AircraftParameter::number(name, (value, std), "1/s", why))
 }
 

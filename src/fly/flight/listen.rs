@@ -82,7 +82,10 @@ impl Flight {
                 let armed = if to.armed { "armed" } else { "disarmed" };
                 if from.is_none_or(|from| (from.custom_mode, from.armed) != (to.custom_mode, to.armed)) {
                     tracing::info!(mode, armed = to.armed, "mode reported");
-                    self.note(now, Level::Information, "mode", format!("{mode}, {armed}"));
+                    // a report of the mode alone says nothing of the motors: what is known of them may be old
+                    let is_news = from.is_none_or(|from| from.armed != to.armed);
+                    let armed = if is_news { format!(", {armed}") } else { String::new() };
+                    self.note(now, Level::Information, "mode", format!("{mode}{armed}"));
                 }
             }
             Novelty::LateMode(mode) => {

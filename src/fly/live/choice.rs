@@ -1,6 +1,6 @@
 //! Choice of the message from which a quantity is taken, while messages arrive.
 
-use super::track::{Track, WIDTH};
+use super::track::{At, Track, WIDTH};
 use crate::recording::landed::ON_GROUND;
 use crate::recording::{Quantity, StreamKey};
 use crate::signals::best_rank;
@@ -96,6 +96,21 @@ impl Sources {
         let newest = |quantity| self.track(quantity).and_then(Track::newest_s);
         let drive = newest(Quantity::RotorSpeed).or_else(|| newest(Quantity::ActuatorCommand))?;
         NEEDED.iter().try_fold(drive, |least, quantity| newest(*quantity).map(|s| least.min(s)))
+    }
+
+    /// What no source is chosen of yet.
+    pub(super) fn missing(&self) -> Vec<Quantity> {
+        let is_missing = |quantity: &Quantity| self.track(*quantity).and_then(Track::newest_s).is_none();
+        let drive = is_missing(&Quantity::RotorSpeed) && is_missing(&Quantity::ActuatorCommand);
+        let needed = NEEDED.into_iter().filter(is_missing);
+        needed.chain(drive.then_some(Quantity::ActuatorCommand)).collect()
+    }
+
+    /// A quantity that has a gap at this instant.
+    pub(super) fn gap_at(&self, time_s: f64) -> Option<Quantity> {
+        let tracks = QUANTITIES.into_iter().filter_map(|quantity| Some((quantity, self.track(quantity)?)));
+        let mut gaps = tracks.filter(|(_, track)| matches!(track.at(time_s), At::Gap));
+        gaps.next().map(|(quantity, _)| quantity)
     }
 
     /// Forgets all samples, because the clock restarted.

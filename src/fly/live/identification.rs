@@ -37,6 +37,8 @@ pub struct LiveIdentification {
     last_row_s: f64,
     /// start of the time in the air without a gap in any stream, s
     flying_since_s: Option<f64>,
+    /// the stream of which the last instant was missing
+    gap_in: Option<Quantity>,
 }
 
 impl LiveIdentification {
@@ -66,7 +68,23 @@ impl LiveIdentification {
             next_s: None,
             last_row_s: f64::NAN,
             flying_since_s: None,
+            gap_in: None,
         }
+    }
+
+    /// What the first estimate waits for.
+    #[must_use]
+    pub fn waits_for(&self) -> String {
+        let missing = self.sources.missing();
+        if !missing.is_empty() {
+            let names: Vec<String> = missing.into_iter().map(spoken).collect();
+            return format!("waits for {}", names.join(", "));
+        }
+        if !self.active {
+            return "waits for the trajectory".to_owned();
+        }
+        let gap = self.gap_in.map_or_else(String::new, |gap| format!(" (the last was in {})", spoken(gap)));
+        format!("waits for {SETTLING_S:.0} s in the air without a gap in the telemetry{gap}")
     }
 
     /// Sets whether rows count, which is while the trajectory is flown. Without this, rows of the whole flight count.
@@ -132,7 +150,10 @@ impl LiveIdentification {
             self.next_s = Some(time_s + STEP_S);
             match self.instant(time_s) {
                 Some(instant) => self.row(time_s, &instant),
-                None => self.restart(),
+                None => {
+                    self.gap_in = self.sources.gap_at(time_s);
+                    self.restart();
+                }
             }
         }
         // too far behind for one call: begin again at the present
@@ -195,6 +216,10 @@ impl LiveIdentification {
             self.last_row_s = time_s;
         }
     }
+}
+
+fn spoken(quantity: Quantity) -> String {
+    quantity.name().replace('_', " ")
 }
 
 /// Settings of the live estimate.

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::clearance::Cleared;
 use super::clock::Clock;
-use super::estimating::Estimating;
+use super::estimating::{Estimating, LiveNews};
 use super::event_layer::emit;
 use super::files::{EVENTS, PARAMETERS};
 use super::journal::Journal;
@@ -305,8 +305,10 @@ impl Drive {
             model.track(status.tracking_m);
         }
         self.estimating.set_active(status.progress_s.is_some());
-        if let Some(estimate) = self.estimating.latest() {
-            model.estimate(&estimate);
+        match self.estimating.latest() {
+            Some(LiveNews::Estimate(estimate)) => model.estimate(&estimate),
+            Some(LiveNews::Waits(what)) => model.parameters_await = Some(what),
+            None => {}
         }
     }
 }

@@ -26,11 +26,20 @@ enum EstimatorInput {
     Active(bool),
 }
 
+/// Messages of the thread.
+#[derive(Debug)]
+pub(super) enum LiveNews {
+    /// the latest estimate
+    Estimate(Box<LiveEstimate>),
+    /// what the first one waits for
+    Waits(String),
+}
+
 /// The live identification of one flight.
 #[derive(Debug)]
 pub(super) struct Estimating {
     to: SyncSender<EstimatorInput>,
-    from: Receiver<LiveEstimate>,
+    from: Receiver<LiveNews>,
     began: bool,
 }
 
@@ -63,13 +72,13 @@ impl Estimating {
         }
     }
 
-    /// The latest estimate, once.
-    pub(super) fn latest(&self) -> Option<LiveEstimate> {
+    /// The latest news, once.
+    pub(super) fn latest(&self) -> Option<LiveNews> {
         self.from.try_iter().last()
     }
 }
 
-fn estimate(inputs: &Receiver<EstimatorInput>, say: &Sender<LiveEstimate>) {
+fn estimate(inputs: &Receiver<EstimatorInput>, say: &Sender<LiveNews>) {
     let seeds = CrcSeeds::new();
     let mut at_work: Option<Box<(Decoder, LiveIdentification)>> = None;
     let mut said = Instant::now();
@@ -86,7 +95,11 @@ fn estimate(inputs: &Receiver<EstimatorInput>, say: &Sender<LiveEstimate>) {
                     continue;
                 }
                 said = Instant::now();
-                if live.estimate().is_some_and(|estimate| say.send(estimate).is_err()) {
+                let news = match live.estimate() {
+                    Some(estimate) => LiveNews::Estimate(Box::new(estimate)),
+                    None => LiveNews::Waits(live.waits_for()),
+                };
+                if say.send(news).is_err() {
                     return;
                 }
             }

@@ -117,6 +117,8 @@ pub struct ParameterRow {
     pub value: Option<f64>,
     /// standard error, same unit; zero for what is given
     pub std: Option<f64>,
+    /// why there is none
+    pub why: Option<String>,
     /// lately
     pub history: Trace,
 }
@@ -158,6 +160,8 @@ pub struct ViewModel {
     pub path_m: VecDeque<[f64; 2]>,
     /// parameters, in the order of files
     pub parameters: Vec<ParameterRow>,
+    /// what the first estimate of them waits for
+    pub parameters_await: Option<String>,
     /// s of flight that they rest on
     pub parameters_used_s: f64,
     /// what happened
@@ -206,16 +210,21 @@ impl ViewModel {
                 unit: parameter.unit,
                 value: None,
                 std: None,
+                why: None,
                 history: Trace::default(),
             };
             self.parameters = estimate.parameters.iter().map(blank).collect();
         }
         self.parameters_used_s = estimate.used_s;
         for (row, parameter) in self.parameters.iter_mut().zip(&estimate.parameters) {
-            (row.value, row.std) = match parameter.finding {
-                Finding::Determined { value, std } => (Some(value), Some(std)),
-                Finding::Given { value } => (Some(value), Some(0.0)),
-                Finding::NotDetermined { .. } => (None, None),
+            row.why = None;
+            (row.value, row.std) = match &parameter.finding {
+                Finding::Determined { value, std } => (Some(*value), Some(*std)),
+                Finding::Given { value } => (Some(*value), Some(0.0)),
+                Finding::NotDetermined { reason } => {
+                    row.why = Some(reason.clone());
+                    (None, None)
+                }
             };
             if let Some(value) = row.value {
                 row.history.push(value);

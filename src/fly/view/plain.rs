@@ -1,7 +1,7 @@
 //! The flight as lines, for a log or a terminal that cannot draw.
 
 use super::keys::ARM_WORD;
-use super::model::{EventLine, ParameterRow, ViewModel};
+use super::model::{EventLine, ParameterRow, Phase, ViewModel};
 use crate::fly::finding::Level;
 
 /// Between two lines of state, s.
@@ -19,8 +19,11 @@ pub struct PlainLog {
     parameters_s: Option<f64>,
     /// of the terminal; 0: not known
     columns: usize,
+    page_follows: bool,
     page_said: bool,
     word_said: bool,
+    /// warnings of the checks, until the page says them
+    held: Vec<String>,
 }
 
 impl PlainLog {
@@ -28,6 +31,12 @@ impl PlainLog {
     #[must_use]
     pub fn of_width(columns: usize) -> Self {
         Self { columns, ..Self::default() }
+    }
+
+    /// With a page before the flight, which repeats the warnings of the checks: they are not said twice.
+    #[must_use]
+    pub fn before_a_page(self, page_follows: bool) -> Self {
+        Self { page_follows, ..self }
     }
 
     /// The lines that are due, by the model's own time.
@@ -41,8 +50,16 @@ impl PlainLog {
         if forgotten > 0 {
             lines.push(format!("[{:7.1} s] {forgotten} events came too fast to be shown", model.elapsed_s));
         }
-        lines.extend(model.events.iter().skip(first).map(event_line));
+        for event in model.events.iter().skip(first) {
+            let is_held = self.page_follows && !self.page_said && is_check_warning(event);
+            if is_held { &mut self.held } else { &mut lines }.push(event_line(event));
+        }
+        if matches!(model.phase, Phase::Aborted | Phase::Done) {
+            // no page came
+            lines.append(&mut self.held);
+        }
         if let Some(page) = model.page.as_ref().filter(|_| !std::mem::replace(&mut self.page_said, true)) {
+            self.held.clear();
             lines.extend(page.lines(if self.columns > 0 { self.columns } else { COLUMNS }));
         }
         if model.awaits_word && !std::mem::replace(&mut self.word_said, true) {
@@ -64,6 +81,10 @@ fn is_due(last_s: &mut Option<f64>, now_s: f64, period_s: f64) -> bool {
         *last_s = Some(now_s);
     }
     due
+}
+
+fn is_check_warning(event: &EventLine) -> bool {
+    event.level == Level::Warning && event.text.starts_with("check: ")
 }
 
 fn event_line(event: &EventLine) -> String {
@@ -119,6 +140,24 @@ mod tests {
         assert_eq!(with_error(0.021_431, 0.000_39), "0.02143 +- 0.00039");
         assert_eq!(with_error(2.5, 0.0), "2.5000");
         assert_eq!(with_error(120.4, 15.2), "120 +- 15");
+    }
+
+    #[test]
+    fn warnings_of_the_checks_are_on_the_page_or_said_where_none_comes() {
+        let mut model = ViewModel { state: "check".into(), ..ViewModel::default() };
+        model.event(Level::Warning, "check: fence: none");
+        let said = |log: &mut PlainLog, model: &ViewModel| {
+            log.lines(model).iter().filter(|line| line.contains("fence")).count()
+        };
+        assert_eq!(said(&mut PlainLog::default(), &model), 1);
+        let mut log = PlainLog::default().before_a_page(true);
+        assert_eq!(said(&mut log, &model), 0);
+        model.phase = Phase::Aborted;
+        assert_eq!((said(&mut log, &model), said(&mut log, &model)), (1, 0));
+        let mut log = PlainLog::default().before_a_page(true);
+        model.page = Some(std::sync::Arc::default());
+        model.phase = Phase::Preparing;
+        assert_eq!(said(&mut log, &model), 0);
     }
 
     #[test]

@@ -211,19 +211,23 @@ fn motion_lines(model: &ViewModel) -> Vec<Line<'_>> {
 
 fn parameter_lines(model: &ViewModel, columns: u16) -> Vec<Line<'_>> {
     if model.parameters.is_empty() {
-        return vec![Line::raw("nothing yet: it takes some seconds of the trajectory")];
+        let waits = model.parameters_await.as_deref().unwrap_or("it takes some seconds of the trajectory");
+        return vec![Line::raw(format!("nothing yet: {waits}"))];
     }
     let room = usize::from(columns).saturating_sub(NAME_COLUMNS + VALUE_COLUMNS + 4);
     model.parameters.iter().map(|row| parameter_line(row, room)).collect()
 }
 
 fn parameter_line(row: &ParameterRow, room: usize) -> Line<'_> {
-    let value = match row.value.zip(row.std) {
-        Some((value, std)) => format!("{} {}", with_error(value, std), row.unit),
-        None => "not determined yet".to_owned(),
+    let name =
+        Span::styled(format!("{:<NAME_COLUMNS$}", row.name), Style::new().add_modifier(Modifier::BOLD));
+    let Some((value, std)) = row.value.zip(row.std) else {
+        let why = row.why.as_deref().map_or_else(String::new, |why| format!(": {why}"));
+        return Line::from(vec![name, Span::raw(format!("not determined yet{why}"))]);
     };
+    let value = format!("{} {}", with_error(value, std), row.unit);
     Line::from(vec![
-        Span::styled(format!("{:<NAME_COLUMNS$}", row.name), Style::new().add_modifier(Modifier::BOLD)),
+        name,
         Span::raw(format!("{value:<VALUE_COLUMNS$} ")),
         Span::styled(spark(row.history.values(), room), Color::Cyan),
     ])

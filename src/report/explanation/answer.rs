@@ -11,12 +11,18 @@ use std::fmt::Write;
 /// Largest number of effects that are listed with their sizes.
 const SIZED: usize = 4;
 
-/// The answer in one sentence; what makes it doubtful comes first.
+/// The answer in one sentence; what makes it doubtful comes first, or last where that concerns no name.
 #[must_use]
 pub fn answer(study: &ExplainStudy) -> String {
     let found = format!("{}{}", found(study), no_model(study));
     match study.doubts().as_slice() {
         [] => found,
+        [doubt] if study.doubts_torques_alone() => {
+            let doubt = doubt.strip_prefix("it ").unwrap_or(doubt);
+            format!(
+                "{found} Moments of inertia and torques are doubtful, the forces are not: the inertia {doubt}."
+            )
+        }
         doubts => format!("Doubtful: {}. {found}", doubts.join("; ")),
     }
 }

@@ -10,12 +10,19 @@ use crate::text::capital;
 #[must_use]
 pub fn next_flight_words(study: &ExplainStudy) -> Option<String> {
     let next = study.next_flight.as_ref()?;
-    if study.is_certain() {
-        let names = if study.effects.is_empty() { "" } else { "Every name is certain: " };
-        return Some(capital(&format!("{names}no further flight is needed.")));
-    }
-    Some(match next {
-        Ok(next) => format!("{}{}{}", known(study), unsettled(study), brought(next)),
+    let said = match next {
+        Ok(next) if study.would_gain() => {
+            format!("{}{}{}", known(study), unsettled(study), brought(study, next))
+        }
+        _ if study.is_certain() => {
+            let names = if study.effects.is_empty() { "" } else { "Every name that was given is certain. " };
+            let latency = unnamed_latency(study);
+            format!("{names}{}{latency}There is nothing that another flight would bring.", known(study))
+        }
+        Ok(next) => {
+            let apart = never_apart(next);
+            format!("{}{apart}For these names no further flight is needed.", known(study))
+        }
         Err(_) if study.unsettled().next().is_some() => {
             format!(
                 "{}{}A further flight would show whether it is there again.",
@@ -24,7 +31,19 @@ pub fn next_flight_words(study: &ExplainStudy) -> Option<String> {
             )
         }
         Err(why) => format!("{}A further flight would not tell more: {why}.", known(study)),
-    })
+    };
+    Some(said)
+}
+
+/// A sentence on a latency that has no name.
+fn unnamed_latency(study: &ExplainStudy) -> String {
+    let said = |(value_s, std_s): (f64, f64)| {
+        format!(
+            "{} ms from command to rotor have no name: whether the motors lag or the commands are delayed is not told apart here. ",
+            with_error(1e3 * value_s, 1e3 * std_s)
+        )
+    };
+    study.unnamed_latency_s().map_or_else(String::new, said)
 }
 
 /// A sentence on the sizes that are known, where there are some.
@@ -54,19 +73,28 @@ fn unsettled(study: &ExplainStudy) -> String {
     study.unsettled().map(one).collect()
 }
 
-/// What the designed flight separates.
-fn brought(next: &NextFlight) -> String {
+/// What the designed flight separates, of that which a user needs.
+fn brought(study: &ExplainStudy, next: &NextFlight) -> String {
     let seconds = format!("A further flight of {:.0} s would", next.seconds);
     let sigma =
         |pair: &Pair| format!("now {:.1}, with it {:.1} standard deviations", pair.now, pair.with_next());
-    let pairs = next.pairs.iter().map(|pair| match pair.other {
+    let pairs = study.worthwhile(next).map(|pair| match pair.other {
         Some(other) => {
-            format!("{seconds} tell {} from {} ({})", called(pair.named), called(other), sigma(pair))
+            format!("{seconds} tell {} from {} ({}). ", called(pair.named), called(other), sigma(pair))
         }
-        None => format!("{seconds} determine {} better ({} from zero)", called(pair.named), sigma(pair)),
+        None => format!("{seconds} determine {} better ({} from zero). ", called(pair.named), sigma(pair)),
     });
+    let mut said: String = pairs.collect();
+    if said.is_empty() {
+        said = "A further flight would show whether it is there again. ".to_owned();
+    }
+    (said + &never_apart(next)).trim_end().to_owned()
+}
+
+/// A sentence on each pair that no trajectory separates.
+fn never_apart(next: &NextFlight) -> String {
     let apart = next.inseparable.iter().map(|pair| {
-        format!("No trajectory tells {} from {}: {}", called(pair.named), called(pair.other), pair.why)
+        format!("No trajectory tells {} from {}: {}. ", called(pair.named), called(pair.other), pair.why)
     });
-    pairs.chain(apart).map(|sentence| format!("{sentence}.")).collect::<Vec<_>>().join(" ")
+    apart.collect()
 }

@@ -1,6 +1,7 @@
 //! Why an explanation is doubtful.
 
 use super::result::{BodyParameter, ExplainStudy};
+use crate::diagnose::Named;
 use crate::diagnose::locate::Redness;
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
@@ -100,5 +101,22 @@ impl ExplainStudy {
             doubts.push(TWO_VEHICLES.to_owned());
         }
         doubts
+    }
+
+    /// Only moments of inertia are doubtful, against a rule of thumb, and every named effect is a force: its size does not rest on
+    /// them, because the mass sets the scale of forces.
+    #[must_use]
+    pub fn doubts_torques_alone(&self) -> bool {
+        let all = self.contradictions();
+        let is_force = |effect: &Named| {
+            let mut units =
+                effect.parameters.iter().map(|parameter| parameter.unit).filter(|unit| *unit != "-");
+            units.clone().next().is_some() && units.all(|unit| unit.starts_with("N/"))
+        };
+        !all.is_empty()
+            && all.iter().all(|of| of.guessed && of.name.starts_with('i'))
+            && self.doubts().len() == 1
+            && !self.effects.is_empty()
+            && self.effects.iter().all(is_force)
     }
 }

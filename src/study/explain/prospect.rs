@@ -1,8 +1,17 @@
 //! Whether an explanation is certain, and how well its sizes are known.
 
 use super::result::ExplainStudy;
+use crate::diagnose::experiment::{NextFlight, Pair};
 use crate::diagnose::{ByPart, Named, Verdict, by_part};
 use crate::note::{About, Note};
+
+/// A size whose relative standard error (-) is not larger serves a simulator or a controller: no further flight is advised for it
+/// alone. Set by judgement.
+pub const WELL_KNOWN: f64 = 0.05;
+/// A latency that is so much longer than the stated lag, s, and so many standard errors, is told where it has no name. Only words
+/// depend on both.
+const TOLD_S: f64 = 0.02;
+const TOLD_SIGMA: f64 = 4.0;
 
 impl ExplainStudy {
     /// No further flight is needed: nothing is left over, and no name could be another one's.
@@ -15,6 +24,36 @@ impl ExplainStudy {
             && self.other_vehicle().is_none()
             && self.effects.iter().all(|effect| effect.confusable_with.is_empty())
             && self.unsettled().next().is_none()
+    }
+
+    /// What the designed flight separates or determines, of that which a user needs: names that could be another one's, and sizes
+    /// that are known worse than [`WELL_KNOWN`].
+    pub fn worthwhile<'a>(&'a self, next: &'a NextFlight) -> impl Iterator<Item = &'a Pair> {
+        next.pairs.iter().filter(|pair| pair.other.is_some() || self.relative_std(pair) > WELL_KNOWN)
+    }
+
+    /// A further flight was designed, and it would bring something that a user needs.
+    #[must_use]
+    pub fn would_gain(&self) -> bool {
+        let Some(Ok(next)) = &self.next_flight else { return false };
+        self.unsettled().next().is_some() || self.worthwhile(next).next().is_some()
+    }
+
+    /// Of the size of a named effect; where none has a unit, of its distance from zero.
+    fn relative_std(&self, pair: &Pair) -> f64 {
+        let named = self.effects.iter().find(|effect| effect.id == pair.named);
+        named.and_then(|effect| self.known_to(effect)).unwrap_or(1.0 / pair.now)
+    }
+
+    /// From command to rotor beyond the lag that the vehicle file states, and its standard error (s), where it is long and has no
+    /// name.
+    #[must_use]
+    pub fn unnamed_latency_s(&self) -> Option<(f64, f64)> {
+        let latency = self.latency();
+        let stated_s = self.vehicle().propulsion.mean_time_constant_s().unwrap_or(0.0);
+        let beyond_s = latency.total_s - stated_s;
+        let is_told = latency.is_determined() && beyond_s > TOLD_S.max(TOLD_SIGMA * latency.std_s);
+        (is_told && !self.latency_named()).then_some((beyond_s, latency.std_s))
     }
 
     /// Named effects that not each part of the flights shows by itself.
