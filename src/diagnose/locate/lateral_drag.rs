@@ -30,8 +30,10 @@ pub(super) fn lateral_drag(view: &View, fitted: &Fitted) -> Option<(f64, f64)> {
 /// Mean over the axes that have terms, each with the sum of its terms, and its variance. Of each axis: values and variances of its terms.
 fn mean_of_axes(along: &[Vec<(f64, f64)>]) -> (f64, f64) {
     let count = along.iter().filter(|terms| !terms.is_empty()).count().max(1) as f64;
-    let (sum, variance) =
-        along.iter().flatten().fold((0.0, 0.0), |(sum, all), (value, variance)| (sum + value, all + variance));
+    let (sum, variance) = along
+        .iter()
+        .flatten()
+        .fold((0.0, 0.0), |(sum, all), (value, variance)| (sum + value, all + variance));
     (sum / count, variance / count.powi(2))
 }
 
