@@ -17,9 +17,9 @@ impl ExplainStudy {
             && self.unsettled().next().is_none()
     }
 
-    /// Named effects that not each part of the flights shows by itself.
+    /// Named effects that are not certain to be in each part of the flights.
     pub fn unsettled(&self) -> impl Iterator<Item = &ByPart> {
-        self.by_part.iter().filter(|of| !of.is_in_each())
+        self.by_part.iter().filter(|of| !of.is_certain())
     }
 
     /// Fits the named effects to each part of the flights.
