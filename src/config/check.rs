@@ -59,6 +59,11 @@ impl Check<'_> {
         self.within(key, value, ((0.0..=LARGEST).contains(&value), "a number not below zero"))
     }
 
+    /// At least 0 and at most 1.
+    pub fn share(&self, key: &str, value: f64) -> Result<f64, ConfigError> {
+        self.within(key, value, ((0.0..=1.0).contains(&value), "a share of 0 to 1"))
+    }
+
     fn within(&self, key: &str, value: f64, (holds, expected): (bool, &str)) -> Result<f64, ConfigError> {
         if holds {
             return Ok(value);

@@ -28,7 +28,7 @@ pub(super) fn rigid_body(check: &Check<'_>, table: &BodyTable, faults: &mut Faul
             faults.check(Err(check.refuse("body.inertia", "a positive definite tensor", came)));
         }
     }
-    let gyroscopic = faults.number(check.finite("body.gyroscopic", table.gyroscopic.unwrap_or(1.0)));
+    let gyroscopic = faults.number(check.share("body.gyroscopic", table.gyroscopic.unwrap_or(1.0)));
     RigidBody { mass_kg, inertia_kg_m2: tensor, center_of_mass_m, gyroscopic }
 }
 

@@ -50,6 +50,20 @@ fn units_become_si() {
 }
 
 #[test]
+fn the_gyroscopic_torque_acts_by_a_share_of_none_to_all() {
+    let with = |share: &str| parse(&[BODY, "gyroscopic = ", share, "\n", SPEED, ROTORS]);
+    for share in [0.0, 0.25, 1.0] {
+        assert_eq!(with(&format!("{share:?}")).unwrap().vehicle.body.gyroscopic, share);
+    }
+    for share in ["-0.1", "1.01", "nan", "inf"] {
+        let told = with(share).unwrap_err().to_string();
+        assert!(told.contains("quad.toml") && told.contains("body.gyroscopic"), "{told}");
+        assert!(told.contains("a share of 0 to 1"), "{told}");
+    }
+    assert!(with("-0.1").unwrap_err().to_string().contains("-0.1"));
+}
+
+#[test]
 fn pulse_widths_with_a_range_and_fractions_without() {
     let vehicle = parse(&[BODY, CURVE, ROTORS]).unwrap().vehicle;
     let range = PwmRange { min_us: 1000.0, max_us: 2000.0 };

@@ -7,10 +7,17 @@ use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 use rayon::prelude::*;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::ops::Range;
 
 /// A part shows an effect by itself from this many standard errors on: the usual 95 %.
 const SHOWN: f64 = 2.0;
+/// Standard errors from which on all parts together show one amount of an effect: as many as it needs to stay in a model. A name asks more
+/// of all its amounts together.
+const SHOWN_BY_ALL: f64 = 3.0;
+/// Chance of parts that differ as much where each shows the same, below which they differ. One true effect of a hundred is not certain
+/// by it; with a twentieth it would be five.
+const ALIKE_P: f64 = 0.01;
 
 /// The size of a named effect by each part alone: of one flight its halves, of several the flights.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,17 +30,42 @@ pub struct ByPart {
     pub unit: &'static str,
     /// value at which the effect is none
     pub nothing: f64,
+    /// value and standard error by all parts together
+    pub whole: (f64, f64),
     /// value and standard error, in the order of the parts
     pub parts: Vec<(f64, f64)>,
 }
 
 impl ByPart {
-    /// Each part shows it by itself, in the same direction.
+    /// All parts together show it, and it is in each: their sizes agree within their errors (a chi square of their differences), or
+    /// each part shows it by itself, in the same direction.
     #[must_use]
-    pub fn is_in_each(&self) -> bool {
-        let away = |(value, std): &(f64, f64)| if *std > 0.0 { (value - self.nothing) / std } else { 0.0 };
-        let by = |sign: f64| self.parts.iter().all(|part| sign * away(part) >= SHOWN);
+    pub fn is_certain(&self) -> bool {
+        self.away(&self.whole).abs() >= SHOWN_BY_ALL && (self.are_alike() || self.is_in_each())
+    }
+
+    /// Standard errors from nothing; 0 where there is no error.
+    fn away(&self, (value, std): &(f64, f64)) -> f64 {
+        if *std > 0.0 { (value - self.nothing) / std } else { 0.0 }
+    }
+
+    fn is_in_each(&self) -> bool {
+        let by = |sign: f64| self.parts.iter().all(|part| sign * self.away(part) >= SHOWN);
         by(1.0) || by(-1.0)
+    }
+
+    /// Whether the parts' sizes scatter no more than their errors let them.
+    fn are_alike(&self) -> bool {
+        let (mut weights, mut sum) = (0.0, 0.0);
+        for (value, std) in &self.parts {
+            // one without an error says nothing
+            let weight = if *std > 0.0 { std.powi(-2) } else { f64::NAN };
+            (weights, sum) = (weights + weight, sum + weight * value);
+        }
+        let mean = sum / weights;
+        let statistic: f64 = self.parts.iter().map(|(value, std)| ((value - mean) / std).powi(2)).sum();
+        let free = self.parts.len().saturating_sub(1) as f64;
+        ChiSquared::new(free).is_ok_and(|law| law.sf(statistic) >= ALIKE_P)
     }
 }
 
@@ -69,6 +101,7 @@ pub fn by_part(traces: &[Trace], explanation: &Explanation) -> Result<Vec<ByPart
         parameter: amount.parameter,
         unit: amount.unit,
         nothing: amount.nothing,
+        whole: amount.of(after),
         parts: each.iter().map(|fitted| amount.of(fitted)).collect(),
     };
     Ok(asked.iter().map(one).collect())
@@ -130,15 +163,54 @@ fn amount(fitted: &Fitted, place: usize, is_asked: impl Fn(&EffectTerm) -> bool)
 mod tests {
     use super::*;
 
+    use statrs::distribution::Normal;
+
+    /// By parts of equal lengths.
     fn of(parts: &[(f64, f64)]) -> ByPart {
-        ByPart { id: "x", parameter: "k", unit: "-", nothing: 1.0, parts: parts.to_vec() }
+        let count = parts.len() as f64;
+        let mean = parts.iter().map(|(value, _)| value).sum::<f64>() / count;
+        let std = parts.iter().map(|(_, std)| std * std).sum::<f64>().sqrt() / count;
+        ByPart { id: "x", parameter: "k", unit: "-", nothing: 1.0, whole: (mean, std), parts: parts.to_vec() }
     }
 
     #[test]
-    fn each_part_has_to_show_it_in_the_same_direction() {
-        assert!(of(&[(0.9, 0.02), (0.8, 0.02)]).is_in_each());
-        assert!(!of(&[(0.9, 0.02), (0.99, 0.02)]).is_in_each());
-        assert!(!of(&[(0.9, 0.02), (1.1, 0.02)]).is_in_each());
-        assert!(!of(&[(0.9, f64::NAN), (0.8, 0.02)]).is_in_each());
+    fn parts_agree_or_show_it_each_by_itself() {
+        assert!(of(&[(0.9, 0.02), (0.8, 0.02)]).is_certain());
+        // one half shows little of it by itself, and no less than its error lets it
+        assert!(of(&[(0.9, 0.03), (0.95, 0.03)]).is_certain());
+        assert!(!of(&[(0.9, 0.02), (0.99, 0.02)]).is_certain());
+        assert!(!of(&[(0.9, 0.02), (1.1, 0.02)]).is_certain());
+        assert!(!of(&[(0.9, f64::NAN), (0.8, 0.02)]).is_certain());
+        // alike, and nothing for certain
+        assert!(!of(&[(0.97, 0.02), (0.98, 0.02)]).is_certain());
+    }
+
+    /// Halves with every chance of their errors that is equally likely, of those whose whole has a name's four standard errors:
+    /// shares that are certain now, and where each half had to show two.
+    fn shares(first: f64, second: f64) -> (f64, f64) {
+        const STEPS: u32 = 200;
+        let law = Normal::standard();
+        let normal = |step: u32| law.inverse_cdf((f64::from(step) + 0.5) / f64::from(STEPS));
+        let (mut named, mut certain, mut in_each) = (0, 0, 0);
+        for one in 0..STEPS {
+            for other in 0..STEPS {
+                let found = of(&[(1.0 + first + normal(one), 1.0), (1.0 + second + normal(other), 1.0)]);
+                if found.away(&found.whole) >= 4.0 {
+                    named += 1;
+                    certain += u32::from(found.is_certain());
+                    in_each += u32::from(found.is_in_each());
+                }
+            }
+        }
+        (f64::from(certain) / f64::from(named), f64::from(in_each) / f64::from(named))
+    }
+
+    #[test]
+    fn an_effect_that_is_there_all_along_is_certain_and_one_of_a_half_is_not() {
+        // four standard errors of the whole are 2.8 of a half
+        let (certain, in_each) = shares(2.83, 2.83);
+        assert!(certain > 0.98 && in_each < 0.9, "{certain}, {in_each}");
+        let (certain, _) = shares(8.0, 0.0);
+        assert!(certain < 0.05, "{certain}");
     }
 }

@@ -72,8 +72,11 @@ pub struct NuisanceColumn {
     pub values: Channels,
     /// row of the first value
     pub first_row: usize,
-    /// standard deviation of the coefficient about zero, its unit; `None`: nothing is known
+    /// standard deviation of the coefficient about [`Self::prior_mean`], its unit; `None`: nothing is known
     pub prior_std: Option<f64>,
+    /// what is known of the coefficient beforehand, its unit: zero of what the model does not have; of a value that the model has, the
+    /// distance of what is known from it
+    pub prior_mean: f64,
     /// per unit, in rows that do not estimate it but contain its error (consider covariance)
     pub considered: Option<Channels>,
 }

@@ -35,6 +35,8 @@ pub struct Weighted {
     pub(super) nuisances: Columns,
     /// variance of the scores by the priors
     prior_meat: DVector<f64>,
+    /// what the priors' means add to the score
+    prior_pull: DVector<f64>,
     pub(super) normal: Option<Cholesky<f64, Dyn>>,
     /// residual without the part of the nuisances, weighted
     pub left: DVector<f64>,
@@ -146,14 +148,24 @@ impl Weighted {
             sigma: *sigma,
             nuisances,
             prior_meat: priors.meat,
+            prior_pull: priors.pull,
             normal: normal.cholesky(),
             left: DVector::zeros(0),
             energy: 0.0,
         };
         let y = weighted(&rows.residual, sigma);
         this.left = this.project(&y);
+        if let Some(part) = this.by_prior_means() {
+            this.left -= part;
+        }
         this.energy = this.left.dot(&y);
         this
+    }
+
+    /// The part of the rows, weighted, that the priors' means alone bring into the coefficients; `None`: they are zero.
+    fn by_prior_means(&self) -> Option<DVector<f64>> {
+        let normal = self.normal.as_ref().filter(|_| self.prior_pull.iter().any(|pull| *pull != 0.0))?;
+        Some(self.nuisances.times(&normal.solve(&self.prior_pull)))
     }
 
     /// Residual of a channel (N, N m) without the part of the nuisances.
@@ -198,7 +210,7 @@ impl Weighted {
     pub(super) fn values(&self, rows: &Rows) -> DVector<f64> {
         let y = weighted(&rows.residual, &self.sigma);
         match &self.normal {
-            Some(normal) => normal.solve(&self.nuisances.transposed_times(y.as_slice())),
+            Some(normal) => normal.solve(&(self.nuisances.transposed_times(y.as_slice()) + &self.prior_pull)),
             None => DVector::zeros(self.nuisances.len()),
         }
     }

@@ -45,6 +45,7 @@ fn problem(prior_std: Option<f64>) -> (Rows, [Channels; 2]) {
         values,
         first_row: 0,
         prior_std,
+        prior_mean: 0.0,
         considered: None,
     };
     let nuisances = vec![nuisance(bias, None), nuisance(lean, prior_std)];
@@ -92,6 +93,25 @@ fn nuisances_have_the_coefficients_of_ridge_regression() {
         all_near(weighted.coefficients(&rows).0.as_slice(), &theta);
         all_near(&[weighted.energy], &[energy]);
     }
+}
+
+/// What is known of a coefficient stays where it is, wherever the fit has come: a coefficient from elsewhere is the same one.
+#[test]
+fn a_prior_keeps_its_mean() {
+    const KNOWN: f64 = 0.3;
+    let (mut from_zero, _) = problem(Some(0.1));
+    from_zero.nuisances[1].prior_mean = KNOWN;
+    let mut at_mean = from_zero.clone();
+    at_mean.nuisances[1].prior_mean = 0.0;
+    let column = at_mean.nuisances[1].values.clone();
+    for (to, values) in at_mean.residual.iter_mut().zip(&column) {
+        to.iter_mut().zip(values).for_each(|(to, value)| *to -= KNOWN * value);
+    }
+    let (from_zero_fit, at_mean_fit) = (Weighted::at(&from_zero, &SIGMA), Weighted::at(&at_mean, &SIGMA));
+    let mut expected = at_mean_fit.coefficients(&at_mean).0;
+    expected[1] += KNOWN;
+    all_near(from_zero_fit.coefficients(&from_zero).0.as_slice(), expected.as_slice());
+    assert!((&from_zero_fit.left - &at_mean_fit.left).norm() < 1e-9);
 }
 
 #[test]

@@ -244,6 +244,10 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
         (false, true) => Verdict::PartlyExplained,
     };
     let closest = if verdict == Verdict::Unexplained { std::mem::take(&mut named) } else { Vec::new() };
+    let torque_law_alone = torque_law(traces, &found.before);
+    // what serves as no explanation is not in the model
+    let torque_law =
+        if verdict == Verdict::Unexplained { torque_law_alone } else { torque_law(traces, &found.after) };
     Explanation {
         verdict,
         named,
@@ -257,7 +261,8 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
         located_after,
         field,
         aperiodic,
-        torque_law: torque_law(traces, &found.after),
+        torque_law,
+        torque_law_alone,
         search: found,
     }
 }

@@ -52,6 +52,7 @@ impl Explanation {
         let alone = finding_of(&self.search.before);
         self.search.latency = LatencyFinding { std_s: alone.std_s.max(unsure_s), ..alone };
         self.search.steps.clear();
+        self.torque_law = self.torque_law_alone;
         self
     }
 
@@ -99,8 +100,11 @@ pub struct Explanation {
     pub field: Option<FieldTest>,
     /// tests of causes that do not repeat
     pub aperiodic: Aperiodic,
-    /// where the rotors' torque certainly does not go with their thrust
+    /// where the rotors' torque certainly does not go with their thrust, by the model that serves: of an unexplained flight the rigid body
+    /// alone
     pub torque_law: Option<TorqueLaw>,
+    /// the same by the rigid body alone
+    pub torque_law_alone: Option<TorqueLaw>,
     /// the search with its fits and evidence
     pub search: Search,
 }

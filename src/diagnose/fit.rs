@@ -139,7 +139,7 @@ impl Fitted {
     #[must_use]
     pub fn against_priors(&self) -> f64 {
         let of = |(column, value): (&NuisanceColumn, &f64)| {
-            column.prior_std.map_or(0.0, |std| 0.5 * (value / std).powi(2))
+            column.prior_std.map_or(0.0, |std| 0.5 * ((value - column.prior_mean) / std).powi(2))
         };
         self.rows.nuisances.iter().zip(self.coefficients.iter()).map(of).sum()
     }
@@ -238,7 +238,12 @@ pub(super) fn step(base: &mut Base, rows: &Rows, coefficients: &DVector<f64>, ne
                     body.inertia_kg_m2[(column, row)] += by;
                 }
             }
-            Nuisance::Gyroscopic => body.gyroscopic += by,
+            Nuisance::Gyroscopic => {
+                let before = body.gyroscopic;
+                body.gyroscopic = (before + by).clamp(0.0, 1.0);
+                moves.push((index, body.gyroscopic - before));
+                continue;
+            }
             Nuisance::Latency if newton != Newton::Held => {
                 let by = by.clamp(-0.05, 0.05);
                 if base.latency.lag_s > 0.0 && newton == Newton::Free {

@@ -64,7 +64,7 @@ pub(super) fn left_out(flights: &[Trace], fitted: &Fitted, start: &Base) -> Opti
         return None;
     }
     let mut base = start.clone();
-    base.vehicle.body.gyroscopic = share;
+    base.vehicle.body.gyroscopic = share.clamp(0.0, 1.0);
     base.estimates_gyroscopic = true;
     Some(base)
 }

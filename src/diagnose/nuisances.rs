@@ -27,9 +27,10 @@ const LEVEL_STD_RAD: f64 = 0.01;
 /// mg of data sheets (ICM-42688-P, table 2).
 const BIAS_STD_M_S2: f64 = 0.2;
 
-/// Standard deviation of the prior of the share of the gyroscopic torque that a simulator has, about what is known of it: all or
-/// none.
+/// Standard deviation of the prior of the share of the gyroscopic torque that a simulator has, about that of a body. It has all or none.
 const GYROSCOPIC_STD: f64 = 1.0;
+/// Share of the gyroscopic torque of a body.
+const WHOLE: f64 = 1.0;
 
 pub(super) fn nuisances(
     trace: &Trace,
@@ -52,7 +53,9 @@ pub(super) fn nuisances(
     }
     if base.estimates_gyroscopic {
         let values = gyroscopic_column(trace, &base.vehicle.body);
-        out.push(column(Nuisance::Gyroscopic, Some(GYROSCOPIC_STD), values));
+        // known is the share, and the column is of what it changes by
+        let prior_mean = WHOLE - base.vehicle.body.gyroscopic;
+        out.push(NuisanceColumn { prior_mean, ..column(Nuisance::Gyroscopic, Some(GYROSCOPIC_STD), values) });
     }
     let thrust: Vec<f64> = commanded.thrust_n.each().map(|thrusts| thrusts.iter().sum::<f64>()).collect();
     out.extend(latencies(trace, base, &thrust));
@@ -164,7 +167,7 @@ fn guessed_balance(trace: &Trace, vehicle: &Vehicle) -> Vec<NuisanceColumn> {
 
 /// A column of the whole flight.
 fn column(nuisance: Nuisance, prior_std: Option<f64>, values: Channels) -> NuisanceColumn {
-    NuisanceColumn { nuisance, values, prior_std, first_row: 0, considered: None }
+    NuisanceColumn { nuisance, values, prior_std, prior_mean: 0.0, first_row: 0, considered: None }
 }
 
 /// The kinematics along body x and y as they come late: the force in the world changes as the thrust, N, turns with the body. It

@@ -14,6 +14,8 @@ pub(super) struct Priors {
     pub(super) precision: DVector<f64>,
     /// variance of what the prior adds to the score
     pub(super) meat: DVector<f64>,
+    /// what is added to the score at zero: precision times mean
+    pub(super) pull: DVector<f64>,
 }
 
 impl Priors {
@@ -21,13 +23,15 @@ impl Priors {
     /// error: rows that overlap, noise that lasts, and a second reading that shares the error must not outvote what is known
     /// of it.
     pub(super) fn of(nuisances: &[NuisanceColumn], columns: usize, alike: f64) -> Self {
-        let mut priors = Self { precision: DVector::zeros(columns), meat: DVector::zeros(columns) };
+        let zeros = || DVector::zeros(columns);
+        let mut priors = Self { precision: zeros(), meat: zeros(), pull: zeros() };
         for (index, column) in nuisances.iter().enumerate() {
             let Some(std) = column.prior_std else { continue };
             let counts =
                 if column.nuisance == Nuisance::VelocityError { alike * readings(column) } else { 1.0 };
             priors.precision[index] = counts * std.powi(-2);
             priors.meat[index] = counts * priors.precision[index];
+            priors.pull[index] = priors.precision[index] * column.prior_mean;
         }
         priors
     }
@@ -55,6 +59,7 @@ mod tests {
                 nuisance: Nuisance::VelocityError,
                 values,
                 prior_std: Some(0.5),
+                prior_mean: 0.0,
                 considered: None,
             }
         };

@@ -49,7 +49,7 @@ impl TorqueLaw {
 }
 
 /// Izz in `Theta`.
-const ABOUT_Z: usize = 6;
+pub(super) const ABOUT_Z: usize = 6;
 /// An exponent nearer to one than this is ordinary: the ratio of torque and thrust changes by a tenth with Reynolds number over the range of
 /// a rotor.
 const ORDINARY: f64 = 0.2;

@@ -60,6 +60,7 @@ pub(super) fn velocity_error(
             values: knots.column(knot, trace, (mass_kg, &slope)),
             first_row: knots.rows(knot, trace).start,
             prior_std: Some(rms_m_s / BETWEEN_KNOTS.sqrt()),
+            prior_mean: 0.0,
             considered: None,
         })
         .collect()

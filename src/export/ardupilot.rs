@@ -93,7 +93,7 @@ fn tell(source: &mut Source<'_>) {
     ));
     source.note("the reaction torque goes with thrust times command in the simulator and with thrust in the model: they change alike about hover, and a violent turn identifies an izz that is some percent too large");
     source.note("versions with parameters SIM_FRM_* take their defaults from this file, so that none has to be set; one that was set by hand stays as it was set");
-    source.note("the simulator has no gyroscopic torque w x J w: a flight that turns while it tilts identifies an izz near ixx and iyy, so turn and tilt one after the other where izz is wanted");
+    source.turns_without_gyroscopic();
     if source.lags_s().is_some() {
         source.note("the simulator's rotors have no lag (slew_max limits their rate alone)");
         source.refuse("motor_lag");

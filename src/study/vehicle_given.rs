@@ -1,6 +1,6 @@
 //! How a study is told of the vehicle: by a file, or by its mass and size.
 
-use crate::autopilot::Autopilot;
+use crate::autopilot::{Autopilot, is_simulated};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -50,9 +50,28 @@ pub(super) struct Known {
     pub(super) origin: PathBuf,
     /// where it was drafted
     pub(super) draft: Option<Draft>,
+    /// share of the gyroscopic torque that its file states and that is not a body's, where the flights are not all a simulator's
+    pub(super) not_a_bodys: Option<f64>,
 }
 
 impl Known {
+    fn of(loaded: LoadedVehicle, origin: PathBuf, draft: Option<Draft>) -> Self {
+        Self { loaded, origin, draft, not_a_bodys: None }
+    }
+
+    /// The whole gyroscopic torque acts in these flights unless all are a simulator's.
+    fn turning_as_flown(mut self, logs: &[Vec<Flight>]) -> Self {
+        let of_simulator =
+            |flight: &Flight| is_simulated(|name| flight.recording.parameters.get(name).copied());
+        let stated = std::mem::replace(&mut self.loaded.vehicle.body.gyroscopic, WHOLE);
+        if logs.iter().flatten().all(of_simulator) {
+            self.loaded.vehicle.body.gyroscopic = stated;
+        } else if stated != WHOLE {
+            self.not_a_bodys = Some(stated);
+        }
+        self
+    }
+
     /// What is to be known of it.
     pub(super) fn notes(&self) -> Vec<Note> {
         let about = || About::File(text::path(&self.origin));
@@ -60,11 +79,22 @@ impl Known {
             Some(draft) => draft_notes(draft),
             None => {
                 let mut notes = file_notes(&self.origin, &self.loaded.warnings);
+                notes.extend(self.not_a_bodys.map(|stated| Note::warning(about(), not_of_a_body(stated))));
                 notes.extend(guesses(&self.loaded.vehicle).map(|text| Note::remark(about(), text)));
                 notes
             }
         }
     }
+}
+
+/// Share of the gyroscopic torque that acts on every body.
+const WHOLE: f64 = 1.0;
+
+fn not_of_a_body(stated: f64) -> String {
+    format!(
+        "body.gyroscopic is {stated}, of a simulator that leaves the gyroscopic torque out, and the parameters in the logs do not say \
+         that a simulator flew: the whole torque is taken, as it acts on every real vehicle"
+    )
 }
 
 /// What is to be known of a drafted vehicle: what is hardly meant, what contradicts the log, where its values come from, and
@@ -119,9 +149,7 @@ impl VehicleGiven {
     /// The vehicle of a file; `None` where it is to be drafted from a log.
     pub(super) fn of_file(&self) -> Result<Option<Known>, StudyError> {
         match self {
-            Self::File(file) => {
-                Ok(Some(Known { loaded: read_vehicle(file)?, origin: file.clone(), draft: None }))
-            }
+            Self::File(file) => Ok(Some(Known::of(read_vehicle(file)?, file.clone(), None))),
             Self::Weighed(_) => Ok(None),
         }
     }
@@ -134,14 +162,15 @@ impl VehicleGiven {
         }
     }
 
-    /// The vehicle, drafted from the first flight of the logs where it is not in a file.
+    /// The vehicle, drafted from the first flight of the logs where it is not in a file. A file's share of the gyroscopic torque is that
+    /// of a simulator, and holds where one flew.
     pub(super) fn of_flights(&self, known: Option<Known>, logs: &[Vec<Flight>]) -> Result<Known, StudyError> {
         let first = logs.iter().flatten().next();
         match (self, known, first) {
-            (_, Some(known), _) => Ok(known),
+            (_, Some(known), _) => Ok(known.turning_as_flown(logs)),
             (Self::Weighed(given), None, Some(flight)) => {
                 let draft = drafted(&flight.recording, &flight.input.path, given)?;
-                Ok(Known { loaded: of_draft(&draft), origin: PathBuf::from(DRAFTED), draft: Some(draft) })
+                Ok(Known::of(of_draft(&draft), PathBuf::from(DRAFTED), Some(draft)))
             }
             _ => Err(StudyError::Setting {
                 name: "mass",
@@ -276,4 +305,45 @@ pub fn draft_text(draft: &Draft) -> Result<String, ConfigError> {
     }
     out.push('\n');
     Ok(out + &vehicle_to_toml(&draft.vehicle)?)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+    use super::*;
+    use crate::simulate::random_vehicle;
+    use crate::study::InputFile;
+    use crate::study::flight::LoggedBy;
+
+    fn known(share: f64, parameters: &[(&str, f64)]) -> Known {
+        let mut vehicle = random_vehicle(1).nominal;
+        vehicle.body.gyroscopic = share;
+        let loaded = LoadedVehicle { vehicle, model: ModelTables::default(), warnings: Vec::new() };
+        let parameters = parameters.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+        let flight = Flight {
+            logged_by: LoggedBy::Vehicle,
+            recording: Recording { parameters, ..Recording::default() },
+            input: InputFile {
+                path: "log".to_owned(),
+                sha256: String::new(),
+                other_logs: Vec::new(),
+                notes: Vec::new(),
+            },
+            off_mixer: Vec::new(),
+            actuator: None,
+        };
+        Known::of(loaded, PathBuf::from("model.toml"), None).turning_as_flown(&[vec![flight]])
+    }
+
+    #[test]
+    fn a_share_of_the_gyroscopic_torque_is_a_simulators() {
+        let told = |known: &Known| known.notes().iter().any(|note| note.text.contains("body.gyroscopic"));
+        let simulated = known(0.0, &[("SYS_HITL", 2.0)]);
+        assert!(simulated.loaded.vehicle.body.gyroscopic == 0.0 && !told(&simulated));
+        for parameters in [&[][..], &[("SYS_HITL", 0.0)][..]] {
+            let real = known(0.0, parameters);
+            assert!(real.loaded.vehicle.body.gyroscopic == 1.0 && told(&real), "{:?}", real.notes());
+        }
+        assert!(!told(&known(1.0, &[])));
+    }
 }

@@ -14,6 +14,7 @@ use crate::diagnose::latency::{LatencyFinding, finding_of};
 use crate::diagnose::left_over::add_left_over;
 use crate::diagnose::physical::WITHIN_ERROR;
 use crate::diagnose::recorded::Recorded;
+use crate::diagnose::torque_law::{ABOUT_Z, TorqueLaw, torque_law};
 use crate::diagnose::trace::Trace;
 use crate::estimate::{
     Estimated, Finding, Method, MethodResult, MovedByCurve, Nominal, THETA, Theta, identified_vehicle,
@@ -61,7 +62,8 @@ pub fn identify_jointly(
     let mut before = before;
     add_left_over(&mut before, &[]);
     add_left_over(&mut after, &[]);
-    let fits = Fits { before, after, settled, split, first };
+    let laws = [&before, &after].map(|fitted| torque_law(&traces, fitted));
+    let fits = Fits { before, after, settled, split, first, laws };
     let by_curve = moved_by_guessed_curve(flights, vehicle);
     let estimate = put_together(&traces, (vehicle, &kept), (wanted, by_curve), fits);
     estimate.effects.iter().for_each(EffectFound::emit);
@@ -75,6 +77,8 @@ struct Fits {
     settled: Vec<FittedForm>,
     split: latency::Split,
     first: LatencyFinding,
+    /// of the rotors' torque, where it is certain that it is another than stated: of the rigid body alone, and with the effects
+    laws: [Option<TorqueLaw>; 2],
 }
 
 fn put_together(
@@ -83,7 +87,7 @@ fn put_together(
     (wanted, by_curve): (&RequestedEffects, Option<MovedByCurve>),
     fits: Fits,
 ) -> JointEstimate {
-    let Fits { before, after, settled, split, first } = fits;
+    let Fits { before, after, settled, split, first, laws: [law_before, torque_law] } = fits;
     let nominal = Nominal::of(vehicle);
     let guessed = |estimated: Estimated, by: Option<MovedByCurve>| {
         let moved = by.map(|by| by.on(&estimated.theta));
@@ -93,6 +97,12 @@ fn put_together(
     let left = by_curve.filter(|_| !wanted.bend_thrust());
     let (mut estimated, mut estimated_before) =
         (guessed(after.rigid_body(), left), guessed(before.rigid_body(), by_curve));
+    let in_errors = |estimated, law: Option<TorqueLaw>| match law {
+        Some(law) => law.in_errors_of(estimated),
+        None => estimated,
+    };
+    (estimated, estimated_before) =
+        (in_errors(estimated, torque_law), in_errors(estimated_before, law_before));
     let physical = made_physical(&mut estimated, &nominal.theta);
     let result = |estimated: &Estimated| MethodResult::new(Method::Weak, estimated, &nominal);
     let (mut body, mut body_before) = (result(&estimated), result(&estimated_before));
@@ -118,6 +128,10 @@ fn put_together(
     acting.extend(effects.iter().filter_map(EffectFound::acting));
     let mut identified = identified_vehicle(vehicle, &body, scale.as_ref());
     identified.body.gyroscopic = after.base.vehicle.body.gyroscopic;
+    if torque_law.is_some() && estimated.theta[ABOUT_Z].is_finite() {
+        // what turns the vehicle about z with the stated torque per thrust, as the flight does
+        identified.body.inertia_kg_m2[(2, 2)] = estimated.theta[ABOUT_Z];
+    }
     JointEstimate {
         vehicle: identified,
         latency_named: wanted.signatures().iter().any(|signature| signature.role.latency.is_some()),
@@ -130,6 +144,7 @@ fn put_together(
         acting,
         latency,
         physical,
+        torque_law,
     }
 }
 

@@ -4,6 +4,7 @@ use super::finding::EffectFound;
 use crate::diagnose::channels::CHANNELS;
 use crate::diagnose::fit::Fitted;
 use crate::diagnose::latency::LatencyFinding;
+use crate::diagnose::torque_law::TorqueLaw;
 use crate::estimate::{Finding, MethodResult, ThrustScale};
 use crate::physics::ActiveEffect;
 use crate::vehicle::Vehicle;
@@ -33,6 +34,8 @@ pub struct JointEstimate {
     pub latency_named: bool,
     /// whether the inertia is physically possible
     pub physical: Physical,
+    /// where the rotors' torque certainly does not go with their thrust
+    pub torque_law: Option<TorqueLaw>,
 }
 
 impl JointEstimate {

@@ -165,7 +165,7 @@ fn a_drag_is_in_each_half_of_the_flight() {
     let traces = [Trace::new(&signals, &vehicle, settings.half_width_s).unwrap()];
     let parts = by_part(&traces, &found).unwrap();
     let drag = parts.iter().find(|of| of.id == "linear_drag").unwrap();
-    assert!(drag.parts.len() == 2 && drag.is_in_each(), "{drag:?}");
+    assert!(drag.parts.len() == 2 && drag.is_certain(), "{drag:?}");
     let whole = found.named.iter().find(|named| named.id == "linear_drag").unwrap().value(drag.parameter);
     assert!(
         drag.parts.iter().all(|(value, std)| (value - whole).abs() < 5.0 * std.max(0.02 * whole)),

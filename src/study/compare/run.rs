@@ -52,7 +52,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     if request.vehicle.is_none() {
         notes = vec![Note::remark(About::Vehicle, SHARES)];
     }
-    let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft } = known;
+    let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft, .. } = known;
     refuse_twins(before.iter().chain(&after))?;
     refuse_others(before.iter().chain(&after).flatten())?;
     notes.extend(doubt_one_vehicle(before.iter().chain(&after).flatten()));

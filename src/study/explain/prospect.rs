@@ -56,9 +56,9 @@ impl ExplainStudy {
         (is_told && !self.latency_named()).then_some((beyond_s, latency.std_s))
     }
 
-    /// Named effects that not each part of the flights shows by itself.
+    /// Named effects that are not certain to be in each part of the flights.
     pub fn unsettled(&self) -> impl Iterator<Item = &ByPart> {
-        self.by_part.iter().filter(|of| !of.is_in_each())
+        self.by_part.iter().filter(|of| !of.is_certain())
     }
 
     /// Fits the named effects to each part of the flights.

@@ -54,7 +54,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
     let known = request.vehicle.of_flights(known, &logs).map_err(or_unflown)?;
     let mut notes = of_vehicle(&known)?;
-    let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft } = known;
+    let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft, .. } = known;
     let of_holdout = |why| StudyError::Setting {
         name: "holdout",
         why: format!("expected a flight of {}: {why}", vehicle.name),

@@ -135,6 +135,16 @@ impl IdentifyStudy {
         })
     }
 
+    /// The same with the law of the rotors' torque that the model with the effects asked for shows.
+    #[must_use]
+    pub(super) fn with_law_of(mut self, law: Option<TorqueLaw>) -> Self {
+        let of_search = self.torque_law.as_ref().map(TorqueLaw::note);
+        self.identification.notes.retain(|note| of_search.as_ref() != Some(note));
+        self.identification.notes.extend(law.iter().map(TorqueLaw::note));
+        self.torque_law = law;
+        self
+    }
+
     /// The rigid body of the answer: with the effects where some were asked for, by the recommended method elsewhere.
     #[must_use]
     pub fn body(&self) -> &MethodResult {

@@ -49,6 +49,10 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     let study =
         IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings(), &explained)
             .map_err(|error| StudyError::of_estimate(error, &lost))?;
+    let study = match &with {
+        Some(with) => study.with_law_of(with.joint.torque_law),
+        None => study,
+    };
     Ok(IdentifyStudy { with, notes, ..study })
 }
 
