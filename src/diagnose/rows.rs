@@ -38,6 +38,8 @@ pub struct Rows {
     pub effects: Vec<Channels>,
     /// in one of the flights, torques are compared row by row, not only on average
     pub compares_torques: bool,
+    /// relative standard error that all torques about x and y have in common
+    pub torque_std: f64,
     /// N m, root mean square of the torque that the motion needs, about body x, y, z
     pub torque_rms: [f64; 3],
     /// data for further columns about the same base
@@ -66,6 +68,7 @@ impl Rows {
             nuisances: Vec::new(),
             effects: Vec::new(),
             compares_torques: flights.iter().any(|trace| trace.torques),
+            torque_std: flights.iter().map(|trace| trace.torque_std).fold(0.0, f64::max),
             torque_rms: [0.0; 3],
             flights: Vec::new(),
             known_motion: known_motion.clone(),
@@ -119,6 +122,7 @@ impl Rows {
             nuisances: kept.cloned().collect(),
             effects: self.effects.clone(),
             compares_torques: self.compares_torques,
+            torque_std: self.torque_std,
             torque_rms: self.torque_rms,
             flights: Vec::new(),
             known_motion: None,

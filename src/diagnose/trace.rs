@@ -73,6 +73,8 @@ pub struct Trace {
     pub height_by_pose: Option<bool>,
     /// a satellite receiver gives the position
     pub position_by_receiver: bool,
+    /// relative standard error that all torques about x and y have in common
+    pub torque_std: f64,
     /// a simulator flew it
     pub simulated: bool,
     /// m/s rms, slow error of the horizontal velocity by a satellite receiver; `None` without one
@@ -146,6 +148,7 @@ impl Trace {
             gravity_m_s2: vehicle.gravity_m_s2,
             height_by_pose: signals.quality.height_by_pose,
             position_by_receiver: signals.quality.position_by_receiver,
+            torque_std: signals.quality.torque_std,
             simulated: signals.quality.simulated,
             velocity_error_m_s: velocity_error_m_s(signals),
             instruments: None,

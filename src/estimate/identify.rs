@@ -116,9 +116,10 @@ pub fn identify(
 
     let wider = weak.by_wider_window(&plain, &nominal.theta, settings);
     let by_curve = moved_by_curve(flights, vehicle, compensated, &nominal.theta);
+    let torque_std = flights.iter().map(|flight| flight.quality.torque_std).fold(0.0, f64::max);
     let whole = |weak: &WeakEstimate| {
         let moved = by_curve.map(|by| by.on(&weak.theta));
-        Estimated::of(weak).with_wider_window(wider).with_guessed_curve(moved)
+        Estimated::of(weak).with_torque_std(torque_std).with_wider_window(wider).with_guessed_curve(moved)
     };
     let mut methods = paper.results(&whole(&plain));
     let best = Recommendation::weak(whole(&plain), &nominal);

@@ -65,6 +65,9 @@ pub const LEAST_EXPLAINED: f64 = 0.3;
 /// flights of both autopilots' simulators: at most 1.22, but one of 1.32 that is 12 % off.
 const LARGEST_WINDOW_FACTOR: f64 = 1.25;
 
+/// Places in `Theta` of what torques about x and y tell.
+const ABOUT_X_AND_Y: std::ops::RangeInclusive<usize> = 1..=5;
+
 /// `Theta` with its covariance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimated {
@@ -108,6 +111,22 @@ impl Estimated {
     #[must_use]
     pub fn with_wider_window(self, ratios: [f64; 3]) -> Self {
         Self { by_wider_window: Some(ratios), ..self }
+    }
+
+    /// The same where all torques about x and y have a relative standard error in common: the moments and products of inertia that they
+    /// tell have it too.
+    #[must_use]
+    pub fn with_torque_std(mut self, relative: f64) -> Self {
+        for row in ABOUT_X_AND_Y {
+            for column in ABOUT_X_AND_Y {
+                let both = self.covariance[(row, row)] > 0.0 && self.covariance[(column, column)] > 0.0;
+                if both && relative > 0.0 {
+                    self.covariance[(row, column)] +=
+                        relative * relative * self.theta[row] * self.theta[column];
+                }
+            }
+        }
+        self
     }
 
     /// The same with how far a guessed thrust curve moves it.

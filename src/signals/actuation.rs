@@ -104,6 +104,14 @@ impl Actuation {
         }
     }
 
+    /// Relative standard error that all torques about x and y have in common.
+    pub(super) fn torque_std(&self) -> f64 {
+        match self {
+            Self::Rotors(rotors) => rotors.torque_std,
+            Self::Wrench(..) => 0.0,
+        }
+    }
+
     pub(super) fn source(&self) -> ThrustSource {
         match self {
             Self::Rotors(rotors) => rotors.source,

@@ -63,7 +63,8 @@ pub fn thrusts_from_commands(recording: &Recording, vehicle: &Vehicle) -> Result
     let stream = Stream { time_s: command.time_s.clone(), width: channels.len(), values };
     let jitter = Some(jitter_thrust(&command, propulsion.thrust_curvature_n()));
     let (command, source) = (Some(command), ThrustSource::Command);
-    let mut thrusts = RotorThrusts { stream, command, jitter, source, message: key.source, notes };
+    let mut thrusts =
+        RotorThrusts { stream, command, jitter, source, message: key.source, torque_std: 0.0, notes };
     match rebuilt(recording, &thrusts, &propulsion) {
         Some(Ok(faster)) => return Ok(faster),
         Some(Err(note)) => thrusts.notes.push(note),
@@ -110,7 +111,8 @@ pub fn thrusts_from_speeds(recording: &Recording, vehicle: &Vehicle) -> Option<R
         return None;
     }
     let (source, message) = (ThrustSource::MeasuredSpeed, key.source);
-    Some(RotorThrusts { stream, command: None, jitter: None, source, message, notes: Vec::new() })
+    let notes = Vec::new();
+    Some(RotorThrusts { stream, command: None, jitter: None, source, message, torque_std: 0.0, notes })
 }
 
 fn no_actuators(recording: &Recording, vehicle: &Vehicle) -> SignalsError {

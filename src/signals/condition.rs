@@ -133,6 +133,7 @@ pub fn condition(
             airborne_s,
             usable: used,
             torques: sufficiency.torques,
+            torque_std: actuation.torque_std(),
             height_by_pose: is_height_by_pose(recording),
             position_by_receiver: is_position_by_receiver(recording),
             simulated: is_simulated(|name| recording.parameters.get(name).copied()),

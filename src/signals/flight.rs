@@ -126,6 +126,8 @@ pub struct Quality {
     pub usable: Usable,
     /// commands and body rates are fast enough to compare torques with the motion; otherwise forces are compared, and torques on average
     pub torques: bool,
+    /// relative standard error that all torques about x and y have in common, where the commands are rebuilt from others
+    pub torque_std: f64,
     /// whether motion capture or a camera gives the height, or else satellites and air pressure; `None` where it is not known
     pub height_by_pose: Option<bool>,
     /// a satellite receiver gives the position
@@ -166,6 +168,7 @@ mod tests {
                 airborne_s: Vec::new(),
                 usable: Usable::default(),
                 torques: true,
+                torque_std: 0.0,
                 height_by_pose: None,
                 position_by_receiver: false,
                 simulated: false,

@@ -17,11 +17,8 @@ const FASTER: f64 = 1.5;
 /// A command and the setpoint that it was made from are logged in cycles of the controller that are up to so many of these apart, s.
 const LATE_STEP_S: f64 = 0.001;
 const LATE_STEPS: i32 = 10;
-/// From and to where setpoints are around an instant, s: further than the noise of a controller's output is correlated, nearer than a
-/// motion of the body changes.
-const AROUND_S: (f64, f64) = (0.015, 0.1);
-/// Largest relative standard error of the torques about x and y by instruments. With a greater one, least squares err less.
-const MOST_RELATIVE_STD: f64 = 0.1;
+/// Least squared correlation of a torque that was asked for with that of the commands. With less, their spreads do not belong together.
+const LEAST_ALIKE: f64 = 0.2;
 /// Thrust setpoints further apart are no line between each other, s: PX4 logs them at 17 Hz by default.
 const THRUST_GAP_S: f64 = 0.15;
 /// Commands that are no linear function of the setpoints any more: at their ends.
@@ -53,14 +50,16 @@ pub(super) fn rebuilt(
     let note = |text: String| Note::remark(About::Actuators, text);
     let source = asked.source;
     let begin = format!("motor commands ({}) are logged at {slow_hz:.0} Hz", slow.message);
-    let Some(allocation) = Allocation::fit(&asked.stream, &slow.stream, command) else {
-        let why = format!("fewer than {LEAST_PAIRS} of them have setpoints around them");
-        return Some(Err(note(format!("{begin}, and are not rebuilt from {source}: {why}"))));
+    let allocation = match Allocation::fit(&asked.stream, &slow.stream, command) {
+        Ok(allocation) => allocation,
+        Err(why) => return Some(Err(note(format!("{begin}, and are not rebuilt from {source}: {why}")))),
     };
     let told = format!(
-        "{source} at {asked_hz:.0} Hz explains {:.2} % of their variance and leaves {:.3} N a rotor, rms",
+        "{source} at {asked_hz:.0} Hz explains {:.2} % of their variance and leaves {:.3} N a rotor, rms; its torques about x and y are \
+         known to {:.1} %",
         100.0 * allocation.explained,
-        allocation.rms_n
+        allocation.rms_n,
+        100.0 * allocation.std
     );
     if allocation.explained < LEAST_EXPLAINED {
         return Some(Err(note(format!("{begin}, and are not rebuilt: {told}"))));
@@ -71,7 +70,8 @@ pub(super) fn rebuilt(
     let mut notes = slow.notes.clone();
     notes.push(note(format!("{begin}, and are rebuilt: {told}")));
     let source = ThrustSource::Command;
-    Some(Ok(RotorThrusts { stream, command, jitter: None, source, message: asked.source, notes }))
+    let torque_std = allocation.std;
+    Some(Ok(RotorThrusts { stream, command, jitter: None, source, message: asked.source, torque_std, notes }))
 }
 
 /// What the controller asked for: torque about x, y, z and thrust, as shares.
@@ -121,8 +121,6 @@ fn between(stream: &Stream, channel: usize, time_s: f64) -> Option<f64> {
 struct Pairs {
     /// a constant and the setpoints, a row an instant
     asked: DMatrix<f64>,
-    /// a constant and the mean setpoints of the instants around, likewise
-    around: DMatrix<f64>,
     /// thrusts, one column a rotor
     wanted: DMatrix<f64>,
 }
@@ -132,17 +130,15 @@ impl Pairs {
     fn of(asked: &Stream, (thrusts, command): (&Stream, &Stream), late_s: f64) -> Option<Self> {
         let unsaturated = |index: &usize| command.sample(*index).iter().all(|u| UNSATURATED.contains(u));
         let row = |index: usize| {
-            let time_s = thrusts.time_s[index] + late_s;
             let mut at = [1.0; COLUMNS];
             for (channel, value) in at[1..].iter_mut().enumerate() {
-                *value = between(asked, channel, time_s)?;
+                *value = between(asked, channel, thrusts.time_s[index] + late_s)?;
             }
-            Some((index, at, mean_around(asked, time_s)?))
+            Some((index, at))
         };
         let rows: Vec<_> = (0..thrusts.len()).filter(unsaturated).filter_map(row).collect();
         (rows.len() >= LEAST_PAIRS).then(|| Self {
             asked: DMatrix::from_fn(rows.len(), COLUMNS, |row, column| rows[row].1[column]),
-            around: DMatrix::from_fn(rows.len(), COLUMNS, |row, column| rows[row].2[column]),
             wanted: DMatrix::from_fn(rows.len(), thrusts.width, |row, rotor| {
                 thrusts.sample(rows[row].0)[rotor]
             }),
@@ -159,43 +155,50 @@ impl Pairs {
         self.asked.clone().svd(true, true).solve(&self.wanted, 1e-9).ok()
     }
 
-    /// With the setpoints around each instant as instruments. The controller's answer to the noise of its gyroscopes is another one in
-    /// the cycle that was logged than in that of the command, and lowers the coefficients of least squares. `None` where the slow motion
-    /// does not tell the torques about x and y.
-    fn by_instruments(&self) -> Option<DMatrix<f64>> {
-        let inverse = (self.around.transpose() * &self.asked).try_inverse()?;
-        let coefficients = &inverse * self.around.transpose() * &self.wanted;
-        let spread = &inverse * (self.around.transpose() * &self.around) * inverse.transpose();
-        let left = self.left(&coefficients);
-        let relative = |column: usize| {
-            let size = coefficients.row(column).norm_squared() / coefficients.ncols() as f64;
-            (left * spread[(column, column)] / size).sqrt()
-        };
-        (1..3).all(|column| relative(column) < MOST_RELATIVE_STD).then_some(coefficients)
+    /// Coefficients by which each setpoint varies as much as it was logged to vary, and the relative standard error of those of the torques
+    /// about x and y, the greater one. Least squares make them too small: the controller's answer to the noise of its gyroscopes is another
+    /// one in the cycle that was logged than in that of the command. Both are of one process, so the ratio of their spreads is right.
+    /// `None` where the commands do not follow a torque that was asked for.
+    fn evened(&self, mut coefficients: DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
+        let rows = COLUMNS - 1;
+        let shares = coefficients.rows(1, rows).into_owned();
+        let constant =
+            DMatrix::from_fn(self.wanted.nrows(), shares.ncols(), |_, rotor| coefficients[(0, rotor)]);
+        // what was asked for, by the commands
+        let back = shares.pseudo_inverse(1e-12).ok()?;
+        let by_commands = (&self.wanted - constant) * back;
+        let mut most = 0.0_f64;
+        for column in 1..COLUMNS {
+            let (logged, commanded) = (self.asked.column(column), by_commands.column(column - 1));
+            let (of_logged, of_commanded) = (logged.variance(), commanded.variance());
+            if of_logged <= 0.0 || of_commanded <= 0.0 {
+                continue;
+            }
+            let (mean_logged, mean_commanded) = (logged.mean(), commanded.mean());
+            let pairs = logged.iter().zip(commanded.iter());
+            let together = pairs.map(|(a, b)| (a - mean_logged) * (b - mean_commanded)).sum::<f64>()
+                / logged.len() as f64;
+            let alike = together * together / (of_logged * of_commanded);
+            if column < 3 {
+                if alike < LEAST_ALIKE {
+                    return None;
+                }
+                most = most.max(((1.0 - alike) / logged.len() as f64).sqrt());
+            }
+            if alike >= LEAST_ALIKE {
+                coefficients.row_mut(column).scale_mut((of_commanded / of_logged).sqrt());
+            }
+        }
+        Some((coefficients, most))
     }
-}
-
-/// A constant and the means of the setpoints before and after a time, without those next to it; `None` where there are none on a side.
-fn mean_around(asked: &Stream, time_s: f64) -> Option<[f64; COLUMNS]> {
-    let place = |away_s: f64| asked.time_s.partition_point(|stamp_s| *stamp_s < time_s + away_s);
-    let sides = [(-AROUND_S.1, -AROUND_S.0), AROUND_S].map(|(from_s, to_s)| place(from_s)..place(to_s));
-    let mut means = [1.0; COLUMNS];
-    if sides.iter().any(std::ops::Range::is_empty) {
-        return None;
-    }
-    for (channel, mean) in means[1..].iter_mut().enumerate() {
-        let of = |side: &std::ops::Range<usize>| {
-            side.clone().map(|index| asked.sample(index)[channel]).sum::<f64>() / side.len() as f64
-        };
-        *mean = sides.iter().map(of).sum::<f64>() / 2.0;
-    }
-    Some(means)
 }
 
 /// From setpoints to one thrust a rotor.
 struct Allocation {
     /// one column a rotor
     coefficients: DMatrix<f64>,
+    /// relative standard error of those of the torques about x and y
+    std: f64,
     /// share of the commands' variance
     explained: f64,
     /// what is left of one rotor's thrust, N, root mean square
@@ -203,7 +206,7 @@ struct Allocation {
 }
 
 impl Allocation {
-    fn fit(asked: &Stream, thrusts: &Stream, command: &Stream) -> Option<Self> {
+    fn fit(asked: &Stream, thrusts: &Stream, command: &Stream) -> Result<Self, String> {
         // setpoints and commands are stamped at different places of the controller's cycle
         let at = |late: i32| {
             let pairs = Pairs::of(asked, (thrusts, command), f64::from(late) * LATE_STEP_S)?;
@@ -212,8 +215,12 @@ impl Allocation {
             Some((left, coefficients, pairs))
         };
         let each = (-LATE_STEPS..=LATE_STEPS).filter_map(at);
-        let (_, coefficients, pairs) = each.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let coefficients = pairs.by_instruments().unwrap_or(coefficients);
+        let (_, coefficients, pairs) = each
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .ok_or_else(|| format!("fewer than {LEAST_PAIRS} of them have setpoints around them"))?;
+        let (coefficients, std) = pairs
+            .evened(coefficients)
+            .ok_or("they do not follow the torques about x and y that were asked for")?;
         let mut variance = 0.0;
         for rotor in 0..pairs.wanted.ncols() {
             let mean = pairs.wanted.column(rotor).mean();
@@ -221,8 +228,9 @@ impl Allocation {
         }
         let left = pairs.left(&coefficients);
         let squares = left * pairs.wanted.len() as f64;
-        Some(Self {
+        Ok(Self {
             coefficients,
+            std,
             explained: 1.0 - squares / variance.max(f64::MIN_POSITIVE),
             rms_n: left.sqrt(),
         })
@@ -306,6 +314,7 @@ mod tests {
                 jitter: None,
                 source,
                 message: "actuator_motors",
+                torque_std: 0.0,
                 notes: Vec::new(),
             },
         )

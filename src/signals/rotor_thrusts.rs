@@ -27,6 +27,8 @@ pub struct RotorThrusts {
     pub source: ThrustSource,
     /// message or column group
     pub message: &'static str,
+    /// relative standard error that all torques about x and y have in common, where they are rebuilt from others
+    pub torque_std: f64,
     /// notes on values from the log's parameters and on contradictions to the vehicle file
     pub notes: Vec<Note>,
 }

@@ -111,6 +111,7 @@ fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
             airborne_s: vec![(0.0, STEP_S * COUNT as f64)],
             usable: Usable::default(),
             torques: true,
+            torque_std: 0.0,
             gyro_noise_rad_s: None,
             height_by_pose: None,
             position_by_receiver: false,

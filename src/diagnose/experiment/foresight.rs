@@ -266,6 +266,7 @@ impl SimulatedSeries {
                 gyro_noise_rad_s: Some(like.gyro_noise_rad_s),
                 height_by_pose: like.height_by_pose,
                 position_by_receiver: like.position_by_receiver,
+                torque_std: like.torque_std,
                 simulated: like.simulated,
                 notes: Vec::new(),
             },

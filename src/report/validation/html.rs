@@ -165,6 +165,7 @@ mod tests {
             airborne_s: Vec::new(),
             usable: Usable::default(),
             torques: true,
+            torque_std: 0.0,
             gyro_noise_rad_s: None,
             height_by_pose: None,
             position_by_receiver: false,
