@@ -95,7 +95,7 @@ fn causes_motion(flights: &[Signals], stated: &Vehicle, fitted: &Fitted) -> bool
 }
 
 fn is_loaded_aside(base: &Base) -> bool {
-    base.estimates(|term| term.signature.role.of_the_loading)
+    base.estimates(|term| term.signature.role.of_the_loading && !term.is_of_every_vehicle(&base.size))
 }
 
 /// Whether all but the torque about z shows a size.
