@@ -57,6 +57,11 @@ impl EffectTerm {
         self.effect().hooks() == [Hook::Sensors]
     }
 
+    /// Whether every vehicle of this size has as much of it: it has no name, and stays in the model where it is certain.
+    pub(super) fn is_of_every_vehicle(&self, size: &VehicleSize) -> bool {
+        self.size() < self.signature.naming.least_of_arm * size.arm_m
+    }
+
     /// Whether a parameter is the share of a force that acts at the rotors' hubs: it shows only in torques.
     pub(super) fn is_share_at_hubs(&self, slot: usize) -> bool {
         self.parameter(slot).is_some_and(|parameter| parameter.name == "at_hubs")
@@ -131,5 +136,23 @@ impl EffectTerm {
     pub fn size(&self) -> f64 {
         let amounts = self.free.iter().filter(|slot| self.is_amount(**slot));
         amounts.map(|&slot| self.values[slot].powi(2)).sum::<f64>().sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+    use crate::diagnose::signatures::signature_of;
+    use crate::simulate::random_vehicle;
+
+    #[test]
+    fn every_vehicle_has_a_little_of_a_centre_of_mass_that_is_off_and_of_nothing_else() {
+        let size = random_vehicle(1).nominal.size();
+        let of = |id: &str, amount: f64| {
+            let term = signature_of(id).unwrap().term(&[amount, 0.0, 0.0], &[0, 1]);
+            term.is_of_every_vehicle(&size)
+        };
+        assert!(of("com_offset", 0.005 * size.arm_m) && !of("com_offset", 0.02 * size.arm_m));
+        assert!(!of("linear_drag", 1e-6));
     }
 }

@@ -141,14 +141,13 @@ fn is_noise(bent: &EffectTerm, traces: &[Trace], fitted: &Fitted) -> bool {
     bent.values[0] < 0.0 && may_be_noise(traces, fitted)
 }
 
-/// Whether an effect stays in the model without a name: every vehicle has this much of it, or it is too small for its
-/// name.
+/// Whether an effect leaves the model without a name: every vehicle has this much of it, or it is too small for its
+/// name. One that every vehicle has a little of, and that is certain, stays as a trace (`EffectTerm::is_of_every_vehicle`).
 fn is_ordinary(term: &EffectTerm, base: &Base) -> bool {
     let naming = &term.signature.naming;
     let of_all = || term.values.iter().map(|value| value * value).sum::<f64>().sqrt();
     let amounts = || term.signature.amounts.iter().filter_map(|&slot| term.values.get(slot));
     term.size() < naming.least_of_mass * base.vehicle.body.mass_kg
-        || term.size() < naming.least_of_arm * base.size.arm_m
         || naming.ordinary.is_some_and(|ordinary| term.size() < ordinary)
         || naming.least > 0.0 && of_all() < naming.least
         || naming.most.is_some_and(|most| amounts().any(|amount| *amount > most))

@@ -9,12 +9,17 @@ use super::signature::EffectTerm;
 use crate::change::NAMED_SIGMAS;
 use crate::estimate::{Finding, Nominal, finding, inertia_by_wider_window};
 use crate::signals::Signals;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Mixer, Vehicle};
 
 /// Share of what the other axes show that each axis has to show.
 const SHOWN: f64 = 0.5;
 /// Ixx and Iyy in `Theta`.
 const ACROSS: [usize; 2] = [1, 4];
+/// Ordinary scatter of rotors of one vehicle, standard deviation (-): what the others differ by adds to what each axis shows.
+const SCATTER: f64 = 0.02;
+/// Standard deviations of that scatter by which an axis shows less. One of three axes shows as little by chance in 5 % of cases (2.1 of
+/// one side); more would let pass what shows about one axis alone.
+const BEYOND_SCATTER: f64 = 2.1;
 /// Standard errors from which on the torques about x and y alone show a rotor. The usual three.
 const CERTAIN: f64 = 3.0;
 
@@ -33,19 +38,51 @@ pub(super) fn is_refuted(
     let rows = &fitted.rows;
     let Some(column) = rows.effects.get(first + place - rows.nuisances.len()) else { return false };
     let size = term.from_nothing(term.free[place]);
+    let number = term.signature.role.which.map(|slot| term.values[slot]);
+    let Some(rotor) = number.and_then(|number| fitted.base.vehicle.rotor_of(number)) else { return false };
+    let mixer = fitted.base.vehicle.mixer();
+    // of each axis about the rotor's size
+    let information: [f64; 3] = std::array::from_fn(|axis| {
+        let sigma = fitted.weighted.sigma[3 + axis];
+        let energy: f64 = column[3 + axis].iter().map(|value| value * value).sum();
+        if sigma > 0.0 { energy / sigma.powi(2) } else { 0.0 }
+    });
     let shows_less = |axis: usize| {
         let mut alone: Channels = std::array::from_fn(|_| vec![0.0; rows.len()]);
         alone[3 + axis].clone_from(&column[3 + axis]);
         // what this axis shows less what the others show
         let Some(evidence) = fitted.weighted.test(&[alone]) else { return false };
         let (apart, std) = (evidence.theta[0] * size.signum(), evidence.std(0));
-        apart < -SHOWN * size.abs() && apart < -NAMED_SIGMAS * std
+        let least = SHOWN * size.abs();
+        let by_others = ordinary_apart(&mixer, rotor, axis, &information);
+        apart < -least.max(NAMED_SIGMAS * std).max(BEYOND_SCATTER * by_others)
     };
     if rows.compares_torques && (0..3).any(shows_less) {
         return true;
     }
     let told = || shows_across(fitted, first + place, size) && causes_motion(flights, stated, fitted);
     is_loaded_aside(&fitted.base) && rows.compares_torques && !told()
+}
+
+/// Standard deviation (-) of what an axis shows of a rotor less what the others show, by the scatter of the other rotors. `information` is
+/// that of each axis about the rotor's size. Infinite where the rotor does not act about an axis that is compared.
+fn ordinary_apart(mixer: &Mixer, rotor: usize, axis: usize, information: &[f64; 3]) -> f64 {
+    let others: Vec<usize> = (0..3).filter(|other| *other != axis && information[*other] > 0.0).collect();
+    let all: f64 = others.iter().map(|other| information[*other]).sum();
+    // what a weakness of another rotor looks like about an axis, as one of this rotor
+    let looks = |axis: usize, other: usize| {
+        let (of_other, own) = (mixer.matrix[(1 + axis, other)], mixer.matrix[(1 + axis, rotor)]);
+        of_other / own
+    };
+    let variance: f64 = (0..mixer.matrix.ncols())
+        .filter(|other| *other != rotor)
+        .map(|other| {
+            let mean: f64 = others.iter().map(|axis| information[*axis] / all * looks(*axis, other)).sum();
+            (looks(axis, other) - mean).powi(2)
+        })
+        .sum();
+    let std = SCATTER * variance.sqrt();
+    if std.is_nan() { f64::INFINITY } else { std }
 }
 
 /// Whether the torque about x or y causes the motion about it: the flights determine the moment of inertia.
@@ -58,7 +95,7 @@ fn causes_motion(flights: &[Signals], stated: &Vehicle, fitted: &Fitted) -> bool
 }
 
 fn is_loaded_aside(base: &Base) -> bool {
-    base.estimates(|term| term.signature.role.of_the_loading)
+    base.estimates(|term| term.signature.role.of_the_loading && !term.is_of_every_vehicle(&base.size))
 }
 
 /// Whether all but the torque about z shows a size.
@@ -68,4 +105,61 @@ fn shows_across(fitted: &Fitted, index: usize, size: f64) -> bool {
     let std = covariance[(index, index)].max(0.0).sqrt();
     let shown = (size + coefficients[index]) * size.signum();
     std > 0.0 && shown > CERTAIN * std && shown > SHOWN * size.abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::random_vehicle;
+    use statrs::distribution::{ContinuousCDF, Normal};
+
+    /// What the axes show of the first rotor's weakness, if rotors are weak by these shares.
+    fn shown(mixer: &Mixer, weak: &[f64]) -> [f64; 3] {
+        std::array::from_fn(|axis| {
+            let row = mixer.matrix.row(1 + axis);
+            row.iter().zip(weak).map(|(arm, weak)| arm * weak).sum::<f64>() / row[0]
+        })
+    }
+
+    /// Whether an axis shows less, of axes that tell the same; with the scatter of the other rotors, and without.
+    fn shows_less(mixer: &Mixer, shown: [f64; 3]) -> (bool, bool) {
+        let size = shown.iter().sum::<f64>() / 3.0;
+        let less = |scatter: f64| {
+            (0..3).any(|axis| {
+                let apart = 1.5 * (shown[axis] - size);
+                let by_others = scatter * ordinary_apart(mixer, 0, axis, &[1.0; 3]);
+                apart < -(SHOWN * size.abs()).max(by_others)
+            })
+        };
+        (less(BEYOND_SCATTER), less(0.0))
+    }
+
+    #[test]
+    fn a_weak_rotor_among_rotors_that_scatter_is_kept_and_a_torque_about_one_axis_is_not() {
+        const STEPS: u32 = 40;
+        let mixer = random_vehicle(3).truth.mixer();
+        assert_eq!(mixer.matrix.ncols(), 4);
+        let law = Normal::standard();
+        let scatter = |step: u32| 0.02 * law.inverse_cdf((f64::from(step) + 0.5) / f64::from(STEPS));
+        for weak in [0.05, 0.07, 0.1] {
+            let (mut refused, mut by_noise_alone, mut all) = (0, 0, 0);
+            for step in 0..STEPS.pow(3) {
+                let others = [step % STEPS, step / STEPS % STEPS, step / STEPS.pow(2)].map(scatter);
+                let (now, before) =
+                    shows_less(&mixer, shown(&mixer, &[weak, others[0], others[1], others[2]]));
+                refused += u32::from(now);
+                by_noise_alone += u32::from(before);
+                all += 1;
+            }
+            let share = |count: u32| f64::from(count) / f64::from(all);
+            assert!(share(refused) < 0.1, "{weak}: {}", share(refused));
+            assert!(share(by_noise_alone) > 0.2 || weak > 0.09, "{weak}: {}", share(by_noise_alone));
+        }
+        // a load beside the centre, and a torque about the vertical
+        for axis in 0..3 {
+            let mut alone = [0.0; 3];
+            alone[axis] = 0.3;
+            assert!(shows_less(&mixer, alone).0, "axis {axis}");
+        }
+    }
 }

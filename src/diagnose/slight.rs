@@ -57,7 +57,9 @@ pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) ->
         .map(|(of, materiality)| is_material(fitted, of, *materiality))
         .collect();
     loop {
-        let left = |(index, of): &(usize, &FoundEffect)| !matters[*index] && !term(of).is_of_sensors();
+        let left = |(index, of): &(usize, &FoundEffect)| {
+            !matters[*index] && !term(of).is_of_sensors() && !term(of).is_of_every_vehicle(&fitted.base.size)
+        };
         let left: Vec<(usize, &FoundEffect)> = candidates.iter().enumerate().filter(left).collect();
         let those: Vec<&FoundEffect> = left.iter().map(|(_, of)| *of).collect();
         let misfit = |index: usize| alone[index].map_or(0.0, |of| of.misfit);
@@ -82,6 +84,9 @@ pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) ->
 /// Whether an effect matters by itself. One whose own part is not known (`None`) does.
 fn is_material(fitted: &Fitted, of: &FoundEffect, own: Option<Materiality>) -> bool {
     let term = &fitted.base.effects[of.place];
+    if term.is_of_every_vehicle(&fitted.base.size) {
+        return false;
+    }
     // what it stands for is an error of the sensors that every vehicle has
     let stands_for_offset = (term.signature.role.stands_for)(term, Nuisance::Tilt(0));
     if stands_for_offset && !is_beyond_ordinary(fitted, term, of.columns.start) {

@@ -32,4 +32,4 @@ pub use other_vehicle::{Agreement, Difference, OtherVehicle, differing};
 pub use rate_law::RateLaw;
 pub use settings::{Explained, HeldOut, HoldoutSettings};
 pub use split::{Split, split_last_periods};
-pub use without::{WindowError, Without, without_each};
+pub use without::{HALF_SECOND, SquaredErrors, WindowError, Without, without_each};

@@ -68,7 +68,7 @@ fn prediction(text: &mut String, worth: &Worth) {
     const KEYS: [&str; 4] = ["position_m", "velocity_m_s", "attitude_rad", "rates_rad_s"];
     let numbers =
         |numbers: &[f64]| numbers.iter().map(|number| significant(*number, 3)).collect::<Vec<_>>().join(", ");
-    for Without { id, errors } in &worth.each {
+    for Without { id, errors, .. } in &worth.each {
         let _ = match id {
             None => writeln!(
                 text,

@@ -43,7 +43,7 @@ fn portrait_caption(study: &ExplainStudy, of: &Portrait) -> String {
     let parts = study.latency().parts;
     let ms = |time_s: f64| significant(1e3 * time_s, 3);
     format!(
-        "Rotors that follow late give the torque that was commanded before. So what the commands give is beyond what the motion needs by          the latency times the rate of change of the torque: the slope of the line, {} ms (delay {} ms, lag {} ms). Dots: recorded, less          everything else of the model, mean in bins with 95 % bands of a bootstrap over the flight's periods. Without a latency the dots          would lie at zero.",
+        "Rotors that follow late give the torque that was commanded before. So what the commands give is beyond what the motion needs by the latency times the rate of change of the torque: the slope of the line, {} ms (delay {} ms, lag {} ms). Dots: recorded, less everything else of the model, mean in bins with 95 % bands of a bootstrap over the flight's periods. Without a latency the dots would lie at zero.",
         ms(parts.total_s()),
         ms(parts.delay_s),
         ms(parts.lag_s)

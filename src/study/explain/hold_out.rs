@@ -27,6 +27,11 @@ const BY_RATE_LAW: &str = "over 0.5 s, a constant state predicts body rates or a
 /// parameters of the model with it, which speaks for the effect; predictions are repeated to a tenth of this.
 const LEAST_BETTER_PERCENT: f64 = 1.0;
 
+/// Largest chance of such errors of an effect that is worth nothing. A fifth, and no less: of what is worth nothing, nothing may be
+/// named, and a part that is held back has few blocks. What is worth something has larger errors without it, and is refused far more
+/// seldom. Set by judgement.
+const BY_CHANCE: f64 = 0.2;
+
 /// A flight that was used, or a part of it, shows nothing as a hold-out.
 pub(super) fn refuse_shared(flights: &Prepared, held: &Prepared) -> Result<(), StudyError> {
     for (hold_out, input) in held.recordings.iter().zip(&held.inputs) {
@@ -115,7 +120,7 @@ impl ExplainStudy {
         refuted.then_some(Refuted { names, worse_percent })
     }
 
-    /// The named effect without which flights that were not used are predicted better, by most. `None` where there is no such effect, where
+    /// The named effect without which flights that were not used are predicted better, by most, and by more than chance. `None` where there is no such effect, where
     /// the hold-out is of another vehicle, and where the wind of the explained flights was another one.
     pub(super) fn worthless(&self) -> Option<Worthless> {
         let worth = self.worth.as_ref().filter(|worth| !worth.on_explained)?;
@@ -132,6 +137,10 @@ impl ExplainStudy {
         };
         let of = |named: &Named| {
             let better_percent = worth.better_without_percent(named.id)?;
+            // where there are too few blocks for a test, the mean decides
+            if worth.chance_of_better_without(named.id).is_some_and(|chance| chance > BY_CHANCE) {
+                return None;
+            }
             Some(Worthless { id: named.id, name: brief(named, &self.given.vehicle, true), better_percent })
         };
         let judged = self.explanation.named.iter().filter(|named| is_judged(named.id)).filter_map(of);
