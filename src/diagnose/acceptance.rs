@@ -53,7 +53,7 @@ fn with_taken(flights: &[Trace], after: &Fitted, taken: &Tested) -> Result<Fitte
 }
 
 /// The candidate's effects with the estimates of the evidence as start values.
-fn started(tested: &Tested, size: &VehicleSize) -> Vec<EffectTerm> {
+pub(super) fn started(tested: &Tested, size: &VehicleSize) -> Vec<EffectTerm> {
     let mut theta = tested.evidence.theta.iter();
     let mut parts = tested.candidate.parts.clone();
     for part in &mut parts {

@@ -21,12 +21,14 @@ use super::signatures::{ALL, signature_of};
 use super::tested::Search;
 use super::torques_by_instruments::torques_by_instruments;
 use super::trace::Trace;
+use super::trace_error::TraceError;
 use crate::estimate::{NAMES, UNITS};
 use crate::physics::PhysicsError;
-use crate::signals::Signals;
+use crate::signals::{OwnOfFlight, Signals};
 use crate::vehicle::Vehicle;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Whose a parameter is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,7 +95,12 @@ pub fn each_with_model_of_all(
     (vehicle, settings): (&Vehicle, &ExplainSettings),
 ) -> Vec<Vec<FlightParameter>> {
     let terms = of_the_vehicle(&[explanation]);
-    let trace = |signals| Trace::new(signals, vehicle, settings.half_width_s);
+    // whether a flight lacks an effect is what it tells
+    let trace = |signals: &Signals| {
+        let trace = Trace::new(signals, vehicle, settings.half_width_s)?;
+        let own = OwnOfFlight { lacks: Arc::default(), ..trace.own.clone() };
+        Ok::<_, TraceError>(trace.with_own(own))
+    };
     let Ok(traces) = flights.iter().map(trace).collect::<Result<Vec<Trace>, _>>() else {
         return vec![Vec::new(); flights.len()];
     };
@@ -113,6 +120,7 @@ pub fn each_with_model_of_all(
         if !moves(trace) {
             out.retain(|parameter| !is_of_air(parameter));
         }
+        add_payload(&mut out, trace);
         out.extend(of_latency.map(FlightParameter::from));
         Some(out)
     };
@@ -196,10 +204,26 @@ pub fn rigid_by_flight(
     let one = |signals: &Signals| {
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let base = explanation.search.before.base.clone();
-        let fit = flight_fit((signals, &[trace]), base, (explanation.search.latency, Forms::Known)).ok()?;
-        Some(parameters(&fit, explanation.turned_by_control, &[], None))
+        let fit = flight_fit(
+            (signals, std::slice::from_ref(&trace)),
+            base,
+            (explanation.search.latency, Forms::Known),
+        )
+        .ok()?;
+        let mut out = parameters(&fit, explanation.turned_by_control, &[], None);
+        add_payload(&mut out, &trace);
+        Some(out)
     };
     flights.par_iter().map(one).map(Option::unwrap_or_default).collect()
+}
+
+/// The mass of a flight is that of the vehicle with its payload.
+fn add_payload(parameters: &mut [FlightParameter], trace: &Trace) {
+    parameters.iter_mut().filter(|of| is_mass(of)).for_each(|mass| mass.estimate.0 += trace.own.payload_kg);
+}
+
+fn is_mass(parameter: &FlightParameter) -> bool {
+    parameter.effect.is_none() && parameter.name == NAMES[0]
 }
 
 /// Whether the parameter is that of a force of the air.

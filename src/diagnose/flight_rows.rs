@@ -26,10 +26,11 @@ pub(super) struct Along {
 
 /// The residual for the true motion of the flights.
 pub(super) fn residuals(recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
-    let model = base.model(&[])?;
+    let models = base.models(recorded)?;
     let parts: Vec<Channels> = true_motion(recorded, base)
         .par_iter()
-        .map(|trace| one_flight((trace, recorded.len()), base, &model).residual)
+        .zip(&models)
+        .map(|(trace, model)| one_flight((trace, recorded.len()), base, model).residual)
         .collect();
     let mut out = Channels::default();
     parts.iter().for_each(|part| append(&mut out, part));
@@ -58,7 +59,9 @@ pub(super) struct Part {
     pub(super) own: Vec<NuisanceColumn>,
 }
 
+/// `model` is that of the base on this flight.
 pub(super) fn one_flight((trace, flights): (&Trace, usize), base: &Base, model: &Model) -> Part {
+    let base = &*base.on(&trace.own);
     let (felt, commanded) = trace.by_commands(&model.airframe, base.latency);
     let (by_commands, (motion, by_motion)) =
         rayon::join(|| wrench_along(model, trace, &commanded), || moved_by(trace, (base, model), &commanded));
@@ -77,6 +80,7 @@ pub(super) fn one_flight((trace, flights): (&Trace, usize), base: &Base, model: 
 
 /// `m K(a) - K(F)` and `D(J w) + K(w x J w) - K(M)`, with the effects' part from the smooth thrusts.
 pub(super) fn residual(trace: &Trace, base: &Base, model: &Model, along: &Along) -> Channels {
+    let base = &*base.on(&trace.own);
     let airframe = &model.airframe;
     let jitter = trace.jitter(&airframe.propulsion);
     let (commanded_n, moved_n) = (&along.commanded.thrust_n, &along.motion.thrust_n);

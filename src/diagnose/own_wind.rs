@@ -3,9 +3,11 @@
 //! The equations of motion are the same for an observer who moves at a constant velocity. Seen with the air, flights of days with
 //! different winds have the vehicle's parameters in common and no wind.
 
+use super::acceptance::started;
 use super::base::Base;
 use super::explain::ExplainSettings;
 use super::fit::{Newton, fit};
+use super::score::test_winds;
 use super::signatures::{ALL, CALM_M_S};
 use super::trace::Trace;
 use crate::recording::Stream;
@@ -17,8 +19,6 @@ use std::sync::Arc;
 /// A wind and its drag are believed from so many standard errors on. Set by judgement: a wind that is believed moves
 /// the frame of the whole flight, so that more is asked than of a name.
 const CERTAIN: f64 = 5.0;
-/// Start of the drag's fit, 1/s of the mass.
-const DRAG_1_S: f64 = 0.1;
 
 /// The steady wind along the ground, world, m/s, that a flight shows with a drag that it acts through; `None` where it shows none.
 #[must_use]
@@ -27,14 +27,14 @@ pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings
     if !(trace.known.velocity && trace.known.attitude && moves(&trace)) {
         return None;
     }
-    let carried = ALL.iter().find_map(|signature| signature.role.wind)?().into_iter().next()?;
-    let mut base = Base::anchored(vehicle);
-    let mut drag = carried.carrier;
-    for &slot in &drag.free {
-        drag.values[slot] = DRAG_1_S * vehicle.body.mass_kg;
-    }
-    base.effects = vec![drag, carried.term];
-    let fitted = fit(&[trace], base, Newton::Free).ok()?;
+    let traces = [trace];
+    let calm = fit(&traces, Base::anchored(vehicle), Newton::Free).ok()?;
+    // by a drag of one unit both are linear: a start from no wind leads to a weak drag in a storm
+    let tested = test_winds(&traces, &calm, ALL);
+    let best = tested.into_iter().max_by(|a, b| a.evidence.energy.total_cmp(&b.evidence.energy))?;
+    let mut base = calm.base.clone();
+    base.effects = started(&best, &base.size);
+    let fitted = fit(&traces, base, Newton::Free).ok().filter(|windy| windy.misfit() < calm.misfit())?;
     let mut column = fitted.rows.nuisances.len();
     let mut certain = Vec::new();
     for present in &fitted.base.effects {

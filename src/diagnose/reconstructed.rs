@@ -255,7 +255,12 @@ fn fitted_flight(
     terms: &[Term],
     estimate: Estimate,
 ) -> Result<Fit, ReconstructionError> {
-    let problem = force_problem(signals, &base.vehicle, lag, terms.to_vec())?;
+    let base = base.on(&signals.own);
+    let mut terms = terms.to_vec();
+    for (term, own) in terms.iter_mut().zip(&base.effects).filter(|(term, _)| term.free.is_empty()) {
+        term.values.clone_from(&own.values);
+    }
+    let problem = force_problem(signals, &base.vehicle, lag, terms)?;
     let free: Vec<usize> = (0..problem.unknowns.len()).collect();
     Ok(estimate(problem, &free)?)
 }

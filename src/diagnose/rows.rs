@@ -54,12 +54,15 @@ impl Rows {
     /// # Errors
     /// [`PhysicsError`] where the base is not physical.
     pub fn new(recorded: &[Trace], base: &Base) -> Result<Self, PhysicsError> {
-        let model = base.model(&[])?;
         let known_motion = KnownMotion::of(recorded, base);
         let motion = KnownMotion::or_found(known_motion.as_ref(), recorded, base);
         let flights = &motion[..];
-        let parts: Vec<Part> =
-            flights.par_iter().map(|trace| one_flight((trace, flights.len()), base, &model)).collect();
+        let models = base.models(flights)?;
+        let parts: Vec<Part> = flights
+            .par_iter()
+            .zip(&models)
+            .map(|(trace, model)| one_flight((trace, flights.len()), base, model))
+            .collect();
         let mut rows = Self {
             time_s: Vec::new(),
             runs: Vec::new(),
@@ -173,10 +176,10 @@ impl Rows {
         let mut places: Vec<Result<Range<usize>, PhysicsError>> = Vec::new();
         for candidate in candidates.iter().filter(|candidate| !candidate.is_of_sensors()) {
             let first = models.len();
-            let found = moved_models(base, candidate).map(|moved| models.extend(moved));
+            let found = moved_models(&motion, base, candidate).map(|moved| models.extend(moved));
             places.push(found.map(|()| first..models.len()));
         }
-        let without = base.model(&[]);
+        let without = base.models(&motion);
         let columns = without.map(|without| self.differences(&motion, &without, &models));
         let mut places = places.into_iter();
         let of = |candidate: &&EffectTerm| {
@@ -217,10 +220,10 @@ impl Rows {
         base: &Base,
         candidate: &EffectTerm,
     ) -> Result<Vec<Channels>, PhysicsError> {
-        let without = base.model(&[])?;
         let motion = KnownMotion::or_found(self.known_motion.as_ref(), flights, base);
+        let without = base.models(&motion)?;
         let through = |moved: Moved| Moved { down: Some(without.clone()), ..moved };
-        let models: Vec<Moved> = moved_models(base, candidate)?.into_iter().map(through).collect();
+        let models: Vec<Moved> = moved_models(&motion, base, candidate)?.into_iter().map(through).collect();
         Ok(self.differences(&motion, &without, &models))
     }
 
@@ -258,10 +261,10 @@ impl Rows {
                 );
                 of_sensors.push((column, shown));
             } else {
-                models.push(Moved { up: up.model(&[])?, down: Some(down.model(&[])?), step });
+                models.push(Moved { up: up.models(flights)?, down: Some(down.models(flights)?), step });
             }
         }
-        let mut columns = self.differences(flights, &base.model(&[])?, &models);
+        let mut columns = self.differences(flights, &base.models(flights)?, &models);
         of_sensors.into_iter().for_each(|(column, shown)| columns.insert(column, shown));
         Ok(columns)
     }
@@ -269,16 +272,17 @@ impl Rows {
     /// The residual with other effects on the sensors. Effects on the vehicle keep their values, an approximation that
     /// is better the smaller the sensors' effects are.
     fn sensor_residual(&self, recorded: &[Trace], base: &Base) -> Result<Channels, PhysicsError> {
-        let model = base.model(&[])?;
+        let models = base.models(recorded)?;
         let mut out = Channels::default();
-        for (trace, along) in true_readings(recorded, base).iter().zip(&self.flights) {
-            append(&mut out, &residual(trace, base, &model, along));
+        let readings = true_readings(recorded, base);
+        for ((trace, model), along) in readings.iter().zip(&models).zip(&self.flights) {
+            append(&mut out, &residual(trace, base, model, along));
         }
         Ok(out)
     }
 
     /// `K` of the change of force and torque per step of each, relative to the rows' own base where there is no model below.
-    fn differences(&self, flights: &[Trace], base: &Model, moved: &[Moved]) -> Vec<Channels> {
+    fn differences(&self, flights: &[Trace], base: &[Arc<Model>], moved: &[Moved]) -> Vec<Channels> {
         let instants = flights.iter().map(|trace| trace.grid.count).max().unwrap_or_default();
         let some = (AT_ONCE / instants.max(1)).clamp(2, 32);
         let parts: Vec<Vec<Channels>> =
@@ -286,11 +290,16 @@ impl Rows {
         parts.into_iter().flatten().collect()
     }
 
-    fn differences_of(&self, flights: &[Trace], base: &Model, moved: &[Moved]) -> Vec<Channels> {
+    fn differences_of(&self, flights: &[Trace], base: &[Arc<Model>], moved: &[Moved]) -> Vec<Channels> {
         let each: Vec<Vec<Channels>> = flights
             .par_iter()
             .zip(&self.flights)
-            .map(|(trace, along)| differences_along((trace, along), base, moved))
+            .zip(base)
+            .enumerate()
+            .map(|(flight, ((trace, along), base))| {
+                let moved: Vec<MovedOn> = moved.iter().map(|of| of.on(flight)).collect();
+                differences_along((trace, along), base, &moved)
+            })
             .collect();
         let mut out = vec![Channels::default(); moved.len()];
         for of_flight in each {
@@ -304,8 +313,8 @@ impl Rows {
 type Pair = (PartAlong, Option<PartAlong>);
 
 /// The same along one flight.
-fn differences_along((trace, along): (&Trace, &Along), base: &Model, moved: &[Moved]) -> Vec<Channels> {
-    let weak = |(of, (up, down)): (&Moved, Pair), base: &[Vector3<f64>]| {
+fn differences_along((trace, along): (&Trace, &Along), base: &Model, moved: &[MovedOn]) -> Vec<Channels> {
+    let weak = |(of, (up, down)): (&MovedOn, Pair), base: &[Vector3<f64>]| {
         let below = down.as_ref().map_or(base, |down| &down.series);
         let change = per_step_of(up.series, below, of.step);
         change.map_or_else(|| nothing(trace), |series| trace.weak_vector(0, &series))
@@ -330,13 +339,13 @@ fn differences_along((trace, along): (&Trace, &Along), base: &Model, moved: &[Mo
 /// Force or torque along a flight of each model, and of the one below it where it has one.
 fn pairs_along<'a>(
     base: &Model,
-    moved: impl IntoIterator<Item = &'a Moved> + Clone,
+    moved: impl IntoIterator<Item = &'a MovedOn<'a>> + Clone,
     along: (&Trace, &RotorMotion),
     part: fn(&Wrench) -> Vector3<f64>,
 ) -> Vec<Pair> {
-    let models = moved.clone().into_iter().flat_map(|of| [Some(&of.up), of.down.as_ref()]).flatten();
+    let models = moved.clone().into_iter().flat_map(|of| [Some(of.up), of.down]).flatten();
     let mut each = each_along(base, &models.collect::<Vec<_>>(), along, part).into_iter();
-    let pair = |of: &Moved| Some((each.next()?, of.down.as_ref().and_then(|_| each.next())));
+    let pair = |of: &MovedOn| Some((each.next()?, of.down.and_then(|_| each.next())));
     moved.into_iter().map_while(pair).collect()
 }
 
@@ -352,20 +361,36 @@ fn per_step_of(mut up: Vec<Vector3<f64>>, from: &[Vector3<f64>], step: f64) -> O
 /// Instants times columns that are computed together: what they take in memory is bounded, and they share what they have in common.
 const AT_ONCE: usize = 1 << 19;
 
-/// A model whose effects are a step of one parameter further, and the one below where it is not the rows' own base.
+/// Models, one a flight, whose effects are a step of one parameter further, and those below where they are not of the rows' own base.
 struct Moved {
-    up: Model,
-    down: Option<Model>,
+    up: Vec<Arc<Model>>,
+    down: Option<Vec<Arc<Model>>>,
+    step: f64,
+}
+
+impl Moved {
+    /// Those of one flight.
+    fn on(&self, flight: usize) -> MovedOn<'_> {
+        MovedOn { up: &self.up[flight], down: self.down.as_ref().map(|down| &*down[flight]), step: self.step }
+    }
+}
+
+/// The same of one flight.
+struct MovedOn<'a> {
+    up: &'a Model,
+    down: Option<&'a Model>,
     step: f64,
 }
 
 /// The base with an effect that it does not have, a step of each free parameter away.
-fn moved_models(base: &Base, candidate: &EffectTerm) -> Result<Vec<Moved>, PhysicsError> {
+fn moved_models(flights: &[Trace], base: &Base, candidate: &EffectTerm) -> Result<Vec<Moved>, PhysicsError> {
     let one = |&index: &usize| {
+        let mut with = base.clone();
         let mut moved = candidate.clone();
         let step = candidate.step_of(index, &base.size);
         moved.values[index] += step;
-        Ok(Moved { up: base.model(std::slice::from_ref(&moved))?, down: None, step })
+        with.effects.push(moved);
+        Ok(Moved { up: with.models(flights)?, down: None, step })
     };
     candidate.free.iter().map(one).collect()
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::diagnose::channels::SECOND;
 use crate::recording::Quantity;
-use crate::signals::{AsRecorded, Grid, Quality, Series, Signals, ThrustSource, Usable};
+use crate::signals::{AsRecorded, Grid, OwnOfFlight, Quality, Series, Signals, ThrustSource, Usable};
 use crate::simulate::random_vehicle;
 use crate::vehicle::{RigidBody, Rotor, Spin, Vehicle};
 use nalgebra::{Matrix3, UnitQuaternion, Vector4};
@@ -72,6 +72,7 @@ pub(in super::super) fn turning_on_the_spot() -> Signals {
         battery_voltage_v: None,
         as_recorded: AsRecorded::default(),
         reference: None,
+        own: OwnOfFlight::default(),
         quality: Quality {
             sources: vec![(Quantity::ActuatorCommand, "by hand", 1.0 / STEP_S)],
             thrust_source: ThrustSource::Command,

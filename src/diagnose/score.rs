@@ -133,7 +133,11 @@ fn drags_along_z(term: &EffectTerm) -> bool {
 }
 
 /// Tests wind. It acts through drag: both are tested together, or the wind alone if a drag is in the base.
-fn test_winds(flights: &[Trace], fitted: &Fitted, signatures: &[&'static Signature]) -> Vec<Tested> {
+pub(super) fn test_winds(
+    flights: &[Trace],
+    fitted: &Fitted,
+    signatures: &[&'static Signature],
+) -> Vec<Tested> {
     let present = &fitted.base.effects;
     let is_wind = |term: &EffectTerm| term.signature.role.wind.is_some();
     let moving = flights.iter().all(|trace| trace.known.velocity && trace.known.attitude);

@@ -9,7 +9,7 @@ use super::trace_error::TraceError;
 use crate::physics::{ActuationLatency, Airframe, State};
 use crate::reconstruction::velocity_error_m_s;
 use crate::signals::{
-    Butterworth, Grid, Series, Signals, ThrustSource, WeakKernel, central_difference, stride,
+    Butterworth, Grid, OwnOfFlight, Series, Signals, ThrustSource, WeakKernel, central_difference, stride,
 };
 use crate::vehicle::{Propulsion, RigidBody, Vehicle};
 use nalgebra::{DMatrix, UnitQuaternion, Vector3, Vector4};
@@ -77,6 +77,8 @@ pub struct Trace {
     pub torque_std: f64,
     /// a simulator flew it
     pub simulated: bool,
+    /// what it has beside the vehicle's other flights
+    pub own: OwnOfFlight,
     /// m/s rms, slow error of the horizontal velocity by a satellite receiver; `None` without one
     pub velocity_error_m_s: Option<f64>,
     /// of the torques, if the commanded trajectory was recorded
@@ -150,6 +152,7 @@ impl Trace {
             position_by_receiver: signals.quality.position_by_receiver,
             torque_std: signals.quality.torque_std,
             simulated: signals.quality.simulated,
+            own: signals.own.clone(),
             velocity_error_m_s: velocity_error_m_s(signals),
             instruments: None,
             weak_motion: Arc::default(),
@@ -171,6 +174,11 @@ impl Trace {
         let mut trace = self.reading(states, specific_force_m_s2.map(Series::new));
         trace.smooth()?;
         Ok(trace)
+    }
+
+    /// The same flight with something else its own.
+    pub(super) fn with_own(&self, own: OwnOfFlight) -> Self {
+        Self { own, ..self.clone() }
     }
 
     /// The same if only the measurements of force and momentum are needed; smoothed series stay as they were.

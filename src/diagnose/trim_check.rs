@@ -8,7 +8,7 @@ use crate::change::{LOADED, NAMED_SIGMAS};
 use crate::physics::{
     Airframe, Condition, Effect, Input, MAX_ROTORS, PhysicsError, Rotors, State, effects_wrench,
 };
-use crate::signals::Signals;
+use crate::signals::{OwnOfFlight, Signals};
 use crate::trim::{AXES, Balance, balance, legs, mean_arm_m};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
@@ -24,14 +24,16 @@ const HEIGHT_M: f64 = 100.0;
 
 /// How flights hover.
 pub(super) struct Trim {
-    each: Vec<Balance>,
+    /// each with what is its own
+    each: Vec<(Balance, OwnOfFlight)>,
 }
 
 impl Trim {
     /// Of flights; those that show no balance, and those in which torques cannot be told, say nothing.
     pub(super) fn of(flights: &[Signals], vehicle: &Vehicle) -> Self {
-        let shown = flights.iter().filter_map(|signals| legs(signals, vehicle).ok());
-        Self { each: shown.map(|legs| balance(&[legs])).collect() }
+        let shown =
+            flights.iter().filter_map(|signals| Some((legs(signals, vehicle).ok()?, signals.own.clone())));
+        Self { each: shown.map(|(legs, own)| (balance(&[legs]), own)).collect() }
     }
 
     /// The effect of the model, by its place, that the balance of hover excludes most clearly.
@@ -50,7 +52,8 @@ impl Trim {
         for &place in &places {
             let others: Vec<usize> = places.iter().copied().filter(|other| *other != place).collect();
             let mut shown = HoverEvidence::default();
-            for of in &self.each {
+            for (of, own) in &self.each {
+                let base = &*base.on(own);
                 let hover = Hover { airframe: &airframe, arm_m: mean_arm_m(&base.vehicle), of };
                 shown.add(of, &hover.left(base, &places), &hover.left(base, &others));
             }

@@ -217,7 +217,7 @@ impl GyroscopicColumns {
 mod tests {
     use super::*;
     use crate::recording::Quantity;
-    use crate::signals::{AsRecorded, Quality, ThrustSource, Usable};
+    use crate::signals::{AsRecorded, OwnOfFlight, Quality, ThrustSource, Usable};
     use nalgebra::SVector;
 
     const STEP_S: f64 = 0.01;
@@ -248,6 +248,7 @@ mod tests {
             battery_voltage_v: None,
             as_recorded: AsRecorded::default(),
             reference: None,
+            own: OwnOfFlight::default(),
             quality: Quality {
                 sources: vec![(Quantity::ActuatorCommand, "by hand", 1.0 / STEP_S)],
                 thrust_source: ThrustSource::Command,

@@ -10,6 +10,7 @@ use super::flight::{AsRecorded, Quality, Series, Signals};
 use super::height::{is_height_by_pose, is_position_by_receiver};
 use super::lifts::too_little;
 use super::noise::gyro_noise_rad_s;
+use super::own::OwnOfFlight;
 use super::reference::reference;
 use super::rotor_thrusts::ThrustSource;
 use super::select::{best, best_of, mean_rate_hz, median_period_s, too_short};
@@ -125,6 +126,7 @@ pub fn condition(
         battery_voltage_v: battery_voltage_v(recording, &grid).map(Series::new),
         as_recorded: chosen.as_recorded(),
         reference: reference(recording, &grid),
+        own: OwnOfFlight::default(),
         quality: Quality {
             sources: sources(&chosen, &actuation),
             thrust_source: actuation.source(),

@@ -2,6 +2,7 @@
 
 use super::align::StreamOffset;
 use super::grid::Grid;
+use super::own::OwnOfFlight;
 use super::rotor_thrusts::ThrustSource;
 use super::usable::Usable;
 use crate::note::Note;
@@ -48,6 +49,8 @@ pub struct Signals {
     pub as_recorded: AsRecorded,
     /// commanded trajectory
     pub reference: Option<Reference>,
+    /// what it has beside the vehicle's other flights
+    pub own: OwnOfFlight,
     /// sources and corrections
     pub quality: Quality,
 }

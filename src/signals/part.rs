@@ -49,6 +49,7 @@ impl Signals {
                 yaw: cut(&reference.yaw, range, 1),
                 message: reference.message,
             }),
+            own: self.own.clone(),
             quality,
         }
     }

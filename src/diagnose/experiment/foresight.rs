@@ -13,7 +13,7 @@ use crate::diagnose::signatures::{latency_kind, signature_of};
 use crate::diagnose::trace::Trace;
 use crate::physics::ActuationLatency;
 use crate::recording::Quantity;
-use crate::signals::{AsRecorded, Grid, Quality, Series, Signals, ThrustSource, Usable};
+use crate::signals::{AsRecorded, Grid, OwnOfFlight, Quality, Series, Signals, ThrustSource, Usable};
 use crate::simulate::Allocation;
 use crate::trajectory::{FourierTrajectory, Reference};
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
@@ -256,6 +256,7 @@ impl SimulatedSeries {
             battery_voltage_v: voltage.map(Series::new),
             as_recorded: AsRecorded::default(),
             reference: None,
+            own: OwnOfFlight::default(),
             quality: Quality {
                 sources: vec![(Quantity::ActuatorCommand, "imagined", rate_hz)],
                 thrust_source: ThrustSource::Command,

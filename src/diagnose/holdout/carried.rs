@@ -42,6 +42,14 @@ impl Pair {
         self.loaded.as_ref().map_or((&self.before, &self.after), |loaded| (&loaded.before, &loaded.after))
     }
 
+    /// Predicts with what a flight has its own.
+    fn own(&mut self, trace: &Trace, until_s: f64) {
+        if !trace.own.is_none() {
+            let [before, after] = [&self.before, &self.after].map(|base| base.on(&trace.own).into_owned());
+            self.loaded = Some(LoadedPair { before, after, until_s });
+        }
+    }
+
     /// Vehicle clock, s, from which on the flight is predicted.
     pub(super) fn predicted_from_s(&self) -> f64 {
         self.loaded.as_ref().map_or(f64::NEG_INFINITY, |loaded| loaded.until_s)
@@ -69,6 +77,13 @@ pub(super) fn pair(explained: Explained, vehicle: &Vehicle, command_period_s: f6
         after.vehicle.body.mass_kg += term.mass_change_kg;
     }
     Pair { before, after, loaded: None, rate_law, notes: Vec::new() }
+}
+
+/// The pair on a flight that was explained, with what is its own.
+pub(super) fn pair_on(explained: Explained, vehicle: &Vehicle, trace: &Trace) -> Pair {
+    let mut pair = pair(explained, vehicle, trace.command_period_s);
+    pair.own(trace, f64::NEG_INFINITY);
+    pair
 }
 
 /// The pair for a hold-out flight. Parameters that belong to the day or to a time are estimated again or reported.
@@ -108,16 +123,30 @@ pub(super) fn carried_over(
         let text = "the battery's voltage is not recorded, so its sag is left out";
         pair.notes.push(Note::warning(about(), text));
     }
-    if let Some(Loaded { base: after, moved_m: [x, y], until_s }) = loaded(&pair.after, trace, settings)? {
+    pair.own(trace, f64::NEG_INFINITY);
+    if let Some(Loaded { base: after, moved_m, more_kg, until_s }) = loaded(&pair.after, trace, settings)? {
+        let mut own = Vec::new();
+        own.extend(moved_m.map(|[x, y]| {
+            format!(
+                "its centre of mass is not where that of the flights explained is: by ({}, {}) mm along body x and y, as a battery \
+                 that is put back elsewhere moves it",
+                significant(1e3 * x, 2),
+                significant(1e3 * y, 2)
+            )
+        }));
+        own.extend(more_kg.map(|kg| {
+            format!(
+                "its mass differs from that of the flights that predict it by {} kg, a payload",
+                significant(kg, 2)
+            )
+        }));
         let text = format!(
-            "its centre of mass is not where that of the flights explained is: by ({}, {}) mm along body x and y, as a battery \
-             that is put back elsewhere moves it. This is from the first seconds of the flight, and the errors are those of the \
-             rest",
-            significant(1e3 * x, 2),
-            significant(1e3 * y, 2)
+            "{}. This is from the first seconds of the flight, and the errors are those of the rest",
+            own.join("; ")
         );
         pair.notes.push(Note::remark(about(), text));
-        let before = loaded(&pair.before, trace, settings)?.map_or_else(|| pair.before.clone(), |of| of.base);
+        let before = loaded(&pair.before, trace, settings)?
+            .map_or_else(|| pair.before.on(&trace.own).into_owned(), |of| of.base);
         pair.loaded = Some(LoadedPair { before, after, until_s });
     }
     Ok(pair)

@@ -1,7 +1,7 @@
 //! The explained model and the rigid body on hold-out flights, and on those that were used.
 
 use super::bootstrap::Interval;
-use super::carried::{carried_over, pair};
+use super::carried::{carried_over, pair_on};
 use super::error::HoldoutError;
 use super::holdout_fit::HoldoutFit;
 use super::open_loop::OpenLoop;
@@ -115,7 +115,7 @@ pub fn on_identification(
     let mut ready = Vec::with_capacity(flights.len());
     for flight in flights {
         let trace = trace_of(flight, vehicle, settings)?;
-        let pair = pair(explained, vehicle, trace.command_period_s);
+        let pair = pair_on(explained, vehicle, &trace);
         ready.push(Ready { flight, trace, pair });
     }
     let shown = |ready: &[Ready], rate_law| {

@@ -1,13 +1,14 @@
-//! The centre of mass of a held-out flight: a battery that was put back elsewhere moves it.
+//! Mass and centre of mass of a held-out flight: it has its own payload, and a battery that was put back elsewhere.
 
 use super::settings::HoldoutSettings;
 use crate::diagnose::base::Base;
-use crate::diagnose::channels::AXES;
+use crate::diagnose::channels::{AXES, Nuisance};
 use crate::diagnose::gates::NAME_Z;
 use crate::diagnose::rows::Rows;
 use crate::diagnose::signatures::{ALL, REPACKED_M};
 use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
+use crate::signals::OwnOfFlight;
 use nalgebra::{Matrix2, Vector2};
 
 /// Beginning of a held-out flight from which its centre of mass is taken, s; the errors are those of the rest. Longer
@@ -19,31 +20,59 @@ const BLOCK_S: f64 = 0.5;
 /// Standard errors beyond which it was another place. As many as a name needs.
 const SIGMAS: f64 = NAME_Z;
 
-/// A base with the centre of mass of another flight.
+/// Least share of the mass that is a payload. Less is what laws of thrust leave open.
+const LEAST_OF_MASS: f64 = 0.03;
+
+/// A base with the load of another flight.
 pub(super) struct Loaded {
     pub(super) base: Base,
-    /// by which it moved, body x and y, m
-    pub(super) moved_m: [f64; 2],
+    /// by which it moved, body x and y, m; `None` where it did not
+    pub(super) moved_m: Option<[f64; 2]>,
+    /// kg beyond the mass of the base; `None` where it is that
+    pub(super) more_kg: Option<f64>,
     /// vehicle clock, s, up to where the flight was used for it
     pub(super) until_s: f64,
 }
 
-/// The base with the centre of mass that the beginning of a flight shows; `None` where it shows no other one than the base has,
-/// or one that no battery explains.
+/// The base with the mass and the centre of mass that the beginning of a flight shows; `None` where they are no others than the base has,
+/// or a place that no battery explains.
 pub(super) fn loaded(
     base: &Base,
     trace: &Trace,
     settings: &HoldoutSettings,
 ) -> Result<Option<Loaded>, PhysicsError> {
-    let mut of_the_loading = ALL.iter().filter(|signature| signature.role.of_the_loading);
-    let Some(&signature) = of_the_loading.next().filter(|_| trace.torques && !settings.same_flight) else {
+    if settings.same_flight {
         return Ok(None);
-    };
-    let slots = signature.amounts;
+    }
+    // what the whole flight tells of its payload is not known from its beginning
+    let own = OwnOfFlight { payload_kg: 0.0, ..trace.own.clone() };
+    let trace = &trace.with_own(own.clone());
     let mut all = base.clone();
     for term in &mut all.effects {
         term.free.clear();
     }
+    let heavier = if settings.own_mass { heavier(&all, trace)? } else { None };
+    if let Some((more_kg, _)) = heavier {
+        all.vehicle.body.mass_kg += more_kg;
+    }
+    let moved = if trace.torques { moved(&mut all, trace)? } else { None };
+    let Some(until_s) = moved.map(|(_, until_s)| until_s).or(heavier.map(|(_, until_s)| until_s)) else {
+        return Ok(None);
+    };
+    Ok(Some(Loaded {
+        base: all.on(&own).into_owned(),
+        moved_m: moved.map(|(moved_m, _)| moved_m),
+        more_kg: heavier.map(|(more_kg, _)| more_kg),
+        until_s,
+    }))
+}
+
+/// By how much the centre of mass moved, and up to when (s) the flight was used; the base is then moved.
+fn moved(base: &mut Base, trace: &Trace) -> Result<Option<([f64; 2], f64)>, PhysicsError> {
+    let mut of_the_loading = ALL.iter().filter(|signature| signature.role.of_the_loading);
+    let Some(&signature) = of_the_loading.next() else { return Ok(None) };
+    let slots = signature.amounts;
+    let mut all = base.clone();
     let own = all.effects.iter().position(|term| std::ptr::eq(term.signature, signature));
     let place = own.unwrap_or(all.effects.len());
     if own.is_none() {
@@ -61,7 +90,40 @@ pub(super) fn loaded(
     for (slot, moved) in slots.iter().zip(moved.iter()) {
         all.effects[place].values[*slot] += moved;
     }
-    Ok(Some(Loaded { base: all, moved_m: moved.into(), until_s }))
+    *base = all;
+    Ok(Some((moved.into(), until_s)))
+}
+
+/// Mass beyond that of the base, kg, and up to when (s) the flight was used; `None` where it is no payload.
+fn heavier(base: &Base, trace: &Trace) -> Result<Option<(f64, f64)>, PhysicsError> {
+    let rows = Rows::new(std::slice::from_ref(trace), base)?;
+    let mass = rows.nuisances.iter().find(|column| column.nuisance == Nuisance::Mass);
+    let (Some(mass), Some(&first_s)) = (mass, rows.time_s.first()) else { return Ok(None) };
+    let until_s = first_s + FIRST_S;
+    let used: Vec<usize> = (0..rows.len()).filter(|&row| rows.time_s[row] < until_s).collect();
+    let slope = |row: usize| mass.values[2][row];
+    let squares: f64 = used.iter().map(|&row| slope(row).powi(2)).sum();
+    if squares <= 0.0 {
+        return Ok(None);
+    }
+    let more_kg = used.iter().map(|&row| slope(row) * rows.residual[2][row]).sum::<f64>() / squares;
+    let mut blocks: Vec<(f64, f64)> = Vec::new();
+    for &row in &used {
+        let block = ((rows.time_s[row] - first_s) / BLOCK_S).floor();
+        if blocks.last().is_none_or(|(last, _)| *last != block) {
+            blocks.push((block, 0.0));
+        }
+        if let Some((_, score)) = blocks.last_mut() {
+            *score += slope(row) * (rows.residual[2][row] - slope(row) * more_kg);
+        }
+    }
+    let left = blocks.len().saturating_sub(1).max(1);
+    let scatter =
+        blocks.iter().map(|(_, score)| score * score).sum::<f64>() * blocks.len() as f64 / left as f64;
+    let std_kg = scatter.sqrt() / squares;
+    let is_payload =
+        more_kg.abs() > SIGMAS * std_kg && more_kg.abs() > LEAST_OF_MASS * base.vehicle.body.mass_kg;
+    Ok(is_payload.then_some((more_kg, until_s)))
 }
 
 /// Least squares of the torques' residual between two times on the two free parameters, and their standard errors by the scatter of

@@ -20,6 +20,8 @@ pub struct HoldoutSettings {
     pub seed: u64,
     /// the held-out part belongs to the flight that was explained
     pub same_flight: bool,
+    /// each flight has its own mass, by its beginning: of flights that were explained together
+    pub own_mass: bool,
 }
 
 impl Default for HoldoutSettings {
@@ -30,6 +32,7 @@ impl Default for HoldoutSettings {
             draws: 400,
             seed: 1,
             same_flight: false,
+            own_mass: false,
         }
     }
 }

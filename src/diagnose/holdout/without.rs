@@ -1,6 +1,6 @@
 //! What each effect of the model is worth: errors of open-loop prediction without it, the rest as it is.
 
-use super::carried::{carried_over, pair};
+use super::carried::{carried_over, pair_on};
 use super::error::HoldoutError;
 use super::open_loop::{WINDOWS_S, playback_of, predicting};
 use super::ready::{Ready, trace_of};
@@ -48,7 +48,7 @@ pub fn without_each(
     for flight in flights {
         let trace = trace_of(flight, vehicle, settings)?;
         let pair = if used {
-            pair(explained, vehicle, trace.command_period_s)
+            pair_on(explained, vehicle, &trace)
         } else {
             carried_over(explained, (flight, &trace), vehicle, settings)?
         };

@@ -6,7 +6,8 @@ use super::result::ExplainStudy;
 use crate::diagnose::signature::Role;
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{
-    ExplainSettings, Named, Owner, Verdict, each_with_model_of_all, explain, own_wind, relative_to_air,
+    ExplainSettings, Named, Owner, Verdict, each_with_model_of_all, explain, own_of_flights, own_wind,
+    relative_to_air,
 };
 use crate::signals::Signals;
 use crate::study::Track;
@@ -28,6 +29,12 @@ pub(super) fn with_own_winds(flights: &mut Prepared, vehicle: &Vehicle) -> Vec<O
     }
     flights.drift = found.iter().map(Option::is_some).collect();
     found.into_iter().map(|wind| wind.map(|wind| [wind.x, wind.y])).collect()
+}
+
+/// Each flight with what it has its own: payload, and what one of them alone has or lacks.
+pub(super) fn with_own(flights: &mut Prepared, vehicle: &Vehicle) {
+    let own = own_of_flights(&flights.signals, vehicle, &ExplainSettings::default());
+    flights.signals.iter_mut().zip(own).for_each(|(signals, own)| signals.own = own);
 }
 
 impl ExplainStudy {

@@ -174,11 +174,11 @@ impl ExplainStudy {
 
     /// The same on each flight that was explained, by models of the others.
     pub(super) fn evaluate_left_out(&mut self, flights: &Prepared) {
-        let settings = HoldoutSettings::default();
+        let settings = HoldoutSettings { own_mass: true, ..HoldoutSettings::default() };
         let (mut predicted, mut each, mut alone) = (Vec::new(), Vec::new(), Vec::new());
         let models = of_others(self, &flights.signals);
         for ((place, flight), explanation) in flights.held_out().into_iter().enumerate().zip(&models) {
-            match shown_only_by(self, place) {
+            match shown_only_by(self, place, &flight.signals.own) {
                 Some(id) => alone.push(format!("{id} is shown by {} alone", flight.name)),
                 None => {
                     predicted.push(flight);

@@ -2,7 +2,8 @@
 
 use super::result::ExplainStudy;
 use crate::diagnose::{Explanation, rigid_by_flight};
-use crate::signals::Signals;
+use crate::estimate::NAMES;
+use crate::signals::{OwnOfFlight, Signals};
 use crate::study::Track;
 
 /// For each flight the models, without and with effects, whose parameters the other flights tell. Which effects there are, and the
@@ -13,23 +14,32 @@ pub(super) fn of_others(study: &ExplainStudy, flights: &[Signals]) -> Vec<Explan
     let before = Track::all(rigid.into_iter().enumerate().collect(), flights.len(), vehicle);
     let after: &[Track] = study.along.as_ref().map_or(&[], |along| &along.tracks);
     let one = |flight: usize| {
-        let [before, after] = [&before, after].map(|tracks| without(tracks, flight));
+        let [before, after] = [&before, after].map(|tracks| without(tracks, flight, flights));
         study.explanation.with_values(&before, &after)
     };
     (0..flights.len()).map(one).collect()
 }
 
 /// A named effect that one flight shows and no other: without that flight nothing tells its size.
-pub(super) fn shown_only_by(study: &ExplainStudy, flight: usize) -> Option<&'static str> {
+pub(super) fn shown_only_by(study: &ExplainStudy, flight: usize, own: &OwnOfFlight) -> Option<&'static str> {
+    if let Some((id, _)) = own.has.first() {
+        return Some(id);
+    }
     let carried = study.along.iter().flat_map(|along| &along.carried_by);
     carried.filter_map(|(id, by)| (by.as_deref()? == [flight]).then_some(*id)).next()
 }
 
 /// What the other flights have in common, by name, with its standard error.
-fn without(tracks: &[Track], flight: usize) -> Vec<(&str, (f64, f64))> {
+fn without<'a>(tracks: &'a [Track], flight: usize, flights: &[Signals]) -> Vec<(&'a str, (f64, f64))> {
     let others = |track: &Track| {
         let mut track = track.clone();
         track.values[flight] = None;
+        if track.effect.is_none() && track.name == NAMES[0] {
+            // what they carry is their own
+            for (value, signals) in track.values.iter_mut().zip(flights) {
+                *value = value.map(|(kg, std_kg)| (kg - signals.own.payload_kg, std_kg));
+            }
+        }
         track.pooled()
     };
     tracks.iter().filter_map(|track| Some((track.name.as_str(), others(track)?))).collect()

@@ -1,6 +1,6 @@
 //! Opens, conditions, holds out, explains, tries again, shows, and designs the next flight.
 
-use super::along::with_own_winds;
+use super::along::{with_own, with_own_winds};
 use super::hold_out::{hold_back, refuse_shared};
 use super::refuted::Worthless;
 use super::request::ExplainRequest;
@@ -78,6 +78,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let winds_m_s = if several { with_own_winds(&mut flights, &vehicle) } else { Vec::new() };
     if several {
         with_own_winds(&mut held, &vehicle);
+        with_own(&mut flights, &vehicle);
     }
     let whole = flights.signals.last().cloned();
     let (shown_on, back) = match (held.is_empty(), several) {
