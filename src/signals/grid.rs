@@ -96,15 +96,39 @@ pub fn cubic_onto(stream: &Stream, shift_s: f64, grid: &Grid) -> Option<Vec<f64>
             continue;
         }
         let curvature = natural_spline_curvature(&time, &values);
-        for (instant, &(left, s)) in brackets.iter().enumerate() {
-            let h = time[left + 1] - time[left];
-            let (a, b) = (1.0 - s, s);
-            out[instant * width + channel] = a * values[left]
-                + b * values[left + 1]
-                + ((a * a * a - a) * curvature[left] + (b * b * b - b) * curvature[left + 1]) * h * h / 6.0;
+        for (instant, bracket) in brackets.iter().enumerate() {
+            out[instant * width + channel] = on_spline(&time, (&values, &curvature), *bracket);
         }
     }
     Some(out)
+}
+
+/// Natural cubic spline through a stream's samples, at these times in rising order. See [`cubic_onto`] for the layout; `None` with fewer
+/// than four samples.
+pub(super) fn cubic_at(stream: &Stream, times_s: &[f64]) -> Option<Vec<f64>> {
+    if stream.len() < 4 {
+        return None;
+    }
+    let (time_s, width) = (&stream.time_s, stream.width);
+    let brackets = brackets_at(time_s, times_s.iter().copied());
+    let mut out = vec![0.0; times_s.len() * width];
+    for channel in 0..width {
+        let values: Vec<f64> = stream.values.iter().skip(channel).step_by(width).copied().collect();
+        let curvature = natural_spline_curvature(time_s, &values);
+        for (index, bracket) in brackets.iter().enumerate() {
+            out[index * width + channel] = on_spline(time_s, (&values, &curvature), *bracket);
+        }
+    }
+    Some(out)
+}
+
+/// A natural cubic spline's value between two knots.
+fn on_spline(time_s: &[f64], (values, curvature): (&[f64], &[f64]), (left, share): (usize, f64)) -> f64 {
+    let h = time_s[left + 1] - time_s[left];
+    let (a, b) = (1.0 - share, share);
+    a * values[left]
+        + b * values[left + 1]
+        + ((a * a * a - a) * curvature[left] + (b * b * b - b) * curvature[left + 1]) * h * h / 6.0
 }
 
 /// Linear interpolation between samples; the mean over a step where the stream is faster than the grid. See
@@ -181,10 +205,14 @@ fn means_over_steps(time_s: &[f64], values: &[f64], shift_s: f64, grid: &Grid) -
 
 /// For each instant the index of the sample on its left and the share (0..1) of the way to the next.
 fn brackets(time_s: &[f64], shift_s: f64, grid: &Grid) -> Vec<(usize, f64)> {
+    brackets_at(time_s, (0..grid.count).map(|index| grid.time_s(index) + shift_s))
+}
+
+/// The same for times in rising order.
+fn brackets_at(time_s: &[f64], times_s: impl Iterator<Item = f64>) -> Vec<(usize, f64)> {
     let mut left = 0;
-    (0..grid.count)
-        .map(|index| {
-            let t = grid.time_s(index) + shift_s;
+    times_s
+        .map(|t| {
             while left + 2 < time_s.len() && time_s[left + 1] <= t {
                 left += 1;
             }
