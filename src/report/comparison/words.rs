@@ -93,14 +93,18 @@ pub(in crate::report) fn sentence(study: &CompareStudy, change: &Change) -> Stri
     let unit = spaced(change.unit);
     let told = match change.what {
         Changed::Rotor(_) => {
-            format!("{} gives {after} of the thrust that it gave for the same command", name(study, change.what))
+            format!(
+                "{} gives {after} of the thrust that it gave for the same command",
+                name(study, change.what)
+            )
         }
         Changed::CentreOfMass(_) => {
-            format!("{} moved by {by}{unit} (a load or a battery that sits elsewhere does the same)", name(study, change.what))
+            format!(
+                "{} moved by {by}{unit} (a load or a battery that sits elsewhere does the same)",
+                name(study, change.what)
+            )
         }
-        Changed::Balance => {
-            "the balance of the vehicle moved as no single rotor and no centre of mass moves it: more than one thing changed".to_owned()
-        }
+        Changed::Balance => return balance_sentence(study, &change.rivals),
         Changed::YawTorque => format!("{} went from {before} to {after}", name(study, change.what)),
         Changed::Parameter(_) => format!("{} went from {before} to {after}{unit}", name(study, change.what)),
     };
@@ -110,6 +114,20 @@ pub(in crate::report) fn sentence(study: &CompareStudy, change: &Change) -> Stri
     } else {
         format!("{told}; a change of {} would look the same to these flights", rivals.join(" or of "))
     }
+}
+
+/// A balance that moved without a single name, as a clause; `alone`: what would account for it by itself.
+fn balance_sentence(study: &CompareStudy, alone: &[What]) -> String {
+    let names: Vec<String> = alone.iter().map(|what| rival_name(study, *what)).collect();
+    if names.is_empty() {
+        return "the balance of the vehicle moved as no single rotor and no centre of mass moves it: more than one thing changed"
+            .to_owned();
+    }
+    format!(
+        "the balance of the vehicle moved: {} alone would account for it, and a rotor together with a centre of mass or a load nearly as \
+         well",
+        names.join(" or ")
+    )
 }
 
 /// All that is not decided, in a sentence or two; empty where nothing is.
@@ -194,7 +212,7 @@ fn unseen(compared: &Compared) -> String {
         let [x, y, _] = balance.moved.map(|moved| with_error(moved.by.0, moved.by.1));
         format!(
             "The balance did move, by {x} of an arm along body x and {y} along y: a load or a battery that sits elsewhere does the \
-             same, and a flight may have its own. "
+             same, and a flight may have its own. The rotors along the flights have it in their values. "
         )
     } else {
         String::new()

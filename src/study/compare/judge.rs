@@ -37,7 +37,12 @@ impl Judge<'_> {
         // of so many places one is reached by chance at that many more
         let pairs = (order.len() * order.len().saturating_sub(1) / 2).max(1) as f64;
         let there_and_back = least_sigmas.max(NAMED_SIGMAS).hypot((2.0 * pairs.ln()).sqrt());
-        let mut found = steps(order.len(), &judged, there_and_back);
+        let found = steps(order.len(), &judged, there_and_back);
+        let mut found = if found.is_empty() {
+            self.each_alone(order, least_sigmas)
+        } else {
+            self.beside_loads(found, order, least_sigmas)
+        };
         find_returns(order.len(), &mut found, &|groups, step: &Compared| {
             let compared = self.compared(&flight_groups(groups, order));
             compared.changes.is_empty() && step.certain().all(|change| compared.would_show(change))
@@ -135,7 +140,7 @@ impl Judge<'_> {
 }
 
 /// Groups of places in an order as groups of flights.
-fn flight_groups(groups: &Groups, order: &[usize]) -> Groups {
+pub(super) fn flight_groups(groups: &Groups, order: &[usize]) -> Groups {
     let of = |places: &[usize]| places.iter().map(|place| order[*place]).collect();
     Groups { before: of(&groups.before), after: of(&groups.after) }
 }

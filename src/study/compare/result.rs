@@ -105,6 +105,17 @@ impl Compared {
         self.changes.iter().map(|change| change.sigmas).fold(0.0, f64::max)
     }
 
+    /// The same where a load or a battery that sits elsewhere is allowed for in what it may be.
+    pub(super) fn beside_a_load(&self) -> f64 {
+        let loaded = self.balance.beyond_load.sqrt();
+        let of = |change: &Change| match change.what {
+            Changed::Parameter(_) => change.sigmas,
+            Changed::Rotor(_) if !change.rivals.contains(&What::CentreOfMass) => change.sigmas,
+            _ => change.sigmas.min(loaded),
+        };
+        self.changes.iter().map(of).fold(0.0, f64::max)
+    }
+
     /// The changes that are certain by themselves: a centre of mass moves along two axes, and may have moved along one only.
     pub(super) fn certain(&self) -> impl Iterator<Item = &Change> {
         let alone = |change: &&Change| change.sigmas * change.sigmas >= NAMED;
