@@ -2,7 +2,7 @@
 
 use crate::change::{Spread, pooled_mean, with_scatter};
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{FlightParameter, LATENCY, Owner};
+use crate::diagnose::{FlightParameter, LATENCY, Owner, called};
 use crate::estimate::{LARGEST_RELATIVE_STD, UNITS};
 use crate::physics::effects::ALL;
 use crate::vehicle::Vehicle;
@@ -117,6 +117,22 @@ impl Track {
             }
         }
         tracks
+    }
+
+    /// What it is, as people say it: `drag (dx)`, `moment of inertia ixx`.
+    #[must_use]
+    pub fn words(&self) -> String {
+        if self.name == LATENCY {
+            return "latency from command to rotor (lag and delay)".to_owned();
+        }
+        let Some(id) = self.effect else {
+            let is_moment = self.name.starts_with('i');
+            return if is_moment { format!("moment of inertia {}", self.name) } else { self.name.clone() };
+        };
+        match self.name.split_once('.') {
+            Some((_, parameter)) => format!("{} ({parameter})", called(id)),
+            None => called(id).to_owned(),
+        }
     }
 
     /// Pooled mean of the flights' values, with its standard error; `None` where no flight has one.

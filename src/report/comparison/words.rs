@@ -36,6 +36,9 @@ pub(super) fn answer(study: &CompareStudy) -> String {
                 flights(groups.before.len()),
                 flights(groups.after.len())
             );
+            if let Some(lifts) = compared.other_vehicle {
+                return other_vehicle(study, compared, lifts);
+            }
             if compared.changes.is_empty() {
                 return format!(
                     "Nothing changed {between} that these flights could show. {}{}",
@@ -66,6 +69,29 @@ pub(super) fn answer(study: &CompareStudy) -> String {
                 steps.collect::<Vec<_>>().join("; ")
             )
         }
+    }
+}
+
+/// Flights that are hardly those of one vehicle.
+fn other_vehicle(study: &CompareStudy, compared: &Compared, (before, after): (f64, f64)) -> String {
+    let changes = compared.changes.iter().chain(compared.undecided.iter().map(|(change, _)| change));
+    let moved: Vec<String> = changes.map(|change| said(study, change.what)).collect();
+    format!(
+        "These flights are hardly those of one vehicle: full thrust over weight is {} before and {} after, and {} moved as well. Compare \
+         flights of one vehicle, with its own vehicle file; if it is one vehicle, its motors, propellers or load are other ones.",
+        significant(before, 3),
+        significant(after, 3),
+        moved.join(", ")
+    )
+}
+
+/// What a change is of, in a sentence.
+fn said(study: &CompareStudy, what: Changed) -> String {
+    match what {
+        Changed::Parameter(place) => {
+            study.tracks.get(place).map_or_else(String::new, |track| format!("the {}", track.words()))
+        }
+        _ => name(study, what),
     }
 }
 
@@ -106,7 +132,7 @@ pub(in crate::report) fn sentence(study: &CompareStudy, change: &Change) -> Stri
         }
         Changed::Balance => return balance_sentence(study, &change.rivals),
         Changed::YawTorque => format!("{} went from {before} to {after}", name(study, change.what)),
-        Changed::Parameter(_) => format!("{} went from {before} to {after}{unit}", name(study, change.what)),
+        Changed::Parameter(_) => format!("{} went from {before} to {after}{unit}", said(study, change.what)),
     };
     let rivals: Vec<String> = change.rivals.iter().map(|rival| rival_name(study, *rival)).collect();
     if rivals.is_empty() {
@@ -140,7 +166,7 @@ fn all_open(study: &CompareStudy, compared: &Compared) -> String {
         let sigmas = significant(change.sigmas, 2);
         format!(
             "{} moved by {by}{} ({sigmas} standard deviations)",
-            name(study, change.what),
+            said(study, change.what),
             spaced(change.unit)
         )
     };
@@ -170,7 +196,7 @@ pub(super) fn open(study: &CompareStudy, (change, why): &(Change, Undecided)) ->
     format!(
         "{} moved by {by}{}, {} standard deviations: below the {NAMED_SIGMAS} that make a change; {because}. Fly {} on each side to \
          decide.",
-        name(study, change.what),
+        capital(&said(study, change.what)),
         spaced(change.unit),
         significant(change.sigmas, 2),
         flights(why.flights)

@@ -53,6 +53,8 @@ pub struct Compared {
     pub undecided: Vec<(Change, Undecided)>,
     /// the smallest changes that would have been named
     pub least: Vec<LeastChange>,
+    /// full thrust over weight before and after, where it and several parameters say that this is hardly one vehicle
+    pub other_vehicle: Option<(f64, f64)>,
 }
 
 /// One change.
@@ -137,7 +139,7 @@ impl CompareStudy {
     #[must_use]
     pub fn has_changed(&self) -> bool {
         match &self.compared {
-            Some(compared) => !compared.changes.is_empty(),
+            Some(compared) => !compared.changes.is_empty() || compared.other_vehicle.is_some(),
             None => !self.history.is_empty(),
         }
     }
