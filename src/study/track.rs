@@ -25,6 +25,11 @@ const EFFECT: Spread = Spread { relative: 0.12, absolute: 0.0 };
 /// commands looks like damping. Between flights of unchanged vehicles in simulation, logged in different ways, it moved by up to 0.95 1/s
 /// on PX4 and up to 2 1/s on ArduCopter.
 const DAMPING: f64 = 1.0;
+/// The same of a latency between command and rotor: its error holds what is not known of it, and the phase at which a log samples commands
+/// and motion, up to some ms, is beside it. Set by judgement.
+const OF_LATENCY: Spread = Spread { relative: 0.12, absolute: 0.005 };
+/// A shorter latency is determined if its error is less than this, s, whatever share of it that is.
+const DETERMINED_S: f64 = 0.005;
 /// Load and battery are the flight's own.
 const OWN: Spread = Spread { relative: 0.0, absolute: 0.0 };
 
@@ -79,6 +84,7 @@ impl Track {
         let spread = match (parameter.owner, parameter.effect) {
             (Owner::Flight, _) => OWN,
             (Owner::Vehicle, None) => INERTIA,
+            (Owner::Vehicle, Some(_)) if parameter.name == LATENCY => OF_LATENCY,
             (Owner::Vehicle, Some(_)) => {
                 Spread { absolute: DAMPING * usual_damping(parameter, vehicle), ..EFFECT }
             }
@@ -141,6 +147,14 @@ impl Track {
         pooled_mean(&self.values, &self.common_std)
     }
 
+    /// The same with what a flight's time errors do to it in its errors, and no longer beside them.
+    #[must_use]
+    pub(super) fn with_absolute_spread(mut self) -> Self {
+        let by = std::mem::take(&mut self.spread.absolute);
+        self.values.iter_mut().flatten().for_each(|(_, std)| *std = std.hypot(by));
+        self
+    }
+
     /// The value of one flight alone. The standard error of what the flights have in common is as their scatter leaves it. What is each
     /// flight's own differs in truth, and keeps its error.
     #[must_use]
@@ -171,6 +185,9 @@ impl Track {
     /// a flight shows would tell it from none. A hover does not determine moments of inertia, nor drag.
     #[must_use]
     pub fn is_determined(&self, (value, std): (f64, f64)) -> bool {
+        if self.name == LATENCY {
+            return std <= DETERMINED_S.max(LARGEST_RELATIVE_STD * value.abs());
+        }
         if self.effect.is_none() {
             return std <= LARGEST_RELATIVE_STD * value.abs();
         }

@@ -15,7 +15,7 @@ pub(super) const OF_MEAN_ROTOR: &str = "over that of the mean of all rotors; the
 /// A value of one flight with its standard error, or that it has none.
 pub(in crate::report) fn value_of(track: &Track, estimate: Option<(f64, f64)>) -> String {
     match estimate {
-        None => "-".to_owned(),
+        None => "not determined".to_owned(),
         Some((value, std)) if track.is_determined((value, std)) => with_error(value, std),
         Some(_) => "not determined".to_owned(),
     }

@@ -1,7 +1,7 @@
 //! Opens, conditions, balances, fits and compares.
 
 use super::judge::Judge;
-use super::motion::tracks;
+use super::motion::{Motion, motion};
 use super::other_flight::refuse_same_flight;
 use super::request::CompareRequest;
 use super::result::{CompareStudy, Compared, ComparedFlight};
@@ -79,10 +79,14 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         None => Some(UNWEIGHED),
         Some(_) => request.balance_only.then_some(UNASKED),
     };
-    let (tracks, reasons) = match why_not {
-        Some(why) => (Vec::new(), vec![Some(why.to_owned()); flights.signals.len()]),
-        None => tracks(&flights.signals, &vehicle, progress),
+    let Motion { tracks, reasons, notes: of_motion } = match why_not {
+        Some(why) => {
+            let reasons = vec![Some(why.to_owned()); flights.signals.len()];
+            Motion { tracks: Vec::new(), reasons, notes: Vec::new() }
+        }
+        None => motion((&flights.inputs, &flights.signals), &vehicle, progress),
     };
+    notes.extend(of_motion);
     if draft.is_none() {
         notes.extend(contradictions(&tracks, &vehicle).iter().map(Contradiction::note));
     }
