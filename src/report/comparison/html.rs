@@ -108,7 +108,7 @@ fn flights(study: &CompareStudy) -> Markup {
             part(1),
             part(2),
             number(format!("{:+.3}, {:+.3}", of.felt[0], of.felt[1])),
-            own(of.lift.map(|(lift, _)| significant(lift, 3))),
+            own(of.lift.map(|(lift, std)| with_error(lift, std))),
             own(of.voltage_v.map(|volts| format!("{volts:.1}"))),
             own(flight.power_w.map(|power| format!("{power:.0}"))),
         ]
@@ -215,6 +215,8 @@ fn remarks(study: &CompareStudy) -> Markup {
 }
 
 fn provenance(study: &CompareStudy) -> Markup {
-    let files: Vec<_> = study.flights.iter().map(|flight| ("compared", &flight.input)).collect();
+    let vehicle = study.vehicle_file.iter().map(|file| ("vehicle", file));
+    let files: Vec<_> =
+        vehicle.chain(study.flights.iter().map(|flight| ("compared", &flight.input))).collect();
     html::provenance(&files, &[])
 }

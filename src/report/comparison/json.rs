@@ -20,6 +20,8 @@ pub struct ComparisonDocument {
     answer: String,
     /// false: neither a vehicle nor a mass was given, and lengths are in arms
     known_vehicle: bool,
+    /// the vehicle file; null: the vehicle was drafted
+    vehicle_file: Option<InputFile>,
     /// what changed between the flights before and after, the strongest first; null where no groups were given
     changes: Option<Vec<ChangeEntry>>,
     /// parameters that moved by 3 to 4.5 standard deviations: no changes; null where no groups were given
@@ -219,6 +221,7 @@ impl ComparisonDocument {
             verdict: if study.has_changed() { Verdict::Changed } else { Verdict::NothingChanged },
             answer: answer(study),
             known_vehicle: study.is_known,
+            vehicle_file: study.vehicle_file.clone(),
             changes: compared.map(|compared| entries(&compared.changes)),
             undecided: compared
                 .map(|compared| compared.undecided.iter().map(|of| undecided_entry(study, of)).collect()),

@@ -11,6 +11,8 @@ use crate::vehicle::Vehicle;
 pub struct CompareStudy {
     /// as given or drafted
     pub vehicle: Vehicle,
+    /// the file that it was read from; `None`: it was drafted
+    pub vehicle_file: Option<InputFile>,
     /// lengths and mass of it are known; otherwise results are shares
     pub is_known: bool,
     /// in the order in which they were given

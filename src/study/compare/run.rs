@@ -41,6 +41,10 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     request.check()?;
     let given = request.vehicle.clone().unwrap_or(VehicleGiven::Weighed(UNKNOWN));
     let known = given.of_file()?;
+    let vehicle_file = match &given {
+        VehicleGiven::File(file) => Some(InputFile::of(file)?),
+        VehicleGiven::Weighed(_) => None,
+    };
     progress.stage(Stage::Reading);
     let paths: Vec<_> = request.before.iter().chain(&request.after).cloned().collect();
     let mut before = load_all(&request.before, &request.read, &EXPLAINED)?;
@@ -103,6 +107,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         flights: each_compared(&flights, reasons),
         is_known: request.vehicle.is_some(),
         rotors: rotor_tracks(&balance, &vehicle),
+        vehicle_file,
         vehicle,
         balance,
         tracks,
