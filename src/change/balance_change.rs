@@ -1,6 +1,6 @@
 //! Whether the balance of a vehicle moved between two groups of flights, and what accounts for it.
 
-use super::explanation::{Account, Explanation, What, explanations, factor, lean};
+use super::explanation::{Account, Explanation, What, explanations, factor, lean, rotor_and_centre};
 use super::groups::{Groups, Moved};
 use crate::trim::{AXES, Balance};
 use crate::vehicle::Vehicle;
@@ -17,6 +17,8 @@ const FITS: f64 = 12.0;
 /// amounts, where a rotor accounts as well; false names are measured by `cargo bench --bench blind -- --vehicles
 /// --compared 40 --seed 9101`.
 const PRICE: f64 = 5.0;
+/// Amounts of a rotor and a centre of mass together.
+const OF_BOTH: f64 = 3.0;
 /// An explanation that costs so much more than the best is told apart: one of twenty odds, twice the logarithm.
 const APART: f64 = 6.0;
 /// Standard deviation of the centre of mass from flight to flight by where battery and load sit, arms, a direction:
@@ -36,6 +38,8 @@ pub struct BalanceChange {
     pub moved: [Moved; AXES],
     /// sum of squares of the move in standard deviations
     pub strength: f64,
+    /// the same where a load or a battery may sit elsewhere
+    pub beyond_load: f64,
     /// standard deviations of the groups' scatter over the one that is expected beforehand
     pub scatter: f64,
     /// what accounts for it; `None`: nothing that these flights could show
@@ -49,13 +53,13 @@ pub struct BalanceChange {
 /// A change of the balance and its cause.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BalanceFound {
-    /// the most likely; `None`: nothing known accounts for it alone
+    /// the most likely; `None`: nothing known accounts for it alone, or a rotor and a centre of mass together do nearly as well
     pub what: Option<What>,
     /// of a rotor: thrust for the same command over that before, which is 1 without an error
     pub factor: Option<Moved>,
     /// of the centre of mass: how far it moved along body x and y, arms, with standard errors
     pub offset: Option<[(f64, f64); 2]>,
-    /// what accounts for it nearly as well
+    /// what accounts for it nearly as well; where [`Self::what`] is `None`, what accounts for it alone
     pub rivals: Vec<What>,
     /// sum of squares that it accounts for, in standard deviations
     pub strength: f64,
@@ -89,8 +93,9 @@ pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> B
     let before = Vector3::from(moved.map(|moved| moved.before.0));
     let known = explanations(vehicle, &before);
     let strength = by.component_mul(&by).component_div(&variances).sum();
+    let beyond_load = by.component_mul(&by).component_div(&loaded(&variances)).sum();
     let shares: Vec<f64> = (0..vehicle.rotors.len()).map(|rotor| pair.share(rotor)).collect();
-    let mut found = found(&known, &moved, &shares, strength);
+    let mut found = found(&known, &moved, &shares, (strength, beyond_load));
     if let Some(found) = &mut found {
         found.carried_by = carriers(&pair, found, &known);
     }
@@ -101,7 +106,12 @@ pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> B
     let worst = variances.x.max(variances.y) + 2.0 * LOADED * LOADED;
     let least = Least { rotors: known.iter().filter_map(least).collect(), centre: (NAMED * worst).sqrt() };
     let by_a_load = found.is_none() && strength >= NAMED;
-    BalanceChange { moved, strength, scatter: scale, found, by_a_load, least }
+    BalanceChange { moved, strength, beyond_load, scatter: scale, found, by_a_load, least }
+}
+
+/// Variances of a move where a battery or a load may sit elsewhere.
+fn loaded(variances: &Vector3<f64>) -> Vector3<f64> {
+    variances + 2.0 * LOADED * LOADED * Vector3::new(1.0, 1.0, 0.0)
 }
 
 fn difference(moved: &[Moved; AXES]) -> Vector3<f64> {
@@ -117,7 +127,7 @@ fn found(
     known: &[Explanation],
     moved: &[Moved; AXES],
     shares: &[f64],
-    strength: f64,
+    (strength, beyond_load): (f64, f64),
 ) -> Option<BalanceFound> {
     let (by, variances) = (&difference(moved), &variances_of(moved));
     let mut accounts: Vec<(Account, f64)> = known
@@ -133,18 +143,19 @@ fn found(
     if strength - best.left < NAMED {
         return None;
     }
+    let is_near = |(account, other): &&(Account, f64)| *other < cost + APART && account.left <= FITS;
+    let mut near: Vec<What> = accounts.iter().filter(is_near).map(|(account, _)| account.what).collect();
+    // a rotor and a centre of mass have two amounts more than a rotor
+    let of_both = rotor_and_centre(by, variances) + OF_BOTH * PRICE;
+    let is_either = matches!(best.what, What::Rotor(_)) && of_both < cost + APART;
+    let fits = best.left <= FITS && !is_either;
     // where a battery or a load sits is the flight's own
-    let loaded = variances + 2.0 * LOADED * LOADED * Vector3::new(1.0, 1.0, 0.0);
-    let beyond_load = || by.component_mul(by).component_div(&loaded).sum() >= NAMED;
-    if best.what == What::CentreOfMass && !beyond_load() {
+    if (best.what == What::CentreOfMass || !fits) && beyond_load < NAMED {
         return None;
     }
-    let fits = best.left <= FITS;
-    if !fits && !beyond_load() {
-        return None;
+    if fits {
+        near.remove(0);
     }
-    let rivals =
-        accounts[1..].iter().filter(|(account, other)| *other < cost + APART && account.left <= FITS);
     let amounts = &best.amounts;
     Some(BalanceFound {
         what: fits.then_some(best.what),
@@ -157,7 +168,7 @@ fn found(
         },
         // the thrust has to act where the centre of mass went
         offset: (fits && best.what == What::CentreOfMass).then(|| [amounts[0], amounts[1]]),
-        rivals: if fits { rivals.map(|(account, _)| account.what).collect() } else { Vec::new() },
+        rivals: near,
         strength: strength - best.left,
         carried_by: Vec::new(),
     })

@@ -94,6 +94,12 @@ impl Explanation {
     }
 }
 
+/// Cost of a rotor and a centre of mass that changed together, as [`Account::cost`]: the centre of mass takes what is along x and y, the
+/// rotor what is about the vertical, whichever rotor it is.
+pub(super) fn rotor_and_centre(moved: &Vector3<f64>, variances: &Vector3<f64>) -> f64 {
+    (1.0 + (TORQUE_SPREAD * moved.z).powi(2) / variances.z).ln()
+}
+
 /// The factor of a rotor's thrust that an amount means, with its standard error: the rotor takes a larger share of the commands.
 pub(super) fn factor((amount, std): (f64, f64), share: f64) -> (f64, f64) {
     (1.0 - amount / share, std / share)

@@ -10,7 +10,7 @@ use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
 use super::floors::add_floors;
 use super::latency::LatencyFinding;
-use super::latency_name::{FlightLatency, flight_latency};
+use super::latency_name::{FlightLatency, flight_latency, latency_of};
 use super::left_over::add_left_over;
 use super::other_law::of_other_laws;
 use super::own_wind::moves;
@@ -64,7 +64,7 @@ pub struct FlightParameter {
 }
 
 /// The parameters of each flight, fitted with every effect of the vehicle that one of the explanations has; there is one explanation a
-/// flight. Empty where a flight cannot be fitted so.
+/// flight, whose latency is among them. Empty where a flight cannot be fitted so.
 #[must_use]
 pub fn by_flight(
     flights: &[Signals],
@@ -76,8 +76,11 @@ pub fn by_flight(
     let one = |(signals, explanation): (&Signals, &&Explanation)| {
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let base = with_terms(explanation, &terms, (vehicle, &trace));
+        let latency = latency_of(&trace, vehicle, &explanation.search.latency);
         let fit = flight_fit((signals, &[trace]), base, (explanation.search.latency, Forms::Chosen)).ok()?;
-        Some(parameters(&fit, explanation.turned_by_control, &terms, None))
+        let mut out = parameters(&fit, explanation.turned_by_control, &terms, None);
+        out.extend(latency.map(FlightParameter::from));
+        Some(out)
     };
     let each: Vec<_> = flights.par_iter().zip(explanations).map(one).collect();
     let mut each: Vec<Vec<FlightParameter>> = each.into_iter().map(Option::unwrap_or_default).collect();

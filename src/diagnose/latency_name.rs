@@ -127,6 +127,19 @@ pub(super) fn flight_latency(
     Ok(own.is_determined().then(of_flight))
 }
 
+/// The latency of one flight as its explanation has it, named or not. `None` where the flight does not determine it, and where it is from
+/// measured rotor speeds to the motion: no motor is in it then.
+pub(super) fn latency_of(trace: &Trace, vehicle: &Vehicle, found: &LatencyFinding) -> Option<FlightLatency> {
+    if !trace.torques || trace.measured_speeds || !found.is_determined() {
+        return None;
+    }
+    let is_lag = found.parts.lag_s > found.parts.delay_s && !is_delay(found.parts, vehicle);
+    let kind = latency_signature(if is_lag { LatencyKind::Lag } else { LatencyKind::Delay })?;
+    let traces = std::slice::from_ref(trace);
+    let ordinary = (ordinary_s(traces, vehicle), unsure_s(traces));
+    Some(FlightLatency::new(kind.id(), (found.total_s, found.std_s), held_s(traces), ordinary))
+}
+
 /// Lag of motors of which nothing is stated, s, and its standard error: 12 to 50 ms in simulators' vehicles and on
 /// thrust stands.
 const UNSTATED_MOTOR_S: (f64, f64) = (0.025, 0.015);

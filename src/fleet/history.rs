@@ -106,6 +106,7 @@ impl All<'_> {
         let balance = balance(legs);
         let study = CompareStudy {
             is_known,
+            vehicle_file: None,
             flights: kept.iter().map(|flight| self.flight(flight, uri(flight))).collect(),
             rotors: rotor_tracks(&balance, &vehicle),
             balance,

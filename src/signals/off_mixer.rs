@@ -20,6 +20,9 @@ const STOPPED: f64 = 0.02;
 /// Mean of the others, share of the range, from which on they carry the vehicle. Below it nothing is in the air.
 const CARRYING: f64 = 0.15;
 
+/// A pulse width is no shorter, us; commands as shares, percent or in the range of a byte are below it.
+const LEAST_PULSE_US: f64 = 500.0;
+
 /// An output that left the mixer in the air.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct OffMixer {
@@ -54,11 +57,13 @@ impl OffMixer {
 impl fmt::Display for OffMixer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { output, left_s, held, stopped_s } = self;
+        // larger than any other range of commands
+        let unit = if *held >= LEAST_PULSE_US { " us" } else { "" };
         write!(f, "motor output {output} does not follow the controllers from {left_s:.1} s on")?;
         match stopped_s {
-            Some(stopped_s) if stopped_s <= left_s => write!(f, ": it stops, at {held:.0}"),
-            Some(stopped_s) => write!(f, ": it stays at {held:.0}, and stops at {stopped_s:.1} s"),
-            None => write!(f, ": it stays at {held:.0}"),
+            Some(stopped_s) if stopped_s <= left_s => write!(f, ": it stops, at {held:.0}{unit}"),
+            Some(stopped_s) => write!(f, ": it stays at {held:.0}{unit}, and stops at {stopped_s:.1} s"),
+            None => write!(f, ": it stays at {held:.0}{unit}"),
         }?;
         f.write_str(", while the other motors follow them")
     }
@@ -198,7 +203,7 @@ mod tests {
         assert!(
             found[0]
                 .to_string()
-                .starts_with("motor output 3 does not follow the controllers from 15.0 s on: it stays at 1500, and stops at 17.0 s")
+                .starts_with("motor output 3 does not follow the controllers from 15.0 s on: it stays at 1500 us, and stops at 17.0 s")
         );
     }
 

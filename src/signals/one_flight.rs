@@ -41,6 +41,10 @@ const LEAST_STEPS: usize = 50;
 /// autopilots' simulators: at most 6e-6 for the same flight, at least 1.5e-2 for the same trajectory flown twice.
 /// Logs of the embedded vehicle have noise of their own each: at most 1e-3.
 const MOST_DIFFERENT: f64 = 3e-3;
+/// The same of the tilt alone: turns about the vertical that two plans have in common make up most of the attitude's variance and hide that
+/// the tilts are others. Of two plans it is one to two; logs of one flight that have noise of their own each differ by a few hundredths
+/// in a hover. Set by judgement.
+const MOST_OTHER_TILT: f64 = 0.1;
 /// Parts of the flight in which the offset is found again, for its standard error and its drift.
 const PARTS: usize = 8;
 
@@ -82,7 +86,8 @@ fn lateness(slow: &Stream, fast: &Stream) -> Option<Line> {
         }
     }
     let difference = wanted.difference(&fine, late_s);
-    if difference.is_nan() || difference > MOST_DIFFERENT {
+    let is_same = difference <= MOST_DIFFERENT && wanted.tilt_difference(&fine, late_s) <= MOST_OTHER_TILT;
+    if !is_same {
         return None;
     }
     let count = wanted.time_s.len();
@@ -253,6 +258,15 @@ impl Samples<'_> {
         both().map(|(wanted, found, _)| squared(wanted, &found)).sum::<f64>() / moved
     }
 
+    /// Share of the tilt's variance by which they differ.
+    fn tilt_difference(&self, fine: &Fine, late_s: f64) -> f64 {
+        let tilt = |axes: &Axes| axes[1];
+        let center = mean(&self.axes)[1];
+        let both = || self.both(fine, late_s, 0..self.axes.len());
+        let moved: f64 = both().map(|(wanted, ..)| (tilt(wanted) - center).norm_squared()).sum();
+        both().map(|(wanted, found, _)| (tilt(wanted) - tilt(&found)).norm_squared()).sum::<f64>() / moved
+    }
+
     /// By how much later still, s, the other must be read (Gauss-Newton), and the weight of that.
     fn further_lateness(&self, fine: &Fine, late_s: f64, range: Range<usize>) -> Option<(f64, f64)> {
         let (mut along, mut weight) = (0.0, 0.0);
@@ -284,6 +298,31 @@ mod tests {
         let at_one = [0.0, 0.0, 0.0].map(|more_s| part(3.0, more_s));
         assert_eq!(line(&at_one, 0.5).map(|line| (line.drift, line.std_s)), Some((0.0, FINE_S)));
         assert!(line(&[], 0.5).is_none());
+    }
+
+    /// Attitudes at 50 Hz that turn by 180 degrees and tilt by 3 degrees about x at `tilt_hz`.
+    fn turning(tilt_hz: f64) -> Stream {
+        let time_s: Vec<f64> = (0..1000).map(|index| 0.02 * f64::from(index)).collect();
+        let of = |time_s: &f64| {
+            let tilt = 0.05 * (std::f64::consts::TAU * tilt_hz * time_s).sin();
+            let attitude = UnitQuaternion::from_euler_angles(tilt, 0.0, 0.157 * time_s);
+            [attitude.w, attitude.i, attitude.j, attitude.k]
+        };
+        let values = time_s.iter().flat_map(of).collect();
+        Stream { time_s, width: 4, values }
+    }
+
+    #[test]
+    fn the_same_turn_with_other_tilts_is_another_flight() {
+        assert!(lateness(&turning(0.3), &turning(0.3)).is_some());
+        let (slow, other) = (turning(0.3), turning(0.47));
+        let samples = Samples {
+            time_s: &slow.time_s,
+            axes: (0..slow.len()).map(|index| axes_of(slow.sample(index)).unwrap()).collect(),
+        };
+        // the turn alone would have called them one flight
+        assert!(samples.difference(&Fine::of(&other).unwrap(), 0.0) < MOST_DIFFERENT);
+        assert!(lateness(&slow, &other).is_none());
     }
 
     /// Least squares through (0, 0), (1, 0), (2, 3) by hand: mean 1, slope 1.5, what is left 0.5, -1, 0.5.

@@ -2,7 +2,7 @@
 
 use crate::change::{Spread, pooled_mean, with_scatter};
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{FlightParameter, LATENCY, Owner};
+use crate::diagnose::{FlightParameter, LATENCY, Owner, called};
 use crate::estimate::{LARGEST_RELATIVE_STD, UNITS};
 use crate::physics::effects::ALL;
 use crate::vehicle::Vehicle;
@@ -25,6 +25,11 @@ const EFFECT: Spread = Spread { relative: 0.12, absolute: 0.0 };
 /// commands looks like damping. Between flights of unchanged vehicles in simulation, logged in different ways, it moved by up to 0.95 1/s
 /// on PX4 and up to 2 1/s on ArduCopter.
 const DAMPING: f64 = 1.0;
+/// The same of a latency between command and rotor: its error holds what is not known of it, and the phase at which a log samples commands
+/// and motion, up to some ms, is beside it. Set by judgement.
+const OF_LATENCY: Spread = Spread { relative: 0.12, absolute: 0.005 };
+/// A shorter latency is determined if its error is less than this, s, whatever share of it that is.
+const DETERMINED_S: f64 = 0.005;
 /// Load and battery are the flight's own.
 const OWN: Spread = Spread { relative: 0.0, absolute: 0.0 };
 
@@ -79,6 +84,7 @@ impl Track {
         let spread = match (parameter.owner, parameter.effect) {
             (Owner::Flight, _) => OWN,
             (Owner::Vehicle, None) => INERTIA,
+            (Owner::Vehicle, Some(_)) if parameter.name == LATENCY => OF_LATENCY,
             (Owner::Vehicle, Some(_)) => {
                 Spread { absolute: DAMPING * usual_damping(parameter, vehicle), ..EFFECT }
             }
@@ -119,10 +125,34 @@ impl Track {
         tracks
     }
 
+    /// What it is, as people say it: `drag (dx)`, `moment of inertia ixx`.
+    #[must_use]
+    pub fn words(&self) -> String {
+        if self.name == LATENCY {
+            return "latency from command to rotor (lag and delay)".to_owned();
+        }
+        let Some(id) = self.effect else {
+            let is_moment = self.name.starts_with('i');
+            return if is_moment { format!("moment of inertia {}", self.name) } else { self.name.clone() };
+        };
+        match self.name.split_once('.') {
+            Some((_, parameter)) => format!("{} ({parameter})", called(id)),
+            None => called(id).to_owned(),
+        }
+    }
+
     /// Pooled mean of the flights' values, with its standard error; `None` where no flight has one.
     #[must_use]
     pub fn pooled(&self) -> Option<(f64, f64)> {
         pooled_mean(&self.values, &self.common_std)
+    }
+
+    /// The same with what a flight's time errors do to it in its errors, and no longer beside them.
+    #[must_use]
+    pub(super) fn with_absolute_spread(mut self) -> Self {
+        let by = std::mem::take(&mut self.spread.absolute);
+        self.values.iter_mut().flatten().for_each(|(_, std)| *std = std.hypot(by));
+        self
     }
 
     /// The value of one flight alone. The standard error of what the flights have in common is as their scatter leaves it. What is each
@@ -155,6 +185,9 @@ impl Track {
     /// a flight shows would tell it from none. A hover does not determine moments of inertia, nor drag.
     #[must_use]
     pub fn is_determined(&self, (value, std): (f64, f64)) -> bool {
+        if self.name == LATENCY {
+            return std <= DETERMINED_S.max(LARGEST_RELATIVE_STD * value.abs());
+        }
         if self.effect.is_none() {
             return std <= LARGEST_RELATIVE_STD * value.abs();
         }

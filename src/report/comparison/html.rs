@@ -75,6 +75,11 @@ fn row(study: &CompareStudy, change: &Change) -> Vec<Cell> {
     cells
 }
 
+fn row_from(study: &CompareStudy, from: usize, change: &Change) -> Vec<Cell> {
+    let first = text(study.flights[from].input.path.as_str());
+    std::iter::once(first).chain(row(study, change)).collect()
+}
+
 fn unseen(study: &CompareStudy) -> Markup {
     let Some(compared) = &study.compared else { return Markup::default() };
     let rows: Vec<Vec<Cell>> =
@@ -103,7 +108,7 @@ fn flights(study: &CompareStudy) -> Markup {
             part(1),
             part(2),
             number(format!("{:+.3}, {:+.3}", of.felt[0], of.felt[1])),
-            own(of.lift.map(|(lift, _)| significant(lift, 3))),
+            own(of.lift.map(|(lift, std)| with_error(lift, std))),
             own(of.voltage_v.map(|volts| format!("{volts:.1}"))),
             own(flight.power_w.map(|power| format!("{power:.0}"))),
         ]
@@ -177,6 +182,14 @@ fn history(study: &CompareStudy) -> Markup {
     if study.flights.len() < 3 {
         return Markup::default();
     }
+    let changes: Vec<Vec<Cell>> = study
+        .history
+        .iter()
+        .flat_map(|step| step.change.changes.iter().map(|change| row_from(study, step.from, change)))
+        .collect();
+    let heads =
+        ["from", "", "unit", "before", "after", "difference", "standard deviations|", "shown alone by"];
+    let caption = "Before and after each place, with standard errors and, in brackets, intervals of 95 %";
     let steps = html! {
         @if study.history.is_empty() { (paragraph("Nothing changed along the flights that they could show.")) }
         @for step in &study.history { @for change in &step.change.changes {
@@ -187,6 +200,7 @@ fn history(study: &CompareStudy) -> Markup {
                 returned(study, step)
             )))
         } }
+        @if !changes.is_empty() { (table(caption, &heads, &changes)) }
         @for plot in plots(study) { (figure(&plot, "Bands: 95 % intervals. Shaded: where it changed.")) }
     };
     section("History", &steps)
@@ -201,6 +215,8 @@ fn remarks(study: &CompareStudy) -> Markup {
 }
 
 fn provenance(study: &CompareStudy) -> Markup {
-    let files: Vec<_> = study.flights.iter().map(|flight| ("compared", &flight.input)).collect();
+    let vehicle = study.vehicle_file.iter().map(|file| ("vehicle", file));
+    let files: Vec<_> =
+        vehicle.chain(study.flights.iter().map(|flight| ("compared", &flight.input))).collect();
     html::provenance(&files, &[])
 }

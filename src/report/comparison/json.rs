@@ -20,10 +20,14 @@ pub struct ComparisonDocument {
     answer: String,
     /// false: neither a vehicle nor a mass was given, and lengths are in arms
     known_vehicle: bool,
+    /// the vehicle file; null: the vehicle was drafted
+    vehicle_file: Option<InputFile>,
     /// what changed between the flights before and after, the strongest first; null where no groups were given
     changes: Option<Vec<ChangeEntry>>,
     /// parameters that moved by 3 to 4.5 standard deviations: no changes; null where no groups were given
     undecided: Option<Vec<UndecidedEntry>>,
+    /// full thrust over weight before and after, where it and several parameters say that this is hardly one vehicle; null elsewhere
+    other_vehicle: Option<OtherVehicle>,
     /// the smallest changes that would have been named; null where no groups were given
     smallest_changes: Option<Vec<LeastEntry>>,
     /// one entry a flight
@@ -44,6 +48,13 @@ pub struct ComparisonDocument {
 enum Verdict {
     NothingChanged,
     Changed,
+}
+
+/// Full thrust over weight of two vehicles.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+struct OtherVehicle {
+    before: f64,
+    after: f64,
 }
 
 /// What changed.
@@ -210,9 +221,13 @@ impl ComparisonDocument {
             verdict: if study.has_changed() { Verdict::Changed } else { Verdict::NothingChanged },
             answer: answer(study),
             known_vehicle: study.is_known,
+            vehicle_file: study.vehicle_file.clone(),
             changes: compared.map(|compared| entries(&compared.changes)),
             undecided: compared
                 .map(|compared| compared.undecided.iter().map(|of| undecided_entry(study, of)).collect()),
+            other_vehicle: compared
+                .and_then(|compared| compared.other_vehicle)
+                .map(|(before, after)| OtherVehicle { before, after }),
             smallest_changes: compared
                 .map(|compared| compared.least.iter().map(|least| least_entry(study, least)).collect()),
             flights: (0..study.flights.len()).map(|place| flight(study, place)).collect(),

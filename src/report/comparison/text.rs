@@ -73,7 +73,7 @@ fn flights(page: &mut String, study: &CompareStudy) {
             let (lean, std) = study.balance.lean(place, axis);
             with_error(lean, std)
         };
-        let lift = of.lift.map_or_else(|| "-".to_owned(), |(lift, _)| significant(lift, 3));
+        let lift = of.lift.map_or_else(|| "-".to_owned(), |(lift, std)| with_error(lift, std));
         let volts = of.voltage_v.map_or_else(|| "-".to_owned(), |volts| format!("{volts:.1} V"));
         let power = flight.power_w.map_or_else(|| "-".to_owned(), |power| format!("{power:.0} W"));
         let _ = writeln!(

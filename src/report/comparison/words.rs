@@ -15,7 +15,7 @@ pub(super) const OF_MEAN_ROTOR: &str = "over that of the mean of all rotors; the
 /// A value of one flight with its standard error, or that it has none.
 pub(in crate::report) fn value_of(track: &Track, estimate: Option<(f64, f64)>) -> String {
     match estimate {
-        None => "-".to_owned(),
+        None => "not determined".to_owned(),
         Some((value, std)) if track.is_determined((value, std)) => with_error(value, std),
         Some(_) => "not determined".to_owned(),
     }
@@ -36,6 +36,9 @@ pub(super) fn answer(study: &CompareStudy) -> String {
                 flights(groups.before.len()),
                 flights(groups.after.len())
             );
+            if let Some(lifts) = compared.other_vehicle {
+                return other_vehicle(study, compared, lifts);
+            }
             if compared.changes.is_empty() {
                 return format!(
                     "Nothing changed {between} that these flights could show. {}{}",
@@ -69,6 +72,29 @@ pub(super) fn answer(study: &CompareStudy) -> String {
     }
 }
 
+/// Flights that are hardly those of one vehicle.
+fn other_vehicle(study: &CompareStudy, compared: &Compared, (before, after): (f64, f64)) -> String {
+    let changes = compared.changes.iter().chain(compared.undecided.iter().map(|(change, _)| change));
+    let moved: Vec<String> = changes.map(|change| said(study, change.what)).collect();
+    format!(
+        "These flights are hardly those of one vehicle: full thrust over weight is {} before and {} after, and {} moved as well. Compare \
+         flights of one vehicle, with its own vehicle file; if it is one vehicle, its motors, propellers or load are other ones.",
+        significant(before, 3),
+        significant(after, 3),
+        moved.join(", ")
+    )
+}
+
+/// What a change is of, in a sentence.
+fn said(study: &CompareStudy, what: Changed) -> String {
+    match what {
+        Changed::Parameter(place) => {
+            study.tracks.get(place).map_or_else(String::new, |track| format!("the {}", track.words()))
+        }
+        _ => name(study, what),
+    }
+}
+
 /// Which earlier flights the vehicle is as again, as a clause; empty where it is as none of them.
 pub(super) fn returned(study: &CompareStudy, step: &Step<Compared>) -> String {
     let path = |place: &usize| study.flights[*place].input.path.as_str();
@@ -93,16 +119,20 @@ pub(in crate::report) fn sentence(study: &CompareStudy, change: &Change) -> Stri
     let unit = spaced(change.unit);
     let told = match change.what {
         Changed::Rotor(_) => {
-            format!("{} gives {after} of the thrust that it gave for the same command", name(study, change.what))
+            format!(
+                "{} gives {after} of the thrust that it gave for the same command",
+                name(study, change.what)
+            )
         }
         Changed::CentreOfMass(_) => {
-            format!("{} moved by {by}{unit} (a load or a battery that sits elsewhere does the same)", name(study, change.what))
+            format!(
+                "{} moved by {by}{unit} (a load or a battery that sits elsewhere does the same)",
+                name(study, change.what)
+            )
         }
-        Changed::Balance => {
-            "the balance of the vehicle moved as no single rotor and no centre of mass moves it: more than one thing changed".to_owned()
-        }
+        Changed::Balance => return balance_sentence(study, &change.rivals),
         Changed::YawTorque => format!("{} went from {before} to {after}", name(study, change.what)),
-        Changed::Parameter(_) => format!("{} went from {before} to {after}{unit}", name(study, change.what)),
+        Changed::Parameter(_) => format!("{} went from {before} to {after}{unit}", said(study, change.what)),
     };
     let rivals: Vec<String> = change.rivals.iter().map(|rival| rival_name(study, *rival)).collect();
     if rivals.is_empty() {
@@ -110,6 +140,20 @@ pub(in crate::report) fn sentence(study: &CompareStudy, change: &Change) -> Stri
     } else {
         format!("{told}; a change of {} would look the same to these flights", rivals.join(" or of "))
     }
+}
+
+/// A balance that moved without a single name, as a clause; `alone`: what would account for it by itself.
+fn balance_sentence(study: &CompareStudy, alone: &[What]) -> String {
+    let names: Vec<String> = alone.iter().map(|what| rival_name(study, *what)).collect();
+    if names.is_empty() {
+        return "the balance of the vehicle moved as no single rotor and no centre of mass moves it: more than one thing changed"
+            .to_owned();
+    }
+    format!(
+        "the balance of the vehicle moved: {} alone would account for it, and a rotor together with a centre of mass or a load nearly as \
+         well",
+        names.join(" or ")
+    )
 }
 
 /// All that is not decided, in a sentence or two; empty where nothing is.
@@ -122,7 +166,7 @@ fn all_open(study: &CompareStudy, compared: &Compared) -> String {
         let sigmas = significant(change.sigmas, 2);
         format!(
             "{} moved by {by}{} ({sigmas} standard deviations)",
-            name(study, change.what),
+            said(study, change.what),
             spaced(change.unit)
         )
     };
@@ -152,7 +196,7 @@ pub(super) fn open(study: &CompareStudy, (change, why): &(Change, Undecided)) ->
     format!(
         "{} moved by {by}{}, {} standard deviations: below the {NAMED_SIGMAS} that make a change; {because}. Fly {} on each side to \
          decide.",
-        name(study, change.what),
+        capital(&said(study, change.what)),
         spaced(change.unit),
         significant(change.sigmas, 2),
         flights(why.flights)
@@ -194,7 +238,7 @@ fn unseen(compared: &Compared) -> String {
         let [x, y, _] = balance.moved.map(|moved| with_error(moved.by.0, moved.by.1));
         format!(
             "The balance did move, by {x} of an arm along body x and {y} along y: a load or a battery that sits elsewhere does the \
-             same, and a flight may have its own. "
+             same, and a flight may have its own. The rotors along the flights have it in their values. "
         )
     } else {
         String::new()

@@ -11,6 +11,12 @@ use crate::study::Track;
 use crate::trim::{Balance, mean_arm_m};
 use crate::vehicle::Vehicle;
 
+/// Full thrust over weight of one group over that of the other from which on, with [`OTHER_PARAMETERS`], this is hardly one vehicle. A
+/// battery takes a tenth of it, a load that leaves room to fly a fifth. Set by judgement.
+const OTHER_LIFT: f64 = 1.3;
+/// Parameters that moved by more than chance then.
+const OTHER_PARAMETERS: usize = 2;
+
 /// What all comparisons have in common.
 #[derive(Debug, Clone, Copy)]
 pub struct Judge<'a> {
@@ -37,7 +43,12 @@ impl Judge<'_> {
         // of so many places one is reached by chance at that many more
         let pairs = (order.len() * order.len().saturating_sub(1) / 2).max(1) as f64;
         let there_and_back = least_sigmas.max(NAMED_SIGMAS).hypot((2.0 * pairs.ln()).sqrt());
-        let mut found = steps(order.len(), &judged, there_and_back);
+        let found = steps(order.len(), &judged, there_and_back);
+        let mut found = if found.is_empty() {
+            self.each_alone(order, least_sigmas)
+        } else {
+            self.beside_loads(found, order, least_sigmas)
+        };
         find_returns(order.len(), &mut found, &|groups, step: &Compared| {
             let compared = self.compared(&flight_groups(groups, order));
             compared.changes.is_empty() && step.certain().all(|change| compared.would_show(change))
@@ -85,7 +96,21 @@ impl Judge<'_> {
         }
         changes.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
         undecided.sort_by(|(a, _), (b, _)| b.sigmas.total_cmp(&a.sigmas));
-        Compared { balance, changes, undecided, least }
+        let of_motion = |change: &&Change| matches!(change.what, Changed::Parameter(_));
+        let moved = changes.iter().filter(of_motion).count() + undecided.len();
+        let other_vehicle = self.lifts(groups).filter(|(before, after)| {
+            moved >= OTHER_PARAMETERS && before.max(*after) > OTHER_LIFT * before.min(*after)
+        });
+        Compared { balance, changes, undecided, least, other_vehicle }
+    }
+
+    /// Mean full thrust over weight of both groups, where all flights have it.
+    fn lifts(&self, groups: &Groups) -> Option<(f64, f64)> {
+        let mean = |group: &[usize]| {
+            let each = group.iter().map(|&flight| Some(self.balance.flights[flight].lift?.0));
+            Some(each.sum::<Option<f64>>()? / group.len() as f64)
+        };
+        mean(&groups.before).zip(mean(&groups.after))
     }
 
     /// Length of an arm and its unit: one arm where lengths are not known.
@@ -135,7 +160,7 @@ impl Judge<'_> {
 }
 
 /// Groups of places in an order as groups of flights.
-fn flight_groups(groups: &Groups, order: &[usize]) -> Groups {
+pub(super) fn flight_groups(groups: &Groups, order: &[usize]) -> Groups {
     let of = |places: &[usize]| places.iter().map(|place| order[*place]).collect();
     Groups { before: of(&groups.before), after: of(&groups.after) }
 }

@@ -1,5 +1,6 @@
 //! `compare`: one vehicle over its flights, and what changed of it.
 
+mod along;
 mod judge;
 mod motion;
 mod other_flight;

@@ -1,18 +1,29 @@
 //! What the motion of each flight says of the vehicle's parameters.
 
-use crate::diagnose::{ExplainSettings, Explanation, FlightParameter, by_flight, explain};
+use crate::diagnose::signatures::signature_of;
+use crate::diagnose::{ExplainSettings, Explanation, FlightParameter, Named, brief, by_flight, explain};
+use crate::note::{About, Note};
 use crate::signals::Signals;
-use crate::study::{Progress, Track};
+use crate::study::{InputFile, Progress, Track};
 use crate::vehicle::Vehicle;
 use rayon::prelude::*;
 
-/// Each parameter along all flights, and why a flight is not among them. A flight whose commands come too seldom to compare torques
-/// with the motion shows its balance only.
-pub(super) fn tracks(
-    signals: &[Signals],
+/// What the motion of all flights says.
+pub(super) struct Motion {
+    /// each parameter along all flights
+    pub(super) tracks: Vec<Track>,
+    /// why a flight is not among them
+    pub(super) reasons: Vec<Option<String>>,
+    /// what is not compared, and what single flights show of it
+    pub(super) notes: Vec<Note>,
+}
+
+/// Each parameter along all flights. A flight whose commands come too seldom to compare torques with the motion shows its balance only.
+pub(super) fn motion(
+    (inputs, signals): (&[InputFile], &[Signals]),
     vehicle: &Vehicle,
     progress: &dyn Progress,
-) -> (Vec<Track>, Vec<Option<String>>) {
+) -> Motion {
     progress.steps(signals.len() as u64);
     let settings = ExplainSettings::default();
     let explained: Vec<Result<Explanation, String>> = signals
@@ -32,8 +43,66 @@ pub(super) fn tracks(
     let each = by_flight(&used, &explanations, vehicle, &settings);
     let compared = |parameters: Vec<FlightParameter>| parameters.into_iter().filter(is_compared).collect();
     let each = places.into_iter().zip(each.into_iter().map(compared)).collect();
-    let reasons = explained.into_iter().map(Result::err).collect();
-    (Track::all(each, signals.len(), vehicle), reasons)
+    let tracks: Vec<Track> = Track::all(each, signals.len(), vehicle);
+    let paths = inputs.iter().zip(&explained).filter(|(_, of)| of.is_ok()).map(|(input, _)| &*input.path);
+    let of_each: Vec<(&str, &Explanation)> = paths.zip(explanations).collect();
+    let notes = curve(&tracks).into_iter().chain(of_some_flights(&of_each, vehicle)).collect();
+    let reasons = explained.iter().map(|of| of.as_ref().err().cloned()).collect();
+    Motion { tracks: tracks.into_iter().map(Track::with_absolute_spread).collect(), reasons, notes }
+}
+
+/// The curve of the thrust is compared where a flight's explanation has it only.
+fn curve(tracks: &[Track]) -> Option<Note> {
+    let bends = |track: &Track| {
+        track.effect.and_then(signature_of).is_some_and(|signature| signature.role.bends_thrust.is_some())
+    };
+    let text =
+        "the thrust curve (thrust against command) is not compared: it is the vehicle file's in all flights";
+    (!tracks.is_empty() && !tracks.iter().any(bends)).then(|| Note::remark(About::Vehicle, text))
+}
+
+/// Flights that are listed by name; of more their number is told.
+const LISTED: usize = 4;
+
+/// What some flights, each explained alone, have by name and others have not: a rotor, where the thrust acts, a latency, a thrust curve.
+fn of_some_flights(each: &[(&str, &Explanation)], vehicle: &Vehicle) -> Vec<Note> {
+    let is_told = |named: &&Named| {
+        let role = signature_of(named.id).map(|signature| &signature.role);
+        role.is_some_and(|role| {
+            role.which.is_some()
+                || role.of_the_loading
+                || role.latency.is_some()
+                || role.bends_thrust.is_some()
+        })
+    };
+    let names = |explanation: &Explanation| -> Vec<String> {
+        explanation.named.iter().filter(is_told).map(|named| brief(named, vehicle, false)).collect()
+    };
+    let mut told: Vec<String> = Vec::new();
+    for name in each.iter().flat_map(|(_, explanation)| names(explanation)) {
+        if !told.contains(&name) {
+            told.push(name);
+        }
+    }
+    let note = |name: String| {
+        let (with, without): (Vec<_>, Vec<_>) =
+            each.iter().partition(|(_, explanation)| names(explanation).contains(&name));
+        let list = |flights: &[&(&str, &Explanation)]| {
+            if flights.len() > LISTED {
+                return format!("{} flights", flights.len());
+            }
+            flights.iter().map(|(path, _)| *path).collect::<Vec<_>>().join(", ")
+        };
+        let text = || {
+            format!(
+                "each flight explained alone, against the vehicle file: {name} is named in {} and not in {}",
+                list(&with),
+                list(&without)
+            )
+        };
+        (!without.is_empty()).then(|| Note::remark(About::Vehicle, text()))
+    };
+    told.into_iter().filter_map(note).collect()
 }
 
 /// Where the thrust acts, the balance tells better: offsets, and what one rotor gives.

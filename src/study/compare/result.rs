@@ -11,6 +11,8 @@ use crate::vehicle::Vehicle;
 pub struct CompareStudy {
     /// as given or drafted
     pub vehicle: Vehicle,
+    /// the file that it was read from; `None`: it was drafted
+    pub vehicle_file: Option<InputFile>,
     /// lengths and mass of it are known; otherwise results are shares
     pub is_known: bool,
     /// in the order in which they were given
@@ -53,6 +55,8 @@ pub struct Compared {
     pub undecided: Vec<(Change, Undecided)>,
     /// the smallest changes that would have been named
     pub least: Vec<LeastChange>,
+    /// full thrust over weight before and after, where it and several parameters say that this is hardly one vehicle
+    pub other_vehicle: Option<(f64, f64)>,
 }
 
 /// One change.
@@ -105,6 +109,17 @@ impl Compared {
         self.changes.iter().map(|change| change.sigmas).fold(0.0, f64::max)
     }
 
+    /// The same where a load or a battery that sits elsewhere is allowed for in what it may be.
+    pub(super) fn beside_a_load(&self) -> f64 {
+        let loaded = self.balance.beyond_load.sqrt();
+        let of = |change: &Change| match change.what {
+            Changed::Parameter(_) => change.sigmas,
+            Changed::Rotor(_) if !change.rivals.contains(&What::CentreOfMass) => change.sigmas,
+            _ => change.sigmas.min(loaded),
+        };
+        self.changes.iter().map(of).fold(0.0, f64::max)
+    }
+
     /// The changes that are certain by themselves: a centre of mass moves along two axes, and may have moved along one only.
     pub(super) fn certain(&self) -> impl Iterator<Item = &Change> {
         let alone = |change: &&Change| change.sigmas * change.sigmas >= NAMED;
@@ -126,7 +141,7 @@ impl CompareStudy {
     #[must_use]
     pub fn has_changed(&self) -> bool {
         match &self.compared {
-            Some(compared) => !compared.changes.is_empty(),
+            Some(compared) => !compared.changes.is_empty() || compared.other_vehicle.is_some(),
             None => !self.history.is_empty(),
         }
     }

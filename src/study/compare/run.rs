@@ -1,11 +1,11 @@
 //! Opens, conditions, balances, fits and compares.
 
 use super::judge::Judge;
-use super::motion::tracks;
+use super::motion::{Motion, motion};
 use super::other_flight::refuse_same_flight;
 use super::request::CompareRequest;
-use super::result::{CompareStudy, ComparedFlight};
-use crate::change::Groups;
+use super::result::{CompareStudy, Compared, ComparedFlight};
+use crate::change::{Groups, Step};
 use crate::config::LoadedVehicle;
 use crate::draft::Given;
 use crate::estimate::{Contradiction, NAMES, stated};
@@ -18,6 +18,7 @@ use crate::study::one_vehicle::{doubt_one_vehicle, refuse_others};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{InputFile, Progress, Stage, StudyError, Track, VehicleGiven};
+use crate::text::with_error;
 use crate::trim::{Leg, balance, legs, rotor_tracks};
 use crate::vehicle::Vehicle;
 
@@ -40,6 +41,10 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     request.check()?;
     let given = request.vehicle.clone().unwrap_or(VehicleGiven::Weighed(UNKNOWN));
     let known = given.of_file()?;
+    let vehicle_file = match &given {
+        VehicleGiven::File(file) => Some(InputFile::of(file)?),
+        VehicleGiven::Weighed(_) => None,
+    };
     progress.stage(Stage::Reading);
     let paths: Vec<_> = request.before.iter().chain(&request.after).cloned().collect();
     let mut before = load_all(&request.before, &request.read, &EXPLAINED)?;
@@ -78,10 +83,14 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         None => Some(UNWEIGHED),
         Some(_) => request.balance_only.then_some(UNASKED),
     };
-    let (tracks, reasons) = match why_not {
-        Some(why) => (Vec::new(), vec![Some(why.to_owned()); flights.signals.len()]),
-        None => tracks(&flights.signals, &vehicle, progress),
+    let Motion { tracks, reasons, notes: of_motion } = match why_not {
+        Some(why) => {
+            let reasons = vec![Some(why.to_owned()); flights.signals.len()];
+            Motion { tracks: Vec::new(), reasons, notes: Vec::new() }
+        }
+        None => motion((&flights.inputs, &flights.signals), &vehicle, progress),
     };
+    notes.extend(of_motion);
     if draft.is_none() {
         notes.extend(contradictions(&tracks, &vehicle).iter().map(Contradiction::note));
     }
@@ -91,10 +100,14 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let groups = (first < count).then(|| Groups::split(count, first));
     let compared = groups.as_ref().map(|groups| judge.compared(groups));
     let history = judge.history(&(0..count).collect::<Vec<_>>(), 0.0);
+    if groups.is_none() {
+        notes.extend(moved_by_loads(&judge, &flights.inputs, &history));
+    }
     Ok(CompareStudy {
         flights: each_compared(&flights, reasons),
         is_known: request.vehicle.is_some(),
         rotors: rotor_tracks(&balance, &vehicle),
+        vehicle_file,
         vehicle,
         balance,
         tracks,
@@ -103,6 +116,22 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         history,
         notes,
     })
+}
+
+/// A remark for each flight whose balance differs from the flight's before it by no more than a load moves it, where nothing changed.
+fn moved_by_loads(judge: &Judge<'_>, inputs: &[InputFile], history: &[Step<Compared>]) -> Vec<Note> {
+    let of = |later: usize| {
+        let groups = Groups { before: vec![later - 1], after: vec![later] };
+        let balance = judge.compared(&groups).balance;
+        let [x, y, _] = balance.moved.map(|moved| with_error(moved.by.0, moved.by.1));
+        let text = format!(
+            "its balance differs from that of {} by {x} of an arm along body x and {y} along y: a load or a battery that sits elsewhere \
+             does the same and is the flight's own. The rotors along the flights have it in their values",
+            inputs[later - 1].path
+        );
+        balance.by_a_load.then(|| Note::remark(About::File(inputs[later].path.clone()), text))
+    };
+    (1..inputs.len()).filter(|later| !history.iter().any(|step| step.from == *later)).filter_map(of).collect()
 }
 
 /// Mass and moments of inertia of all flights that are far from what the vehicle file states.

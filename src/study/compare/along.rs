@@ -1,0 +1,182 @@
+//! Where along a row of flights the vehicle changed, beside a load that one of them had.
+
+use super::judge::{Judge, flight_groups};
+use super::result::{Changed, Compared};
+use crate::change::{Groups, NAMED_SIGMAS, Step, What};
+use std::cmp::Reverse;
+
+/// Most flights of a row in which each is held against every earlier one.
+const MOST_ALONE: usize = 60;
+
+impl Judge<'_> {
+    /// Judges each step by the flights that it parts. Where these differ by no more than a load moves the balance, there is no step. What
+    /// comes later is held against the most flights since the last step, and not against those which had such a load.
+    pub(super) fn beside_loads(
+        &self,
+        found: Vec<Step<Compared>>,
+        order: &[usize],
+        least_sigmas: f64,
+    ) -> Vec<Step<Compared>> {
+        let borders: Vec<usize> =
+            std::iter::once(0).chain(found.iter().map(|step| step.from)).chain([order.len()]).collect();
+        let part = |place: usize| borders[place]..borders[place + 1];
+        let is_step = |of: &Compared| of.strongest() > 0.0 && of.strongest() >= least_sigmas;
+        let (mut out, mut alike): (Vec<Step<Compared>>, Vec<usize>) = (Vec::new(), vec![0]);
+        for (place, step) in found.into_iter().enumerate() {
+            let against = |earlier: usize| {
+                let groups = Groups { before: part(earlier).collect(), after: part(place + 1).collect() };
+                let change = self.compared(&flight_groups(&groups, order));
+                Step { from: step.from, groups, change, as_before: Vec::new() }
+            };
+            let own = against(place);
+            if own.change.changes.is_empty() && own.change.balance.by_a_load {
+                alike.push(place + 1);
+                continue;
+            }
+            let reference = alike.iter().copied().max_by_key(|&other| (part(other).len(), Reverse(other)));
+            let wide = reference.filter(|&reference| reference != place).map(against);
+            match wide {
+                // the load is gone again
+                Some(wide) if wide.change.changes.is_empty() => {
+                    alike.push(place + 1);
+                    continue;
+                }
+                Some(mut wide) if is_step(&wide.change) => {
+                    add_rivals(&mut wide.change, &own.change);
+                    out.push(wide);
+                }
+                _ if is_step(&own.change) => out.push(own),
+                _ => out.push(step),
+            }
+            alike = vec![place + 1];
+        }
+        out
+    }
+
+    /// Flights that differ from every earlier one, each alone against each: what a pair of flights shows, a row of them does not lose.
+    /// There are as many places for it as pairs, so it has to be more certain. The change is that against the flight which
+    /// differs the least.
+    pub(super) fn each_alone(&self, order: &[usize], least_sigmas: f64) -> Vec<Step<Compared>> {
+        let count = order.len();
+        if !(3..=MOST_ALONE).contains(&count) {
+            return Vec::new();
+        }
+        let pairs = (count * (count - 1) / 2) as f64;
+        let least = least_sigmas.max(NAMED_SIGMAS).hypot((2.0 * pairs.ln()).sqrt());
+        let of_flight = |later: usize| {
+            let against = |earlier: usize| {
+                let groups = Groups { before: vec![earlier], after: vec![later] };
+                let change = self.compared(&flight_groups(&groups, order));
+                let step = Step { from: later, groups, change, as_before: Vec::new() };
+                (step.change.beside_a_load() >= least).then_some(step)
+            };
+            let each = (0..later).map(against).collect::<Option<Vec<_>>>()?;
+            let least = each.iter().min_by(|a, b| a.change.strongest().total_cmp(&b.change.strongest()))?;
+            let mut step = least.clone();
+            each.iter().for_each(|other| add_rivals(&mut step.change, &other.change));
+            Some(step)
+        };
+        (1..count).filter_map(of_flight).collect()
+    }
+}
+
+/// What other flights before say of the balance is another explanation of the same.
+fn add_rivals(change: &mut Compared, other: &Compared) {
+    let what = |changed: Changed| match changed {
+        Changed::Rotor(rotor) => Some(What::Rotor(rotor)),
+        Changed::CentreOfMass(_) => Some(What::CentreOfMass),
+        Changed::YawTorque => Some(What::YawTorque),
+        Changed::Balance | Changed::Parameter(_) => None,
+    };
+    let of_balance = |changed: Changed| !matches!(changed, Changed::Parameter(_));
+    let others = other.changes.iter().filter(|change| of_balance(change.what));
+    let said: Vec<What> =
+        others.flat_map(|change| what(change.what).into_iter().chain(change.rivals.clone())).collect();
+    for own in change.changes.iter_mut().filter(|change| of_balance(change.what)) {
+        for rival in &said {
+            if what(own.what) != Some(*rival) && !own.rivals.contains(rival) {
+                own.rivals.push(*rival);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::load_vehicle;
+    use crate::trim::{Balance, FlightBalance, mean_arm_m};
+    use crate::vehicle::Vehicle;
+    use nalgebra::{DMatrix, Vector3};
+    use std::path::Path;
+
+    fn vehicle() -> Vehicle {
+        load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml")).unwrap()
+    }
+
+    /// Where a rotor that gives 0.93 of its thrust pulls the balance to.
+    fn weak(vehicle: &Vehicle, rotor: usize) -> Vector3<f64> {
+        let of = &vehicle.rotors[rotor];
+        let at = (of.position_m - vehicle.body.center_of_mass_m) / mean_arm_m(vehicle);
+        0.0175 * Vector3::new(at.x, at.y, of.spin.yaw_sign())
+    }
+
+    /// Flights whose balance is known to 0.0015 and wanders by as much.
+    fn balance(leans: &[Vector3<f64>]) -> Balance {
+        let of = |lean: &Vector3<f64>| FlightBalance {
+            lean: [lean.x, lean.y, lean.z],
+            wander: [0.0015, 0.0015, 0.002],
+            scatter: [0.0025; 3],
+            legs: 20,
+            felt: [0.0; 2],
+            shares: vec![0.25; 4],
+            lift: None,
+            voltage_v: None,
+        };
+        let covariance = DMatrix::identity(leans.len(), leans.len()) * 0.0015 * 0.0015;
+        Balance {
+            flights: leans.iter().map(of).collect(),
+            covariance: std::array::from_fn(|_| covariance.clone()),
+            air_lever: [(0.0, 1.0); 2],
+        }
+    }
+
+    /// From which flights on what changed, and what else it may be.
+    fn history(leans: &[Vector3<f64>]) -> Vec<(usize, Changed, Vec<What>)> {
+        let (vehicle, balance) = (vehicle(), balance(leans));
+        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], is_known: true };
+        let order: Vec<usize> = (0..leans.len()).collect();
+        let steps = judge.history(&order, 0.0);
+        let each = |step: &Step<Compared>| {
+            let of = |change: &super::super::Change| (step.from, change.what, change.rivals.clone());
+            step.change.changes.iter().map(of).collect::<Vec<_>>()
+        };
+        steps.iter().flat_map(each).collect()
+    }
+
+    #[test]
+    fn a_weak_rotor_is_found_behind_a_flight_with_another_load() {
+        let (none, load) = (Vector3::zeros(), Vector3::new(0.045, 0.03, 0.0));
+        let weak = weak(&vehicle(), 2);
+        for before in [&[none, load][..], &[none, none, none, load]] {
+            let found = history(&[before, &[weak]].concat());
+            assert!(
+                matches!(found.as_slice(), [(from, Changed::Rotor(2), _)] if *from == before.len()),
+                "{found:?}"
+            );
+        }
+        // the load alone is no change
+        assert!(history(&[none, load, none]).is_empty());
+        assert!(history(&[none, none, none]).is_empty());
+    }
+
+    #[test]
+    fn a_rotor_and_a_centre_of_mass_that_changed_together_get_no_single_name() {
+        let vehicle = vehicle();
+        let together = weak(&vehicle, 2) + Vector3::new(-0.09, -0.02, 0.0);
+        let balance = balance(&[Vector3::zeros(), together]);
+        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], is_known: true };
+        let compared = judge.compared(&Groups::split(2, 1));
+        assert_eq!(compared.changes.iter().map(|change| change.what).collect::<Vec<_>>(), [Changed::Balance]);
+    }
+}
