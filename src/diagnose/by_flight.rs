@@ -21,7 +21,6 @@ use super::signatures::{ALL, signature_of};
 use super::tested::Search;
 use super::torques_by_instruments::torques_by_instruments;
 use super::trace::Trace;
-use super::trace_error::TraceError;
 use crate::estimate::{NAMES, UNITS};
 use crate::physics::PhysicsError;
 use crate::signals::{OwnOfFlight, Signals};
@@ -98,17 +97,14 @@ pub fn each_with_model_of_all(
     (vehicle, settings): (&Vehicle, &ExplainSettings),
 ) -> Vec<Vec<FlightParameter>> {
     let terms = of_the_vehicle(&[explanation]);
-    // whether a flight lacks an effect is what it tells
-    let trace = |signals: &Signals| {
-        let trace = Trace::new(signals, vehicle, settings.half_width_s)?;
-        let own = OwnOfFlight { lacks: Arc::default(), ..trace.own.clone() };
-        Ok::<_, TraceError>(trace.with_own(own))
-    };
+    let trace = |signals: &Signals| Trace::new(signals, vehicle, settings.half_width_s);
     let Ok(traces) = flights.iter().map(trace).collect::<Result<Vec<Trace>, _>>() else {
         return vec![Vec::new(); flights.len()];
     };
     let together = of_other_laws(&traces, &explanation.search.last, &explanation.search.after);
     let one = |((signals, trace), drifts): ((&Signals, &Trace), &bool)| {
+        // whether a flight lacks an effect is what it tells
+        let trace = &trace.with_own(OwnOfFlight { lacks: Arc::default(), ..trace.own.clone() });
         let own = std::slice::from_ref(trace);
         let mut base = with_terms(explanation, &terms, (vehicle, trace));
         if *drifts {

@@ -10,7 +10,7 @@ use super::gates::Gates;
 use super::harmonics::{LackOfFit, flown_period_s, lack_of_fit};
 use super::latency_name::latency_name;
 use super::limits::{limits, too_little_excitation};
-use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic, field_test, localise};
+use super::locate::{Aperiodic, FieldTest, GustFound, Localisation, aperiodic_of_each, field_test, localise};
 use super::named::{Confusable, Named, NamedParameter, Strength};
 use super::pace::Pace;
 use super::refinement::{fitted_strength, refine};
@@ -160,7 +160,7 @@ fn beyond(traces: &[Trace], found: &Search) -> Beyond {
         rayon::join(|| localise(traces, &found.before), || localise(traces, &found.after));
     let aperiodic = located_after
         .as_ref()
-        .map_or_else(Aperiodic::default, |located| aperiodic(traces, &found.after, located));
+        .map_or_else(Aperiodic::default, |located| aperiodic_of_each(traces, &found.after, located));
     Beyond {
         lack: lacks(traces, &found.after),
         field: field_test(

@@ -78,9 +78,8 @@ pub(super) fn one_flight((trace, flights): (&Trace, usize), base: &Base, model: 
     Part { along, residual, nuisances, own }
 }
 
-/// `m K(a) - K(F)` and `D(J w) + K(w x J w) - K(M)`, with the effects' part from the smooth thrusts.
+/// Base and model are those on this flight: `m K(a) - K(F)` and `D(J w) + K(w x J w) - K(M)`, with the effects' part from the smooth thrusts.
 pub(super) fn residual(trace: &Trace, base: &Base, model: &Model, along: &Along) -> Channels {
-    let base = &*base.on(&trace.own);
     let airframe = &model.airframe;
     let jitter = trace.jitter(&airframe.propulsion);
     let (commanded_n, moved_n) = (&along.commanded.thrust_n, &along.motion.thrust_n);

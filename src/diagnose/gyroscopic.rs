@@ -33,6 +33,9 @@ impl GyroscopicShare {
 /// Standard errors by which the share must be below the whole: as for a name.
 const CERTAIN: f64 = 4.0;
 
+/// Standard errors by which the share may be below none. The usual two.
+const POSSIBLE: f64 = 2.0;
+
 /// Error of the share beside that of noise: the moments it rests on are known to a few percent, and so is their difference, which is
 /// about a third of them. Simulators leave out all of it, so a share in between is an error of the model.
 const MODEL_STD: f64 = 0.2;
@@ -60,7 +63,13 @@ pub(super) fn left_out(flights: &[Trace], fitted: &Fitted, start: &Base) -> Opti
     let now = fitted.base.vehicle.body.gyroscopic;
     let share = now + more;
     tracing::debug!(share, std, "gyroscopic torque of a simulator tested");
-    if !(now - share > CERTAIN * std.hypot(MODEL_STD) && std > 0.0) {
+    let error = std.hypot(MODEL_STD);
+    if !(now - share > CERTAIN * error && std > 0.0) {
+        return None;
+    }
+    // no body has less than none of it: something else turns the vehicle, and this is no measure of it
+    if share < -POSSIBLE * error {
+        tracing::info!(share, std, "gyroscopic torque is not estimated: its share is none that a body has");
         return None;
     }
     let mut base = start.clone();

@@ -108,7 +108,7 @@ pub use latency::{LatencyFinding, NO_LATENCY, fit_latency};
 pub use materiality::Materiality;
 pub use model_wrench::wrench_along;
 pub use named::{Confusable, DetectionLimit, Named, NamedParameter, Strength};
-pub use own_of_flights::own_of_flights;
+pub use own_of_flights::{Apart, apart};
 pub use own_wind::{own_wind, relative_to_air};
 pub use pace::Pace;
 pub use recorded::{Need, Recorded};

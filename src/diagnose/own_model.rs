@@ -43,6 +43,15 @@ impl Base {
     }
 }
 
+impl Trace {
+    /// The same flight with something else its own.
+    pub(super) fn with_own(&self, own: OwnOfFlight) -> Self {
+        let mut trace = self.clone();
+        trace.own = own;
+        trace
+    }
+}
+
 impl EffectTerm {
     fn is_lacking(&self, own: &OwnOfFlight) -> bool {
         let which = self.signature.role.which.map(|slot| self.values[slot]);

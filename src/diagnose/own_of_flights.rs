@@ -4,19 +4,22 @@
 //! A quick fit of each flight tells whether they differ at all. If they do, each is explained alone, and fitted to all that one of them shows.
 
 use super::base::Base;
-use super::by_flight::{FlightParameter, Owner, by_flight};
+use super::by_flight::{FlightParameter, Owner, by_flight, named};
 use super::candidates::candidates;
+use super::channels::Nuisance;
 use super::explain::{ExplainSettings, explain};
 use super::explanation::{Explanation, Verdict};
 use super::fit::{Newton, fit};
+use super::named::Named;
 use super::recorded::Need;
 use super::score::columns_of;
 use super::signature::{EffectTerm, Signature};
 use super::signatures::{ALL, signature_of};
 use super::trace::Trace;
-use crate::signals::{Lacking, OwnOfFlight, Signals};
+use crate::signals::{Lacking, OwnOfFlight, Series, Signals};
 use crate::vehicle::{Anchor, Vehicle};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Standard errors from which on flights differ. Set by judgement: above those of a name, because each pair of flights is compared.
 const CERTAIN: f64 = 5.0;
@@ -24,35 +27,66 @@ const CERTAIN: f64 = 5.0;
 const LEAST_OF_MASS: f64 = 0.03;
 /// Least difference of a rotor's factor that counts.
 const LEAST_OF_ROTOR: f64 = 0.02;
+/// Exponents of the voltage with which thrust may fall as a battery does: between half of the plain ratio, and a half more than that of
+/// rotors whose speed goes with the voltage.
+const SAG: Range<f64> = 0.5..3.0;
 /// Share of an effect's size below which a flight has not that effect.
 const SHOWN: f64 = 0.5;
 /// Standard errors from which on a flight tells an effect from none, and from that of the others. The usual three.
 const TELLS: f64 = 3.0;
 
-/// What each flight has its own; empty where nothing tells the flights apart.
+/// What tells flights of one vehicle apart.
+#[derive(Debug, Clone, Default)]
+pub struct Apart {
+    /// what each has its own; empty where that is nothing
+    pub own: Vec<OwnOfFlight>,
+    /// what each shows alone; empty where nothing tells the flights apart. Of a flight that is not explained alone there are no names
+    pub alone: Vec<Vec<Named>>,
+}
+
+/// What tells flights apart; nothing where they are alike.
 #[must_use]
-pub fn own_of_flights(
-    flights: &[Signals],
-    vehicle: &Vehicle,
-    settings: &ExplainSettings,
-) -> Vec<OwnOfFlight> {
+pub fn apart(flights: &[Signals], vehicle: &Vehicle, settings: &ExplainSettings) -> Apart {
     let looks: Vec<Option<Look>> =
         flights.par_iter().map(|signals| Look::at(signals, vehicle, settings)).collect();
-    let Some(looks) = looks.into_iter().collect::<Option<Vec<Look>>>() else { return Vec::new() };
-    let pairs =
-        looks.iter().enumerate().flat_map(|(at, one)| looks[at + 1..].iter().map(move |other| (one, other)));
-    if !pairs.into_iter().any(|(one, other)| one.differs(other)) {
-        return Vec::new();
+    let Some(looks) = looks.into_iter().collect::<Option<Vec<Look>>>() else { return Apart::default() };
+    let differs = |(at, one): (usize, &Look)| looks[at + 1..].iter().any(|other| one.differs(other));
+    if !looks.iter().enumerate().any(differs) {
+        return Apart::default();
     }
     let alone = |signals: &Signals| explain(std::slice::from_ref(signals), vehicle, settings).ok();
     let alone: Vec<Option<Explanation>> = flights.par_iter().map(alone).collect();
-    let Some(alone) = alone.into_iter().collect::<Option<Vec<Explanation>>>() else { return Vec::new() };
+    let Some(alone) = alone.into_iter().collect::<Option<Vec<Explanation>>>() else {
+        return Apart::default();
+    };
+    let names = |alone: &Explanation| {
+        if alone.verdict == Verdict::Unexplained { Vec::new() } else { alone.named.clone() }
+    };
+    let voltages_v: Vec<Option<f64>> = looks.iter().map(|look| look.voltage_v).collect();
+    let own = own_of((flights, &voltages_v), &alone, vehicle, settings);
+    Apart { own, alone: alone.iter().map(names).collect() }
+}
+
+fn own_of(
+    (flights, voltages_v): (&[Signals], &[Option<f64>]),
+    alone: &[Explanation],
+    vehicle: &Vehicle,
+    settings: &ExplainSettings,
+) -> Vec<OwnOfFlight> {
     let each = by_flight(flights, &alone.iter().collect::<Vec<_>>(), vehicle, settings);
     if each.iter().any(Vec::is_empty) {
         return Vec::new();
     }
-    let payloads = payloads_kg(&masses(&each, &alone, vehicle), vehicle);
-    let terms = own_terms(&alone);
+    let terms = own_terms(alone);
+    // the voltage to which a flight's mass belongs is its own: all flights together tell them apart
+    let by_voltage = |flight: usize| {
+        let mut of_voltage = terms.iter().filter(|term| term.signature.needs.contains(&Need::Voltage));
+        of_voltage.any(|term| !lacks(term, flight, &each))
+    };
+    let masses = masses(&each, alone, vehicle).into_iter().enumerate();
+    let masses: Vec<Option<(f64, f64)>> =
+        masses.map(|(flight, mass)| mass.filter(|_| !by_voltage(flight))).collect();
+    let payloads = payloads_kg(&masses, voltages_v, vehicle);
     let own = |(flight, payload_kg): (usize, f64)| OwnOfFlight {
         payload_kg,
         lacks: terms.iter().filter(|term| lacks(term, flight, &each)).map(lacking).collect(),
@@ -69,6 +103,8 @@ pub fn own_of_flights(
 struct Look {
     /// kg by the stated thrust, with its standard error
     mass: (f64, f64),
+    /// V, mean over the rows; `None` where it is not recorded
+    voltage_v: Option<f64>,
     /// how much each rotor lacks, with its standard error
     rotors: Vec<(f64, f64)>,
 }
@@ -86,8 +122,7 @@ impl Look {
         }
         let fitted = fit(&traces, base, Newton::Free).ok()?;
         let estimated = fitted.with_stated_thrust(&vehicle.propulsion);
-        let index =
-            fitted.rows.nuisances.iter().position(|of| of.nuisance == super::channels::Nuisance::Mass)?;
+        let index = fitted.rows.nuisances.iter().position(|of| of.nuisance == Nuisance::Mass)?;
         let share = fitted.covariance[(index, index)].max(0.0).sqrt() / fitted.base.vehicle.body.mass_kg;
         let of_rotors = candidates(vehicle, &traces, ALL);
         let of_rotors = of_rotors
@@ -98,7 +133,15 @@ impl Look {
             Some((*evidence.theta.first()?, evidence.std(0)))
         });
         let mass_kg = estimated.theta[0];
-        Some(Self { mass: (mass_kg, share * mass_kg), rotors: rotors.collect() })
+        let mean = |volts: &Series<f64>| {
+            let rows = &traces[0].centers;
+            rows.iter().map(|&row| volts[row]).sum::<f64>() / rows.len().max(1) as f64
+        };
+        Some(Self {
+            mass: (mass_kg, share * mass_kg),
+            voltage_v: traces[0].voltage_v.as_ref().map(mean),
+            rotors: rotors.collect(),
+        })
     }
 
     fn differs(&self, other: &Self) -> bool {
@@ -129,21 +172,26 @@ fn masses(
     each.iter().zip(alone).map(of).collect()
 }
 
-/// What each flight carries more than that whose mass is the nearest to the file's, kg.
-fn payloads_kg(masses: &[Option<(f64, f64)>], vehicle: &Vehicle) -> Vec<f64> {
+/// What each flight carries more than that whose mass is the nearest to the file's, kg. What its battery explains is no payload.
+fn payloads_kg(masses: &[Option<(f64, f64)>], voltages_v: &[Option<f64>], vehicle: &Vehicle) -> Vec<f64> {
     let stated_kg = vehicle.body.mass_kg;
-    let nearest = masses.iter().flatten().min_by(|a, b| {
+    let known = masses.iter().zip(voltages_v).filter_map(|(mass, volts)| Some((mass.as_ref()?, volts)));
+    let nearest = known.min_by(|(a, _), (b, _)| {
         let apart = |of: &(f64, f64)| (of.0 / stated_kg).ln().abs();
         apart(a).total_cmp(&apart(b))
     });
-    let Some(&(kg, std_kg)) = nearest else { return vec![0.0; masses.len()] };
+    let Some((&(kg, std_kg), volts)) = nearest else { return vec![0.0; masses.len()] };
     let to_scale = if vehicle.anchor == Anchor::Mass { stated_kg / kg } else { 1.0 };
-    let more = |of: &Option<(f64, f64)>| {
-        let by = of.map(|(own_kg, own_std)| (own_kg - kg, own_std.hypot(std_kg)));
-        let payload = by.filter(|(by, std)| by.abs() > CERTAIN * std && by.abs() > LEAST_OF_MASS * kg);
-        payload.map_or(0.0, |(by, _)| by * to_scale)
+    let more = |(of, own_volts): (&Option<(f64, f64)>, &Option<f64>)| {
+        let &(own_kg, own_std) = of.as_ref()?;
+        let by = own_kg - kg;
+        let is_certain = by.abs() > CERTAIN * own_std.hypot(std_kg) && by.abs() > LEAST_OF_MASS * kg;
+        let sags = own_volts
+            .zip(*volts)
+            .is_some_and(|(own, other)| SAG.contains(&((own_kg / kg).ln() / (other / own).ln())));
+        (is_certain && !sags).then_some(by * to_scale)
     };
-    masses.iter().map(more).collect()
+    masses.iter().zip(voltages_v).map(|of| more(of).unwrap_or(0.0)).collect()
 }
 
 /// Effects that some flights of a vehicle may have and others not, as the flights alone name them, each once.
@@ -182,8 +230,7 @@ fn lacking(term: &EffectTerm) -> Lacking {
 /// Whether a flight tells that it has not an effect which another one has.
 fn lacks(term: &EffectTerm, flight: usize, each: &[Vec<FlightParameter>]) -> bool {
     let Some(&slot) = term.signature.amounts.first() else { return false };
-    let Some(name) = term.parameter(slot).map(|parameter| super::by_flight::named(term, parameter.name))
-    else {
+    let Some(name) = term.parameter(slot).map(|parameter| named(term, parameter.name)) else {
         return false;
     };
     let beyond = |flight: usize| {

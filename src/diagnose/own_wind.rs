@@ -5,9 +5,11 @@
 
 use super::acceptance::started;
 use super::base::Base;
-use super::explain::ExplainSettings;
+use super::explain::{ExplainSettings, explain};
+use super::explanation::Verdict;
 use super::fit::{Newton, fit};
 use super::score::test_winds;
+use super::signature::EffectTerm;
 use super::signatures::{ALL, CALM_M_S};
 use super::trace::Trace;
 use crate::recording::Stream;
@@ -19,6 +21,9 @@ use std::sync::Arc;
 /// A wind and its drag are believed from so many standard errors on. Set by judgement: a wind that is believed moves
 /// the frame of the whole flight, so that more is asked than of a name.
 const CERTAIN: f64 = 5.0;
+/// Standard deviations of the flown velocity from which on a wind is far from anything that was flown, and a drag alone no sufficient
+/// model of it: what the flight shows with all its effects is asked. Set by judgement.
+const FAR: f64 = 3.0;
 
 /// The steady wind along the ground, world, m/s, that a flight shows with a drag that it acts through; `None` where it shows none.
 #[must_use]
@@ -50,17 +55,36 @@ pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings
     let is_shown = certain[0].iter().all(|yes| *yes) && certain[1].iter().any(|yes| *yes);
     let is_dragged =
         fitted.base.effects[0].free.iter().all(|&slot| fitted.base.effects[0].values[slot] > 0.0);
-    (is_shown && is_dragged && wind.norm() > CALM_M_S).then_some(wind)
+    let wind = (is_shown && is_dragged && wind.norm() > CALM_M_S).then_some(wind)?;
+    if wind.norm() < FAR * spread_m_s(&traces[0]) {
+        Some(wind)
+    } else {
+        told_alone(signals, vehicle, settings)
+    }
+}
+
+/// The wind that a flight names by itself, with all else that it lacks beside it.
+fn told_alone(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings) -> Option<Vector3<f64>> {
+    let alone = explain(std::slice::from_ref(signals), vehicle, settings).ok()?;
+    let is_named = |term: &&EffectTerm| alone.named.iter().any(|named| named.id == term.id());
+    let mut terms = alone.search.after.base.effects.iter().filter(is_named);
+    let wind = terms.find(|term| term.signature.role.wind.is_some())?;
+    (alone.verdict != Verdict::Unexplained).then(|| Vector3::new(wind.values[0], wind.values[1], 0.0))
 }
 
 /// Whether the flight moves by more than the error of a velocity estimate: by less, the slope of a force on the airspeed comes out too
 /// small, with a standard error that is too small as well, and a wind, which is a force divided by that slope, too strong.
 pub(super) fn moves(trace: &Trace) -> bool {
+    spread_m_s(trace) > CALM_M_S
+}
+
+/// Standard deviation of the velocity, m/s.
+fn spread_m_s(trace: &Trace) -> f64 {
     let count = trace.centers.len().max(1) as f64;
     let along = || trace.centers.iter().map(|&center| trace.states[center].velocity_m_s);
     let mean = along().sum::<Vector3<f64>>() / count;
     let spread = along().map(|velocity| (velocity - mean).norm_squared()).sum::<f64>() / count;
-    spread.sqrt() > CALM_M_S
+    spread.sqrt()
 }
 
 /// The flight as seen with air that moves at `wind` (world, m/s).

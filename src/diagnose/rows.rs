@@ -276,7 +276,7 @@ impl Rows {
         let mut out = Channels::default();
         let readings = true_readings(recorded, base);
         for ((trace, model), along) in readings.iter().zip(&models).zip(&self.flights) {
-            append(&mut out, &residual(trace, base, model, along));
+            append(&mut out, &residual(trace, &base.on(&trace.own), model, along));
         }
         Ok(out)
     }

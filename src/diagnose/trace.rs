@@ -176,11 +176,6 @@ impl Trace {
         Ok(trace)
     }
 
-    /// The same flight with something else its own.
-    pub(super) fn with_own(&self, own: OwnOfFlight) -> Self {
-        Self { own, ..self.clone() }
-    }
-
     /// The same if only the measurements of force and momentum are needed; smoothed series stay as they were.
     pub(super) fn reading(
         &self,

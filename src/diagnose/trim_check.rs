@@ -159,7 +159,7 @@ mod tests {
             let [x, y, z] = lean.map(|lean| lean + noise);
             leg_of(number, [x + 0.5 * felt, y, z], [felt, 0.0], shares)
         };
-        Trim { each: vec![balance(&[(0..2 * LEAST_LEGS).map(leg).collect()])] }
+        Trim { each: vec![(balance(&[(0..2 * LEAST_LEGS).map(leg).collect()]), OwnOfFlight::default())] }
     }
 
     fn leg_of(number: usize, lean: [f64; AXES], felt: [f64; 2], shares: [f64; 4]) -> Leg {
@@ -186,7 +186,7 @@ mod tests {
         let whole = [0.25; 4];
         let airframe = Airframe::new(&base.vehicle).unwrap();
         let trim = hovering(&vehicle, whole, 0.0);
-        let hover = Hover { airframe: &airframe, arm_m: mean_arm_m(&vehicle), of: &trim.each[0] };
+        let hover = Hover { airframe: &airframe, arm_m: mean_arm_m(&vehicle), of: &trim.each[0].0 };
         assert!(hover.left(&base, &[]).norm() < 1e-3, "nothing is missing");
         assert_eq!(trim.refuted(&base).unwrap(), Some(0));
         let mut weak = whole;
@@ -194,7 +194,7 @@ mod tests {
         let sum: f64 = weak.iter().sum();
         let weak = weak.map(|share| share / sum);
         let trim = hovering(&vehicle, weak, 0.0);
-        let hover = Hover { airframe: &airframe, arm_m: mean_arm_m(&vehicle), of: &trim.each[0] };
+        let hover = Hover { airframe: &airframe, arm_m: mean_arm_m(&vehicle), of: &trim.each[0].0 };
         assert!(hover.left(&base, &[]).norm() > 0.01 && hover.left(&base, &[0]).norm() < 1e-3);
         assert_eq!(trim.refuted(&base).unwrap(), None);
         // the lean of a vehicle in the wind is no balance

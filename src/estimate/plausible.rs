@@ -156,6 +156,8 @@ pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<FlightApart> {
 /// estimate alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlightApart {
+    /// its place among the flights
+    pub flight: usize,
     /// the parameter that is furthest apart, in words
     found: String,
     /// mass over that of the first flight
@@ -169,6 +171,12 @@ impl FlightApart {
     #[must_use]
     pub fn told(&self) -> String {
         format!("{}: two vehicles or two loads? The common estimate describes neither", self.found)
+    }
+
+    /// Whether moments of inertia alone are apart, and the masses are not by more than a payload and a battery explain.
+    #[must_use]
+    pub fn is_by_moments(&self) -> bool {
+        self.by_moments && self.mass_factor.ln().abs() <= SCALE_FACTOR.ln()
     }
 
     /// Whether the flight is of another vehicle: its mass is apart by more than a payload and a battery explain, or its moments of
@@ -221,6 +229,7 @@ pub fn flights_apart(flights: &[Option<Estimated>]) -> Vec<FlightApart> {
         let unlike_mass =
             |index: usize| (theta[index] / first[index] / mass_factor - 1.0).abs() > share(index);
         Some(FlightApart {
+            flight: number,
             found: format!(
                 "flight {} alone gives {name} of {:.4} {unit}, flight 1 {:.4} {unit}, {sigma:.0} standard errors apart",
                 number + 1,

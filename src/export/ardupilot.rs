@@ -208,6 +208,9 @@ fn expo(law: ThrustLaw) -> f64 {
     }
 }
 
+/// Damping below which there is none, 1/s. Only words depend on it.
+const LEAST_DAMPING_1_S: f64 = 0.1;
+
 /// deg/s: the simulator damps with `400 deg / refRotRate` in 1/s, and does not where that is 0. Its drag at the hubs
 /// damps as well.
 fn reference_rate(source: &mut Source<'_>, drag: &RotorDrag, arms_m: &[Vector3<f64>]) -> f64 {
@@ -215,8 +218,15 @@ fn reference_rate(source: &mut Source<'_>, drag: &RotorDrag, arms_m: &[Vector3<f
     let of_simulator = damping(&Vector3::repeat(drag.across()), arms_m);
     let missing = own + damping(&drag.at_hubs, arms_m) - of_simulator;
     let rates = missing.component_div(&source.vehicle.body.inertia_kg_m2.diagonal());
-    let mean = rates.mean().max(0.0);
-    if rates.iter().any(|rate| (rate - mean).abs() > 0.05 * mean.max(0.1)) {
+    let mean = rates.mean();
+    if mean < -LEAST_DAMPING_1_S {
+        // its drag at the hubs cannot be less than all of it, and there is no damping below none
+        source.note(format!(
+            "all of the simulator's drag acts at its hubs, the model's in part only, and that damps the rotation more than in the model: \
+             by {:.3}, {:.3}, {:.3} 1/s about x, y, z. No refRotRate takes this away, so it is 0 (none)",
+            -rates.x, -rates.y, -rates.z
+        ));
+    } else if rates.iter().any(|rate| (rate - mean).abs() > 0.05 * mean.max(LEAST_DAMPING_1_S)) {
         source.note(format!(
             "the simulator damps all axes alike beside the drag at its hubs: refRotRate is from the mean of {:.3}, {:.3}, {:.3} 1/s",
             rates.x, rates.y, rates.z

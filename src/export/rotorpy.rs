@@ -17,7 +17,7 @@ const FORMAT: &str = "rotorpy";
 pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     let (coefficient, speed_max) = source.speeds(FORMAT)?;
     let count = source.vehicle.rotors.len() as f64;
-    let hover = source.hover_rad_s(FORMAT)?;
+    let hover = source.hover_rad_s(coefficient);
     let radius_m = source.vehicle.propulsion.rotor_radius_m;
     if radius_m.is_none() {
         source.note("the rotors' radius is not known; RotorPy uses it for drawing: 0.1 m");

@@ -18,7 +18,7 @@ const ROTOR_KG_M2: f64 = 1e-7;
 
 pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     let (coefficient, speed_max) = source.speeds(FORMAT)?;
-    let hover = source.hover_rad_s(FORMAT)?;
+    let hover = source.hover_rad_s(coefficient);
     let count = source.vehicle.rotors.len() as f64;
     let across = drag(&mut source);
     let lags_s = source.lags_s().unwrap_or((FAST_S, FAST_S));

@@ -6,7 +6,14 @@ use crate::physics::{ActiveEffect, Airframe, Parameter};
 use crate::text::compact;
 use crate::vehicle::{ThrustLaw, Vehicle};
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 use toml::Table;
+
+/// Static thrust coefficient of a usual propeller of small multirotors, `T / (rho n^2 D^4)`: 0.08 to 0.12 in the propeller database of the
+/// University of Illinois.
+const USUAL_THRUST_COEFFICIENT: f64 = 0.1;
+/// Density of the standard atmosphere at sea level, kg/m^3.
+const AIR_KG_M3: f64 = 1.225;
 
 /// Lag that is nearly none, s, for formats that need one.
 pub(super) const FAST_S: f64 = 0.001;
@@ -147,14 +154,12 @@ impl<'a> Source<'a> {
         self.vehicle.propulsion.thrust_from_command_n(1.0)
     }
 
-    /// N/(rad/s)^2 and rad/s at full command.
-    pub(super) fn speeds(&self, format: &'static str) -> Result<(f64, f64), ExportError> {
-        let missing = |what| ExportError::Missing { format, what };
-        let coefficient = self
-            .vehicle
-            .propulsion
-            .thrust_coefficient
-            .ok_or_else(|| missing("thrust_coefficient (thrust by rotor speed)"))?;
+    /// N/(rad/s)^2 and rad/s at full command. Where no rotor's speed is known they are those of a usual propeller, and that is told.
+    pub(super) fn speeds(&mut self, format: &'static str) -> Result<(f64, f64), ExportError> {
+        let coefficient = match self.vehicle.propulsion.thrust_coefficient {
+            Some(coefficient) => coefficient,
+            None => self.usual_coefficient(format)?,
+        };
         let speed_max = match self.vehicle.propulsion.law {
             ThrustLaw::Speed { speed_max_rad_s } => speed_max_rad_s,
             ThrustLaw::Curve { thrust_max_n, .. } => (thrust_max_n / coefficient).sqrt(),
@@ -162,10 +167,27 @@ impl<'a> Source<'a> {
         Ok((coefficient, speed_max))
     }
 
-    /// rad/s of each rotor at hover.
-    pub(super) fn hover_rad_s(&self, format: &'static str) -> Result<f64, ExportError> {
-        let (coefficient, _) = self.speeds(format)?;
-        Ok((self.airframe.hover_thrust_n / coefficient).sqrt())
+    /// rad/s of each rotor at hover, for this coefficient, N/(rad/s)^2.
+    pub(super) fn hover_rad_s(&self, coefficient: f64) -> f64 {
+        (self.airframe.hover_thrust_n / coefficient).sqrt()
+    }
+
+    /// N/(rad/s)^2 of a usual propeller of the rotors' radius: `T = C_T rho n^2 D^4`.
+    fn usual_coefficient(&mut self, format: &'static str) -> Result<f64, ExportError> {
+        let radius_m = self.vehicle.propulsion.rotor_radius_m.ok_or(ExportError::Missing {
+            format,
+            what: "rotor_radius, from which usual rotor speeds follow, or thrust_coefficient (thrust by rotor speed, from a rotor's \
+                   measured speed)",
+        })?;
+        let revolution = TAU * TAU;
+        let coefficient = USUAL_THRUST_COEFFICIENT * AIR_KG_M3 * (2.0 * radius_m).powi(4) / revolution;
+        self.note(format!(
+            "no rotor's speed is known: speeds are those of a usual propeller of {radius_m} m radius (C_T {USUAL_THRUST_COEFFICIENT}), {:.0} \
+             rad/s at hover. Thrust and torque are the model's at every command, and do not depend on them; measure a rotor's speed at hover \
+             and state thrust_coefficient in [propulsion] for true ones",
+            self.hover_rad_s(coefficient)
+        ));
+        Ok(coefficient)
     }
 
     /// Done: what was not taken is told, with what it costs.

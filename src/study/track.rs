@@ -25,6 +25,9 @@ const EFFECT: Spread = Spread { relative: 0.12, absolute: 0.0 };
 /// commands looks like damping. Between flights of unchanged vehicles in simulation, logged in different ways, it moved by up to 0.95 1/s
 /// on PX4 and up to 2 1/s on ArduCopter.
 const DAMPING: f64 = 1.0;
+/// Standard deviation of that between flights that are logged in different ways, as a share of [`DAMPING`]: about a third of the largest
+/// that was seen.
+const OF_LOG: f64 = 0.35;
 /// The same of a latency between command and rotor: its error holds what is not known of it, and the phase at which a log samples commands
 /// and motion, up to some ms, is beside it. Set by judgement.
 const OF_LATENCY: Spread = Spread { relative: 0.12, absolute: 0.005 };
@@ -153,6 +156,12 @@ impl Track {
         let by = std::mem::take(&mut self.spread.absolute);
         self.values.iter_mut().flatten().for_each(|(_, std)| *std = std.hypot(by));
         self
+    }
+
+    /// Adds to each flight's error that of a time error of its log, which goes its own way in logs of different kinds.
+    pub(super) fn add_error_of_log(&mut self) {
+        let std = OF_LOG * self.spread.absolute;
+        self.values.iter_mut().flatten().for_each(|(_, own)| *own = own.hypot(std));
     }
 
     /// The value of one flight alone. The standard error of what the flights have in common is as their scatter leaves it. What is each

@@ -1,7 +1,7 @@
 //! A model for other simulators: values by hand, and every file read back.
 
 use mavid::autopilot::Autopilot;
-use mavid::export::{Format, PLACES, aircraft_parameters, export, places};
+use mavid::export::{Exported, Format, PLACES, aircraft_parameters, export, places};
 use mavid::physics::ActiveEffect;
 use mavid::physics::effects::{ALL, by_id};
 use mavid::vehicle::{ThrustLaw, Vehicle};
@@ -260,8 +260,47 @@ fn what_a_simulator_cannot_be_is_said() {
     assert_ne!(turn(&self::vehicle()), turn(&mirrored));
     vehicle.propulsion.thrust_coefficient = None;
     vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 10.0, expo: 0.5 };
+    vehicle.propulsion.rotor_radius_m = None;
     let error = export(&vehicle, &[], None, Format::Rotorpy).unwrap_err();
     assert!(error.to_string().contains("thrust_coefficient"), "{error}");
+}
+
+#[test]
+fn without_a_measured_speed_rotors_turn_as_usual_propellers_and_lift_as_the_model_says() {
+    let mut vehicle = self::vehicle();
+    vehicle.propulsion.thrust_coefficient = None;
+    vehicle.propulsion.rotor_radius_m = Some(0.127);
+    vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 10.0, expo: 0.5 };
+    for format in [Format::Rotorpy, Format::Sdf] {
+        let exported = export(&vehicle, &[], None, format).unwrap();
+        let told = exported.left_out.iter().any(|note| note.contains("no rotor's speed is known"));
+        assert!(told, "{:?}", exported.left_out);
+    }
+    let text = export(&vehicle, &[], None, Format::Rotorpy).unwrap().text;
+    let number = |key: &str| -> f64 {
+        let (_, rest) = text.split_once(&format!("'{key}': ")).unwrap();
+        rest.split(',').next().unwrap().parse().unwrap()
+    };
+    // 0.1 rho D^4 / (2 pi)^2
+    assert!((number("k_eta") / 1.29155e-5 - 1.0).abs() < 1e-3, "{}", number("k_eta"));
+    let full_n = number("k_eta") * number("rotor_speed_max").powi(2);
+    assert!((full_n / 10.0 - 1.0).abs() < 1e-9, "{full_n}");
+}
+
+#[test]
+fn ardupilots_note_says_that_its_hubs_damp_more_than_the_model() {
+    let mut vehicle = self::vehicle();
+    vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 11.0, expo: 0.5 };
+    let drag = |at_hubs: f64| {
+        let effects = [effect("linear_drag", &[2.0, 2.0, 2.0, at_hubs])];
+        export(&vehicle, &effects, None, Format::ArdupilotSitl).unwrap()
+    };
+    let told = |exported: &Exported, words: &str| exported.left_out.iter().any(|note| note.contains(words));
+    let at_center = drag(0.0);
+    assert_eq!(frame(&at_center.text)["refRotRate"].as_f64().unwrap(), 0.0);
+    assert!(told(&at_center, "damps the rotation more than in the model"), "{:?}", at_center.left_out);
+    assert!(!told(&at_center, "refRotRate is from the mean"), "{:?}", at_center.left_out);
+    assert!(!told(&drag(1.0), "damps the rotation more"), "{:?}", drag(1.0).left_out);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! low-frequency power than a sensor's (red noise), gusts; and lack of fit for flights without a period.
 
 use super::super::channels::{AXES, Channels, SECOND};
-use super::super::fit::Fitted;
+use super::super::fit::{Fitted, evaluate};
 use super::super::followed::Followed;
 use super::super::measured_force::may_feel;
 use super::super::signature::EffectTerm;
@@ -16,6 +16,7 @@ use super::view::View;
 use crate::diagnose::materiality::{UNNAMED_SIDEWAYS, UNNAMED_TORQUE};
 use crate::stats::median;
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 /// A slow trend.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -145,8 +146,7 @@ const ELSEWHERE_S: f64 = 1.0;
 const STATE_P: f64 = 1e-6;
 
 /// Tests the residual of a fit.
-#[must_use]
-pub fn aperiodic(traces: &[Trace], fitted: &Fitted, located: &Localisation) -> Aperiodic {
+fn aperiodic(traces: &[Trace], fitted: &Fitted, located: &Localisation) -> Aperiodic {
     let Some(mut view) = View::new(traces, fitted) else { return Aperiodic::default() };
     quieten(&mut view, fitted);
     let redness: Vec<Redness> = red_quantities(&view)
@@ -159,6 +159,32 @@ pub fn aperiodic(traces: &[Trace], fitted: &Fitted, located: &Localisation) -> A
         state: state_lack(&view, fitted, (located, &redness)),
         redness,
     }
+}
+
+/// The same of several flights: what does not repeat shows in one of them by itself, with the sensors' errors that are its own. What only
+/// all of them together show is a difference between them.
+#[must_use]
+pub fn aperiodic_of_each(traces: &[Trace], fitted: &Fitted, located: &Localisation) -> Aperiodic {
+    let mut found = aperiodic(traces, fitted, located);
+    let is_red = found.gust.is_some() || found.redness.iter().any(|red| red.certain);
+    if traces.len() < 2 || !is_red {
+        return found;
+    }
+    let one = |trace: &Trace| {
+        let own = evaluate(std::slice::from_ref(trace), fitted.base.clone()).ok()?;
+        let mut view = View::new(std::slice::from_ref(trace), &own)?;
+        quieten(&mut view, &own);
+        let each = red_quantities(&view).into_iter();
+        let redness: Vec<Redness> =
+            each.filter_map(|(of, series)| redness(&view, &own, of, &series)).collect();
+        Some((gust(&view, &own, &redness).is_some(), redness))
+    };
+    let each: Vec<(bool, Vec<Redness>)> = traces.par_iter().filter_map(one).collect();
+    let shows =
+        |of: Quantity| each.iter().any(|(_, redness)| redness.iter().any(|red| red.of == of && red.certain));
+    found.gust = found.gust.filter(|_| each.iter().any(|(is_gust, _)| *is_gust));
+    found.redness.retain(|red| !red.certain || shows(red.of));
+    found
 }
 
 /// Standard error of a step of the mass, kg, if the force along body z drifts by itself: the effect of noise with long

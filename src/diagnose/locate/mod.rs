@@ -16,7 +16,9 @@ mod view;
 mod visits;
 
 pub use super::followed::Followed;
-pub use aperiodic::{Aperiodic, StateLack, StepBeside, Trend, aperiodic, mass_step_beside, mass_step_std_kg};
+pub use aperiodic::{
+    Aperiodic, StateLack, StepBeside, Trend, aperiodic_of_each, mass_step_beside, mass_step_std_kg,
+};
 pub use field::{FieldTest, Uneven, field_test};
 pub use frequency::{Band, Coherence};
 pub use gust::GustFound;

@@ -93,7 +93,14 @@ fn left_out(study: &ExplainStudy) -> String {
 fn in_flights(study: &ExplainStudy, effect: &Named) -> String {
     let sized = study.along.iter().flat_map(|along| &along.sized_by);
     let of = sized.into_iter().find(|(id, _)| *id == effect.id);
-    of.map_or_else(String::new, |(_, flights)| format!(" in {}", paths(study, flights)))
+    let Some((_, flights)) = of else { return String::new() };
+    let carried = study.along.iter().flat_map(|along| &along.carried_by).find(|(id, _)| *id == effect.id);
+    let others = carried.and_then(|(_, by)| by.as_deref()).unwrap_or_default();
+    let others: Vec<usize> = others.iter().copied().filter(|flight| !flights.contains(flight)).collect();
+    match others.as_slice() {
+        [] => format!(" in {}", paths(study, flights)),
+        others => format!(" in {}, another size in {}", paths(study, flights), paths(study, others)),
+    }
 }
 
 /// What single flights have alone, as a clause.
@@ -124,7 +131,8 @@ fn not_told_apart(study: &ExplainStudy) -> String {
     if pairs.is_empty() {
         return String::new();
     }
-    format!(" This flight cannot distinguish {}.", pairs.join(", nor "))
+    let these = if study.given.inputs.len() > 1 { "These flights" } else { "This flight" };
+    format!(" {these} cannot distinguish {}.", pairs.join(", nor "))
 }
 
 /// The prediction gain on data that were not used.
@@ -174,9 +182,10 @@ fn nothing(study: &ExplainStudy) -> String {
         let could =
             if seen.is_empty() { String::new() } else { format!("; it could show {}", list_or(&seen)) };
         return format!(
-            "Too little excitation: the vehicle hardly moves in this flight, so drag, damping, ground effect and \
+            "Too little excitation: the vehicle hardly moves in {}, so drag, damping, ground effect and \
              similar effects could not be detected at any usual size{could}, and none of this was found. Fly a \
-             trajectory that moves all axes (mavid plan).{other}"
+             trajectory that moves all axes (mavid plan).{other}",
+            study.these_flights()
         );
     }
     if let Some(refuted) = &study.refuted {
@@ -206,8 +215,10 @@ fn nothing(study: &ExplainStudy) -> String {
         ),
     };
     format!(
-        "Nothing is missing that this flight could show: the rigid body with its rotors explains it down to the \
-         noise{would}.{traces}{other}"
+        "Nothing is missing that {} could show: the rigid body with its rotors explains {} down to the \
+         noise{would}.{traces}{other}",
+        study.these_flights(),
+        if study.given.inputs.len() > 1 { "them" } else { "it" }
     )
 }
 

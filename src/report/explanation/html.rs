@@ -62,9 +62,11 @@ fn tags(study: &ExplainStudy) -> Vec<String> {
 
 fn found(study: &ExplainStudy) -> Markup {
     let heading = match study.verdict() {
-        Verdict::Unexplained => "What comes closest but does not explain it",
-        Verdict::NothingMissing => "What was left out: nothing that this flight could show",
-        Verdict::Explained | Verdict::PartlyExplained => "How much: what was left out",
+        Verdict::Unexplained => "What comes closest but does not explain it".to_owned(),
+        Verdict::NothingMissing => {
+            format!("What was left out: nothing that {} could show", study.these_flights())
+        }
+        Verdict::Explained | Verdict::PartlyExplained => "How much: what was left out".to_owned(),
     };
     let content = html! {
         @for named in study.effects.iter().chain(&study.closest) { (effect(study, named)) }
@@ -72,7 +74,7 @@ fn found(study: &ExplainStudy) -> Markup {
         @if let Some(term) = &study.empirical { (empirical(term)) }
         @if let Some(law) = &study.rate_law { (rate_law(law)) }
     };
-    section(heading, &content)
+    section(&heading, &content)
 }
 
 fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
@@ -96,7 +98,7 @@ fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
     let apart = |distinguishability: Option<f64>| {
         distinguishability.map_or_else(
             || "it explains nearly as much".to_owned(),
-            |apart| format!("{apart:.1} standard deviations apart in this flight"),
+            |apart| format!("{apart:.1} standard deviations apart in {}", study.these_flights()),
         )
     };
     html! {
@@ -268,7 +270,7 @@ fn limits(study: &ExplainStudy) -> Markup {
         })
         .collect();
     let content = table(
-        "The smallest size of each effect that this flight would have shown",
+        &format!("The smallest size of each effect that {} would have shown", study.these_flights()),
         &["effect", "identifier", "from"],
         &rows,
     );

@@ -67,9 +67,9 @@ fn effect_lines(page: &mut String, study: &ExplainStudy, effect: &Named) {
         significant(100.0 * strength.gain, 2)
     );
     for other in &effect.confusable_with {
-        let apart = other
-            .distinguishability
-            .map_or(String::new(), |apart| format!(": {apart:.1} standard deviations apart in this flight"));
+        let apart = other.distinguishability.map_or(String::new(), |apart| {
+            format!(": {apart:.1} standard deviations apart in {}", study.these_flights())
+        });
         let _ = writeln!(page, "    confusable with {} ({}){apart}", called(other.id), other.id);
     }
 }
@@ -231,7 +231,7 @@ fn limit_lines(page: &mut String, study: &ExplainStudy) {
     if study.explanation.limits.is_empty() {
         return;
     }
-    let _ = writeln!(page, "\n  what would have been named in this flight");
+    let _ = writeln!(page, "\n  what would have been named in {}", study.these_flights());
     for limit in study.explanation.limits.iter().filter(|limit| limit.is_possible()) {
         let _ = writeln!(
             page,

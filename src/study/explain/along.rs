@@ -3,16 +3,20 @@
 use super::along_flights::AlongFlights;
 use super::readers::for_readers;
 use super::result::ExplainStudy;
-use crate::diagnose::signature::Role;
+use crate::diagnose::Need;
+use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{
-    ExplainSettings, Named, Owner, Verdict, each_with_model_of_all, explain, own_of_flights, own_wind,
+    Apart, ExplainSettings, Named, Owner, Verdict, apart, each_with_model_of_all, explain, own_wind,
     relative_to_air,
 };
+use crate::note::{About, Note};
+use crate::recording::Quantity;
 use crate::signals::Signals;
 use crate::study::Track;
 use crate::study::flights::Prepared;
 use crate::study::track::CARRIES;
+use crate::text::significant;
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -31,15 +35,22 @@ pub(super) fn with_own_winds(flights: &mut Prepared, vehicle: &Vehicle) -> Vec<O
     found.into_iter().map(|wind| wind.map(|wind| [wind.x, wind.y])).collect()
 }
 
-/// Each flight with what it has its own: payload, and what one of them alone has or lacks.
-pub(super) fn with_own(flights: &mut Prepared, vehicle: &Vehicle) {
-    let own = own_of_flights(&flights.signals, vehicle, &ExplainSettings::default());
+/// Each flight with what it has its own: payload, and what one of them alone has or lacks. Returns what each shows alone, where the flights
+/// are not alike.
+pub(super) fn with_own(flights: &mut Prepared, vehicle: &Vehicle) -> Vec<Vec<Named>> {
+    let Apart { own, alone } = apart(&flights.signals, vehicle, &ExplainSettings::default());
     flights.signals.iter_mut().zip(own).for_each(|(signals, own)| signals.own = own);
+    alone
 }
 
 impl ExplainStudy {
     /// Fits each flight alone to the model of all.
-    pub(super) fn tell_along(&mut self, flights: &[Signals], mut winds_m_s: Vec<Option<[f64; 2]>>) {
+    pub(super) fn tell_along(
+        &mut self,
+        flights: &[Signals],
+        mut winds_m_s: Vec<Option<[f64; 2]>>,
+        alone: &[Vec<Named>],
+    ) {
         let (vehicle, settings) = (&self.given.vehicle, &self.given.settings);
         let drifts: Vec<bool> = winds_m_s.iter().map(Option::is_some).collect();
         let each = each_with_model_of_all(flights, &drifts, &self.explanation, (vehicle, settings));
@@ -68,6 +79,9 @@ impl ExplainStudy {
             .iter()
             .filter_map(|(id, carriers)| Some((*id, sized_by(id, carriers.as_deref()?, &tracks)?)))
             .collect();
+        if logged_apart(flights) {
+            tracks.iter_mut().for_each(Track::add_error_of_log);
+        }
         // one value of a parameter: in the names and in the model that of the flights together
         let value = |track: &Track| {
             let by = sized_by.iter().find(|(id, _)| track.effect == Some(id)).map(|(_, flights)| flights);
@@ -81,35 +95,72 @@ impl ExplainStudy {
             tracks.iter().filter_map(|track| Some((track.name.as_str(), value(track)?))).collect();
         self.explanation = self.explanation.with_common(&common);
         self.effects = for_readers(&self.explanation.named);
-        let of_one_flight = self.names_of_one_flight(flights, !sized_by.is_empty());
+        for (signals, input) in flights.iter().zip(&self.given.inputs) {
+            let kg = signals.own.payload_kg;
+            if kg != 0.0 {
+                let text = format!(
+                    "it flew with {} kg {} than the others: load and mass are each flight's own, and the model has the mass without that",
+                    significant(kg.abs(), 2),
+                    if kg > 0.0 { "more" } else { "less" }
+                );
+                self.notes.push(Note::remark(About::File(input.path.clone()), text));
+            }
+        }
+        let of_one_flight = self.names_of_one_flight(flights, alone, !sized_by.is_empty());
         self.along = Some(AlongFlights { tracks, winds_m_s, carried_by, sized_by, of_one_flight });
     }
 
     /// What flights have alone where something tells that they are not alike: a part of them only carries a name, or a force is left that
     /// wanders.
-    fn names_of_one_flight(&self, flights: &[Signals], differ: bool) -> Vec<(usize, Named)> {
-        if !differ && self.explanation.aperiodic.wandering().next().is_none() {
+    fn names_of_one_flight(
+        &self,
+        flights: &[Signals],
+        alone: &[Vec<Named>],
+        differ: bool,
+    ) -> Vec<(usize, Named)> {
+        if alone.is_empty() && !differ && self.explanation.aperiodic.wandering().next().is_none() {
             return Vec::new();
         }
         let (vehicle, settings) = (&self.given.vehicle, &self.given.settings);
-        let of = |(place, signals): (usize, &Signals)| -> Vec<(usize, Named)> {
-            let alone = explain(std::slice::from_ref(signals), vehicle, settings);
-            let found = alone.ok().filter(|alone| alone.verdict != Verdict::Unexplained);
-            let is_new = |named: &Named| {
-                let known = self.explanation.named.iter().any(|known| known.id == named.id);
-                !known && signature_of(named.id).is_some_and(|of| is_of_one_flight(&of.role))
-            };
-            let names = found.map_or_else(Vec::new, |found| found.named);
-            names.into_iter().filter(is_new).map(|named| (place, named)).collect()
+        let explained = |signals: &Signals| {
+            let alone = explain(std::slice::from_ref(signals), vehicle, settings).ok();
+            let found = alone.filter(|alone| alone.verdict != Verdict::Unexplained);
+            found.map_or_else(Vec::new, |found| found.named)
         };
-        flights.par_iter().enumerate().flat_map_iter(of).collect()
+        let each: Vec<Vec<Named>> =
+            if alone.is_empty() { flights.par_iter().map(explained).collect() } else { alone.to_vec() };
+        let is_new = |named: &Named| {
+            let known = self.explanation.named.iter().any(|known| known.id == named.id);
+            let is_of_one = |of: &Signature| is_of_one_flight(of);
+            !known && !settings.refused.contains(&named.id) && signature_of(named.id).is_some_and(is_of_one)
+        };
+        let of = |(place, names): (usize, Vec<Named>)| {
+            names.into_iter().filter(is_new).map(move |named| (place, named)).collect::<Vec<_>>()
+        };
+        each.into_iter().enumerate().flat_map(of).collect()
     }
+}
+
+/// Ratio of the periods of commands from which on flights are logged in different ways.
+const APART: f64 = 1.5;
+
+/// Whether flights are logged in different ways: their commands come at other rates.
+fn logged_apart(flights: &[Signals]) -> bool {
+    let period_s =
+        |signals: &Signals| signals.grid.step_s * signals.samples_apart(Quantity::ActuatorCommand) as f64;
+    let (least, most) = flights
+        .iter()
+        .map(period_s)
+        .fold((f64::INFINITY, 0.0_f64), |(least, most), period_s| (least.min(period_s), most.max(period_s)));
+    most > APART * least
 }
 
 /// Whether one flight of a vehicle may have an effect and the others not. What acts on the vehicle in every flight is told by all of them
 /// together, and a substitute of it that one flight has alone is no name.
-fn is_of_one_flight(role: &Role) -> bool {
-    role.moment.is_some() || role.hangs_below || role.of_the_loading || role.which.is_some()
+fn is_of_one_flight(signature: &Signature) -> bool {
+    let role = &signature.role;
+    let by_voltage = signature.needs.contains(&Need::Voltage);
+    by_voltage || role.moment.is_some() || role.hangs_below || role.of_the_loading || role.which.is_some()
 }
 
 /// The flights that tell the size of a name that differs between the flights: of what is each flight's own the one that shows it the

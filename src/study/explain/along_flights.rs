@@ -1,7 +1,9 @@
 //! What several flights have in common, and what is each one's own.
 
 use crate::diagnose::{Named, Owner};
+use crate::estimate::NAMES;
 use crate::study::Track;
+use crate::study::track::CARRIES;
 
 /// What several flights have in common, and what is each one's own.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +43,24 @@ impl AlongFlights {
             Some(_) => track.values.get(flight).copied().flatten(),
             None => track.alone(flight),
         }
+    }
+
+    /// Whether a flight, fitted with the effects that were found, has the moments of inertia of the first one within their errors.
+    pub(super) fn has_inertia_of_first(&self, flight: usize) -> bool {
+        let mut moments = self
+            .tracks
+            .iter()
+            .filter(|track| {
+                track.effect.is_none() && [1, 4, 6].iter().any(|index| track.name == NAMES[*index])
+            })
+            .peekable();
+        let is_alike = |track: &Track| {
+            let of = |flight: usize| track.values.get(flight).copied().flatten();
+            of(0)
+                .zip(of(flight))
+                .is_some_and(|(first, own)| (own.0 - first.0).abs() <= CARRIES * own.1.hypot(first.1))
+        };
+        moments.peek().is_some() && moments.all(is_alike)
     }
 
     /// The flights that the size of a parameter's effect is of, where it differs between them.

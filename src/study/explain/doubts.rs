@@ -67,6 +67,9 @@ impl ExplainStudy {
 
     /// Notes on flights that the rigid body alone tells from the first one.
     pub(super) fn tell_flights_apart(&mut self) {
+        let along = self.along.as_ref();
+        let alike = |flight: usize| along.is_some_and(|along| along.has_inertia_of_first(flight));
+        self.given.contradicting.retain(|apart| !(apart.is_by_moments() && alike(apart.flight)));
         let thrust_differs = self.names_thrust();
         let apart = self.given.contradicting.iter().map(|flight| flight.note(thrust_differs));
         self.notes.extend(apart);

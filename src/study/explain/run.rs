@@ -11,7 +11,7 @@ use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::diagnose::holdout::HoldoutSettings;
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, TorqueLaw, Trace, Verdict};
+use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, Named, TorqueLaw, Trace, Verdict};
 use crate::estimate::{
     Contradiction, contradicting_flights, inertia_by_wider_window, moved_by_guessed_curve,
 };
@@ -78,8 +78,8 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let winds_m_s = if several { with_own_winds(&mut flights, &vehicle) } else { Vec::new() };
     if several {
         with_own_winds(&mut held, &vehicle);
-        with_own(&mut flights, &vehicle);
     }
+    let alone = if several { with_own(&mut flights, &vehicle) } else { Vec::new() };
     let whole = flights.signals.last().cloned();
     let (shown_on, back) = match (held.is_empty(), several) {
         (true, true) => (ValidationData::LeftOut { flights: flights.signals.len() }, None),
@@ -88,7 +88,8 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     };
     notes.extend(other_settings(&flights.recordings));
     notes.extend(of_data(&flights, &held));
-    let task = Task { request, vehicle: &vehicle, notes: &notes, winds_m_s: &winds_m_s, progress };
+    let task =
+        Task { request, vehicle: &vehicle, notes: &notes, winds_m_s: &winds_m_s, alone: &alone, progress };
     progress.stage(Stage::Explaining);
     let mut study = task.explained(&flights, (&held, back.as_ref(), shown_on))?;
     // what changed in the part held back, or shortly before it, is nowhere in the part explained
@@ -119,6 +120,8 @@ struct Task<'a> {
     notes: &'a [Note],
     /// of each flight, where they are several
     winds_m_s: &'a [Option<[f64; 2]>],
+    /// of each flight, where they are several and not alike
+    alone: &'a [Vec<Named>],
     progress: &'a dyn Progress,
 }
 
@@ -166,13 +169,17 @@ impl Task<'_> {
     }
 
     fn given(&self, flights: &Prepared, settings: ExplainSettings) -> Given {
+        // what a flight has its own is known, and no doubt
+        let own = |flight: usize| flights.signals.get(flight).is_some_and(|signals| !signals.own.is_none());
+        let mut contradicting = contradicting_flights(&flights.signals, self.vehicle);
+        contradicting.retain(|apart| !own(apart.flight) && !own(0));
         Given {
             vehicle: self.vehicle.clone(),
             inputs: flights.inputs.clone(),
             quality: flights.signals.iter().map(|signals| signals.quality.clone()).collect(),
             inertia_by_wider_window: inertia_by_wider_window(&flights.signals, self.vehicle),
             by_guessed_curve: moved_by_guessed_curve(&flights.signals, self.vehicle),
-            contradicting: contradicting_flights(&flights.signals, self.vehicle),
+            contradicting,
             settings,
             transient_s: self.request.transient_s,
         }
@@ -193,11 +200,11 @@ impl Task<'_> {
         study.tell_mass();
         study.notes.extend(study.explanation.torque_law.iter().map(TorqueLaw::note));
         study.notes.extend(study.gyroscopic().iter().map(GyroscopicShare::note));
-        study.tell_flights_apart();
         study.tell_wandering();
         if flights.signals.len() > 1 {
-            study.tell_along(&flights.signals, self.winds_m_s.to_vec());
+            study.tell_along(&flights.signals, self.winds_m_s.to_vec(), self.alone);
         }
+        study.tell_flights_apart();
         study.evaluate_explained(flights);
         if let ValidationData::LeftOut { .. } = shown_on {
             study.evaluate_left_out(flights);

@@ -33,6 +33,7 @@ impl ValidationData {
         match self {
             Self::Flights(_) => "the hold-out",
             Self::HeldBack { .. } => "the part of the flight held back",
+            Self::LeftOut { flights: 1 } => "the one flight that the others predict",
             Self::LeftOut { .. } => "each flight by models of the others",
             Self::Nothing { .. } => "nothing",
         }
