@@ -1,7 +1,9 @@
 //! What the motion of each flight says of the vehicle's parameters.
 
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{ExplainSettings, Explanation, FlightParameter, Named, brief, by_flight, explain};
+use crate::diagnose::{
+    ExplainSettings, Explanation, FlightParameter, LATENCY, Named, brief, by_flight, explain,
+};
 use crate::note::{About, Note};
 use crate::signals::Signals;
 use crate::study::{InputFile, Progress, Track};
@@ -43,7 +45,11 @@ pub(super) fn motion(
     let each = by_flight(&used, &explanations, vehicle, &settings);
     let compared = |parameters: Vec<FlightParameter>| parameters.into_iter().filter(is_compared).collect();
     let each = places.into_iter().zip(each.into_iter().map(compared)).collect();
-    let tracks: Vec<Track> = Track::all(each, signals.len(), vehicle);
+    let mut tracks: Vec<Track> = Track::all(each, signals.len(), vehicle);
+    for track in tracks.iter_mut().filter(|track| track.name == LATENCY) {
+        let all = track.clone();
+        track.values.iter_mut().for_each(|of| *of = of.filter(|value| all.is_determined(*value)));
+    }
     let paths = inputs.iter().zip(&explained).filter(|(_, of)| of.is_ok()).map(|(input, _)| &*input.path);
     let of_each: Vec<(&str, &Explanation)> = paths.zip(explanations).collect();
     let notes = curve(&tracks).into_iter().chain(of_some_flights(&of_each, vehicle)).collect();
