@@ -1,6 +1,6 @@
 //! Whether the balance of a vehicle moved between two groups of flights, and what accounts for it.
 
-use super::explanation::{Account, Explanation, What, explanations, factor, lean, rotor_and_centre};
+use super::explanation::{Account, Explanation, What, explanations, factor, lean, other_rotor_and_load};
 use super::groups::{Groups, Moved};
 use crate::trim::{AXES, Balance};
 use crate::vehicle::Vehicle;
@@ -17,7 +17,7 @@ const FITS: f64 = 12.0;
 /// amounts, where a rotor accounts as well; false names are measured by `cargo bench --bench blind -- --vehicles
 /// --compared 40 --seed 9101`.
 const PRICE: f64 = 5.0;
-/// Amounts of a rotor and a centre of mass together.
+/// Amounts of a rotor and a load that sits elsewhere together.
 const OF_BOTH: f64 = 3.0;
 /// An explanation that costs so much more than the best is told apart: one of twenty odds, twice the logarithm.
 const APART: f64 = 6.0;
@@ -53,7 +53,7 @@ pub struct BalanceChange {
 /// A change of the balance and its cause.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BalanceFound {
-    /// the most likely; `None`: nothing known accounts for it alone, or a rotor and a centre of mass together do nearly as well
+    /// the most likely; `None`: nothing known accounts for it alone, or another rotor and a load together do nearly as well
     pub what: Option<What>,
     /// of a rotor: thrust for the same command over that before, which is 1 without an error
     pub factor: Option<Moved>,
@@ -145,9 +145,11 @@ fn found(
     }
     let is_near = |(account, other): &&(Account, f64)| *other < cost + APART && account.left <= FITS;
     let mut near: Vec<What> = accounts.iter().filter(is_near).map(|(account, _)| account.what).collect();
-    // a rotor and a centre of mass have two amounts more than a rotor
-    let of_both = rotor_and_centre(by, variances) + OF_BOTH * PRICE;
-    let is_either = matches!(best.what, What::Rotor(_)) && of_both < cost + APART;
+    // a rotor and a load have two amounts more than a rotor
+    let load = 2.0 * LOADED * LOADED * NAMED;
+    let of_both = other_rotor_and_load(known, best.what, (by, variances), load);
+    let is_either = matches!(best.what, What::Rotor(_))
+        && of_both.is_some_and(|other| other + OF_BOTH * PRICE < cost + APART);
     let fits = best.left <= FITS && !is_either;
     // where a battery or a load sits is the flight's own
     if (best.what == What::CentreOfMass || !fits) && beyond_load < NAMED {

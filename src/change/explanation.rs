@@ -94,10 +94,21 @@ impl Explanation {
     }
 }
 
-/// Cost of a rotor and a centre of mass that changed together, as [`Account::cost`]: the centre of mass takes what is along x and y, the
-/// rotor what is about the vertical, whichever rotor it is.
-pub(super) fn rotor_and_centre(moved: &Vector3<f64>, variances: &Vector3<f64>) -> f64 {
-    (1.0 + (TORQUE_SPREAD * moved.z).powi(2) / variances.z).ln()
+/// Least cost of another rotor than `named` together with a load that sits elsewhere, as [`Account::cost`]: the rotor takes what is about the
+/// vertical, the load the rest along x and y, where its square is less than `most` arms^2. `None`: no load does.
+pub(super) fn other_rotor_and_load(
+    known: &[Explanation],
+    named: What,
+    (moved, variances): (&Vector3<f64>, &Vector3<f64>),
+    most: f64,
+) -> Option<f64> {
+    let is_enough = |other: &&Explanation| {
+        let (What::Rotor(_), [pull]) = (other.what, other.directions.as_slice()) else { return false };
+        let load = moved - moved.z / pull.z * pull;
+        other.what != named && load.norm_squared() < most
+    };
+    let widened = 1.0 + (TORQUE_SPREAD * moved.z).powi(2) / variances.z;
+    known.iter().any(|other| is_enough(&other)).then(|| widened.ln())
 }
 
 /// The factor of a rotor's thrust that an amount means, with its standard error: the rotor takes a larger share of the commands.

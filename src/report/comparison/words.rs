@@ -150,8 +150,8 @@ fn balance_sentence(study: &CompareStudy, alone: &[What]) -> String {
             .to_owned();
     }
     format!(
-        "the balance of the vehicle moved: {} alone would account for it, and a rotor together with a centre of mass or a load nearly as \
-         well",
+        "the balance of the vehicle moved: {} alone would account for it, and another rotor together with a load or a centre of mass nearly \
+         as well",
         names.join(" or ")
     )
 }
