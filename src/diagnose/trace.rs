@@ -60,8 +60,7 @@ pub struct Trace {
     jitter: Option<Series<Vector4<f64>>>,
     /// N, thrust of one rotor at u = 1
     full_thrust_n: f64,
-    /// zero-phase low-pass of body rates, rad/s; the next two are their derivative, rad/s^2, and the specific force
-    /// along z, m/s^2
+    /// zero-phase low-pass of body rates, rad/s; the next two are their derivative, rad/s^2, and the specific force along z, m/s^2
     smooth_rate: Series<Vector3<f64>>,
     smooth_turning: Series<Vector3<f64>>,
     smooth_lift: Series<f64>,
@@ -247,8 +246,7 @@ impl Trace {
         &self.weak_motion().specific_force
     }
 
-    /// For each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2, of a body on which this share of the
-    /// gyroscopic torque acts.
+    /// For each entry of the inertia (xx xy xz yy yz zz): torque rows per kg m^2, of a body with this share of the gyroscopic torque.
     pub(super) fn momentum(&self, gyroscopic: f64) -> Cow<'_, MomentumRows> {
         self.weak_motion().momentum.with_share(gyroscopic)
     }
