@@ -63,6 +63,11 @@ impl Agreement {
         (self.held_out - self.identified) / self.identified
     }
 
+    /// A difference of mass alone that a payload makes.
+    fn is_by_a_load(&self) -> bool {
+        self.name == NAMES[0] && self.share().abs() < PAYLOAD_SHARE
+    }
+
     /// Whether they differ significantly, and by more than flights of one vehicle do.
     fn differs(&self) -> bool {
         let Some(Relevance { share, amount }) = self.relevance else { return false };
@@ -72,6 +77,8 @@ impl Agreement {
     }
 }
 
+/// Largest share of the mass that a payload is, with which a multirotor still flies well.
+const PAYLOAD_SHARE: f64 = 0.5;
 /// Standard errors beyond which a difference between flights is certain. Set by judgement: twice what a name needs,
 /// because a false word takes the whole hold-out away.
 const SIGMAS: f64 = 8.0;
@@ -121,7 +128,10 @@ pub(super) fn judged(
             (ratio > RESIDUAL_RATIO).then_some((channel, ratio))
         })
         .collect();
-    let different: Vec<&Agreement> = all.iter().filter(|agreement| agreement.differs()).collect();
+    // of flights that are explained together, the load is each one's own
+    let loaded = |agreement: &Agreement| !is_one_model && agreement.is_by_a_load();
+    let different: Vec<&Agreement> =
+        all.iter().filter(|agreement| agreement.differs() && !loaded(agreement)).collect();
     let worst = jumps.iter().max_by(|a, b| a.1.total_cmp(&b.1));
     let whose = if same_flight {
         "something changed in the part of the flight that was held back"
@@ -172,10 +182,11 @@ pub fn differing(
             identified_std: first.held_out_std,
             ..own
         });
-        let different: Vec<String> = pairs.filter(Agreement::differs).map(|pair| described(&pair)).collect();
+        let differs = |pair: &Agreement| pair.differs() && !pair.is_by_a_load();
+        let different: Vec<String> = pairs.filter(differs).map(|pair| described(&pair)).collect();
         if !different.is_empty() {
             return Ok(Some(format!(
-                "{} and {} differ by more than flights of one vehicle do (another vehicle, load or battery), so the \
+                "{} and {} differ by more than flights of one vehicle do (another vehicle or battery), so the \
                  explanation may be valid for neither: {}",
                 flights[0].name,
                 flight.name,
