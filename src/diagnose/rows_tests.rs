@@ -25,6 +25,7 @@ pub(in super::super) fn rows_of(
         nuisances,
         effects,
         compares_torques: true,
+        torque_std: 0.0,
         torque_rms: [1.0; 3],
         flights: Vec::new(),
         known_motion: None,

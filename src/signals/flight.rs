@@ -163,6 +163,7 @@ mod tests {
             battery_voltage_v: None,
             as_recorded: AsRecorded::default(),
             reference: None,
+            own: OwnOfFlight::default(),
             quality: Quality {
                 sources: vec![(Quantity::AngularRate, "by hand", rate_hz)],
                 thrust_source: ThrustSource::Command,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use mavid::physics::effects::LinearDrag;
 use mavid::reconstruction::{Fit, KnownLag, STATE, State, Term, fit, force_problem};
 use mavid::recording::{Quantity, Stream};
-use mavid::signals::{AsRecorded, Grid, Quality, Series, Signals, ThrustSource, Usable};
+use mavid::signals::{AsRecorded, Grid, OwnOfFlight, Quality, Series, Signals, ThrustSource, Usable};
 use mavid::simulate::random_vehicle;
 use mavid::vehicle::Vehicle;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3, Vector4};
@@ -104,6 +104,7 @@ fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
         jitter_wrench: None,
         battery_voltage_v: None,
         reference: None,
+        own: OwnOfFlight::default(),
         quality: Quality {
             sources: vec![(Quantity::ActuatorCommand, "by hand", 1.0 / STEP_S)],
             thrust_source: ThrustSource::Command,

@@ -267,7 +267,7 @@ fn what_a_simulator_cannot_be_is_said() {
 
 #[test]
 fn without_a_measured_speed_rotors_turn_as_usual_propellers_and_lift_as_the_model_says() {
-    let mut vehicle = self::vehicle();
+    let mut vehicle = vehicle();
     vehicle.propulsion.thrust_coefficient = None;
     vehicle.propulsion.rotor_radius_m = Some(0.127);
     vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 10.0, expo: 0.5 };
@@ -289,7 +289,7 @@ fn without_a_measured_speed_rotors_turn_as_usual_propellers_and_lift_as_the_mode
 
 #[test]
 fn ardupilots_note_says_that_its_hubs_damp_more_than_the_model() {
-    let mut vehicle = self::vehicle();
+    let mut vehicle = vehicle();
     vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 11.0, expo: 0.5 };
     let drag = |at_hubs: f64| {
         let effects = [effect("linear_drag", &[2.0, 2.0, 2.0, at_hubs])];
