@@ -28,15 +28,19 @@ use std::sync::Arc;
 /// mean over more.
 pub const WEAK_HALF_WIDTH_S: f64 = 0.2;
 
-/// Least and largest step of the grid, s. Faster streams are averaged over a step: the weak form passes motion up to 5 Hz,
-/// which the least step samples twenty times a period, and each instant costs the same.
-const STEP_S: (f64, f64) = (0.01, 0.02);
+/// Least and largest step of the grid, s.
+const STEP_S: (f64, f64) = (0.002, 0.02);
+/// Least step of the grid for effects, s. The weak form passes motion up to 5 Hz, which this samples twenty times a period, and each instant
+/// costs the same.
+pub const STEP_FOR_EFFECTS_S: f64 = 0.01;
 
 /// Settings of the conditioning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConditionSettings {
     /// s between grid instants; `None`: the period of the fastest inertial stream, 2 to 20 ms
     pub step_s: Option<f64>,
+    /// least step where none is given, s: streams that are faster are averaged over a step
+    pub least_step_s: f64,
     /// time left out at the beginning of the flight, s; `None`: 10 s as in the paper, at most a fifth of the flight
     pub transient_s: Option<f64>,
     /// s, half width of the weak form's kernel
@@ -51,6 +55,7 @@ impl Default for ConditionSettings {
     fn default() -> Self {
         Self {
             step_s: None,
+            least_step_s: STEP_S.0,
             transient_s: None,
             weak_half_width_s: WEAK_HALF_WIDTH_S,
             thrust: ThrustPreference::Measured,
@@ -286,7 +291,7 @@ fn step(
     if !period.is_finite() {
         return Err(SignalsError::NoMotion);
     }
-    Ok(period.clamp(STEP_S.0, STEP_S.1))
+    Ok(period.clamp(settings.least_step_s.min(STEP_S.1), STEP_S.1))
 }
 
 /// The error if no stream of motion can be used.

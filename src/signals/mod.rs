@@ -43,7 +43,7 @@ pub use align::StreamOffset;
 pub use changed::{
     adopt_in_flight_parameters, changes_in_the_air, in_flight_parameters, other_settings, resting_on_defaults,
 };
-pub use condition::{ConditionSettings, WEAK_HALF_WIDTH_S, condition, stride};
+pub use condition::{ConditionSettings, STEP_FOR_EFFECTS_S, WEAK_HALF_WIDTH_S, condition, stride};
 pub use error::SignalsError;
 pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};
 pub use flight::{AsRecorded, Quality, Reference, Series, Signals};

@@ -304,7 +304,7 @@ mod tests {
     fn turning(tilt_hz: f64) -> Stream {
         let time_s: Vec<f64> = (0..1000).map(|index| 0.02 * f64::from(index)).collect();
         let of = |time_s: &f64| {
-            let tilt = 0.05 * (std::f64::consts::TAU * tilt_hz * time_s).sin();
+            let tilt = 0.03 * (std::f64::consts::TAU * tilt_hz * time_s).sin();
             let attitude = UnitQuaternion::from_euler_angles(tilt, 0.0, 0.157 * time_s);
             [attitude.w, attitude.i, attitude.j, attitude.k]
         };

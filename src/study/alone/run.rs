@@ -9,7 +9,7 @@ use crate::inspect::inspect;
 use crate::log::{self, OpenOptions};
 use crate::note::{About, Note};
 use crate::recording::{Event, Recording};
-use crate::signals::{ConditionSettings, Signals, ThrustPreference};
+use crate::signals::{ConditionSettings, STEP_FOR_EFFECTS_S, Signals, ThrustPreference};
 use crate::study::compare::{UNKNOWN, is_compared, power_w};
 use crate::study::flight::Flight;
 use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare};
@@ -98,6 +98,7 @@ fn flights(
     let settings = ConditionSettings {
         transient_s: Some(CompareRequest::TRANSIENT_S),
         thrust: ThrustPreference::Commands,
+        least_step_s: STEP_FOR_EFFECTS_S,
         ..ConditionSettings::default()
     };
     let off_mixer = log.iter().flatten().any(|flight: &Flight| !flight.off_mixer.is_empty());

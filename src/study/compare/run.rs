@@ -11,7 +11,9 @@ use crate::draft::Given;
 use crate::estimate::{Contradiction, NAMES, stated};
 use crate::note::{About, Note, said_once};
 use crate::recording::{Quantity, Recording};
-use crate::signals::{ConditionSettings, Signals, ThrustPreference, best, other_settings};
+use crate::signals::{
+    ConditionSettings, STEP_FOR_EFFECTS_S, Signals, ThrustPreference, best, other_settings,
+};
 use crate::study::flight::Flight;
 use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins};
 use crate::study::one_vehicle::{doubt_one_vehicle, refuse_others};
@@ -67,6 +69,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let settings = ConditionSettings {
         transient_s: Some(request.transient_s),
         thrust: ThrustPreference::Commands,
+        least_step_s: STEP_FOR_EFFECTS_S,
         ..ConditionSettings::default()
     };
     let mut flights = prepare(before, (&vehicle, &origin), &settings).map_err(or_unflown)?;

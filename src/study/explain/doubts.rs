@@ -65,6 +65,12 @@ impl ExplainStudy {
         self.effects.iter().any(|named| signature_of(named.id).is_some_and(Signature::alters_thrust))
     }
 
+    /// Words for the flights that were explained.
+    #[must_use]
+    pub fn these_flights(&self) -> &'static str {
+        if self.given.inputs.len() > 1 { "these flights" } else { "this flight" }
+    }
+
     /// Notes on flights that the rigid body alone tells from the first one.
     pub(super) fn tell_flights_apart(&mut self) {
         let along = self.along.as_ref();

@@ -1,6 +1,5 @@
 //! Merges or splits effects for the report: an isotropic drag is one entry.
 
-use super::result::ExplainStudy;
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::{ALL, signature_of};
 use crate::diagnose::{Named, NamedParameter, Strength};
@@ -12,14 +11,6 @@ const ISOTROPIC: f64 = 0.35;
 /// Drag along the rotor axis exceeds that across it beyond this many standard errors. Only words depend on it: one
 /// drag, or drag and thrust that falls with climb; the model is the same.
 const TOLD_APART: f64 = 4.0;
-
-impl ExplainStudy {
-    /// Words for the flights that were explained.
-    #[must_use]
-    pub fn these_flights(&self) -> &'static str {
-        if self.given.inputs.len() > 1 { "these flights" } else { "this flight" }
-    }
-}
 
 /// One drag where the search found it in two pieces: drag across the rotor axis, and thrust that falls with
 /// climb, which is the same law along the axis. Both where the search found them in one, and the part along the axis is more

@@ -16,7 +16,7 @@ use crate::estimate::{
     Contradiction, contradicting_flights, inertia_by_wider_window, moved_by_guessed_curve,
 };
 use crate::note::{About, Note, said_once};
-use crate::signals::{ConditionSettings, Signals, ThrustPreference, other_settings};
+use crate::signals::{ConditionSettings, STEP_FOR_EFFECTS_S, Signals, ThrustPreference, other_settings};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, names, prepare, refuse_off_mixer, refuse_twins};
 use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::unflown::unflown_first;
@@ -68,6 +68,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let settings = ConditionSettings {
         transient_s: Some(request.transient_s),
         thrust: ThrustPreference::BestSampled,
+        least_step_s: STEP_FOR_EFFECTS_S,
         ..ConditionSettings::default()
     };
     let mut flights = prepare(logs, (&vehicle, &origin), &settings).map_err(or_unflown)?;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::diagnose::joint::RequestedEffects;
 use crate::estimate::{IdentifySettings, PAPER_SIGMA};
-use crate::signals::{ConditionSettings, ThrustPreference};
+use crate::signals::{ConditionSettings, STEP_FOR_EFFECTS_S, ThrustPreference};
 use crate::study::explain::check_transient;
 use crate::study::{ExplainRequest, ReadSettings, StudyError, VehicleGiven};
 
@@ -101,6 +101,7 @@ impl IdentifyRequest {
         ConditionSettings {
             transient_s: Some(self.transient_s.unwrap_or(ExplainRequest::TRANSIENT_S)),
             thrust: best,
+            least_step_s: STEP_FOR_EFFECTS_S,
             ..ConditionSettings::default()
         }
     }
