@@ -91,7 +91,11 @@ fn better(page: &mut String, study: &ExplainStudy) {
     if !rows.is_empty() {
         let _ = write!(page, "\nError of a prediction over 0.5 s ({}):\n", escaped(&on));
     }
-    table(page, &["", "rigid body", "model found", "better by", "unit"], &rows);
+    let columns = ["", "unchanged", "rigid body", "model found", "better by", "unit"];
+    table(page, &columns, &rows);
+    if !rows.is_empty() {
+        page.push_str("\nunchanged: a state that does not change; better by: than the better one of it and the rigid body\n");
+    }
 }
 
 fn rows_of(predicted: &Predicted) -> Vec<Vec<String>> {
@@ -101,6 +105,7 @@ fn rows_of(predicted: &Predicted) -> Vec<Vec<String>> {
         let Some(compared) = compared else { continue };
         rows.push(vec![
             name.to_owned(),
+            compared.unchanged.map_or_else(|| "-".to_owned(), |of| significant(of.value, 3)),
             significant(compared.before.value, 3),
             significant(compared.after.value, 3),
             percent(&compared.improvement_percent),
