@@ -24,14 +24,12 @@ use crate::vehicle::Vehicle;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
-/// Half width of the weak form's test function, s: the mean of a force over less is noise, and a motion of over 2 Hz is lost in the
-/// mean over more.
+/// Half width of the weak form's test function, s: over less a mean force is noise, over more it loses motion of over 2 Hz.
 pub const WEAK_HALF_WIDTH_S: f64 = 0.2;
 
 /// Least and largest step of the grid, s.
 const STEP_S: (f64, f64) = (0.002, 0.02);
-/// Least step of the grid for effects, s. The weak form passes motion up to 5 Hz, which this samples twenty times a period, and each instant
-/// costs the same.
+/// Least step of the grid for effects, s: it samples motion of 5 Hz, which the weak form still passes, twenty times a period.
 pub const STEP_FOR_EFFECTS_S: f64 = 0.01;
 
 /// Settings of the conditioning.
