@@ -62,8 +62,9 @@ pub fn compact(value: f64) -> String {
 /// A parameter of an autopilot in the fewest digits that give its value again: its messages hold single precision.
 #[must_use]
 pub fn parameter_value(value: f64) -> String {
-    let single = value as f32;
-    if f64::from(single) == value { single.to_string() } else { value.to_string() }
+    let exact = value.to_string();
+    let single = exact.parse::<f32>().ok().filter(|single| f64::from(*single) == value);
+    single.map_or(exact, |single| single.to_string())
 }
 
 /// As many significant digits; without power of ten between 1e-4 and 1e6.
