@@ -27,7 +27,7 @@ impl ExplainStudy {
     }
 
     /// What the designed flight separates or determines, of that which a user needs: names that could be another one's, and sizes
-    /// that are known worse than [`WELL_KNOWN`].
+    /// that are known worse than 5 %.
     pub fn worthwhile<'a>(&'a self, next: &'a NextFlight) -> impl Iterator<Item = &'a Pair> {
         next.pairs.iter().filter(|pair| pair.other.is_some() || self.relative_std(pair) > WELL_KNOWN)
     }
