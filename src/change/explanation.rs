@@ -1,6 +1,6 @@
 //! What can move the balance of a vehicle, and the direction in which it does.
 
-use crate::trim::{AXES, FlightBalance, mean_arm_m};
+use crate::trim::{AXES, FlightBalance, TORQUE_SPREAD, mean_arm_m};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
@@ -15,10 +15,6 @@ pub enum What {
     YawTorque,
 }
 
-/// A weak rotor gives less torque as well, in proportion to its thrust or not: a shorter blade gives less still, a
-/// motor that turns slower less of both. Standard deviation of torque's share over thrust's. A smaller one would not
-/// recognise a cut blade, a larger one not tell two rotors apart.
-const TORQUE_SPREAD: f64 = 0.35;
 /// Times that the spread, which follows the amount, settles in.
 const PASSES: usize = 4;
 

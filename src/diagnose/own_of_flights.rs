@@ -14,7 +14,7 @@ use super::named::Named;
 use super::recorded::Need;
 use super::score::columns_of;
 use super::signature::{EffectTerm, Signature};
-use super::signatures::{ALL, signature_of};
+use super::signatures::ALL;
 use super::trace::Trace;
 use crate::signals::{Lacking, OwnOfFlight, Series, Signals};
 use crate::vehicle::{Anchor, Vehicle};
@@ -242,5 +242,5 @@ fn lacks(term: &EffectTerm, flight: usize, each: &[Vec<FlightParameter>]) -> boo
     let Some(((own, own_std), (size, size_std))) = beyond(flight).zip(most) else { return false };
     let is_there = size.abs() > TELLS * size_std;
     let is_less = own / size < SHOWN && (size - own).abs() > TELLS * own_std.hypot(size_std);
-    is_there && is_less && signature_of(term.id()).is_some()
+    is_there && is_less
 }

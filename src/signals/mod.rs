@@ -6,6 +6,7 @@
 mod actuation;
 mod actuators;
 mod align;
+mod allocation;
 mod changed;
 mod condition;
 mod error;

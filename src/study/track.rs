@@ -27,7 +27,7 @@ const EFFECT: Spread = Spread { relative: 0.12, absolute: 0.0 };
 const DAMPING: f64 = 1.0;
 /// Standard deviation of that between flights that are logged in different ways, as a share of [`DAMPING`]: about a third of the largest
 /// that was seen.
-const OF_LOG: f64 = 0.35;
+pub(super) const OF_LOG: f64 = 0.35;
 /// The same of a latency between command and rotor: its error holds what is not known of it, and the phase at which a log samples commands
 /// and motion, up to some ms, is beside it. Set by judgement.
 const OF_LATENCY: Spread = Spread { relative: 0.12, absolute: 0.005 };
@@ -150,18 +150,11 @@ impl Track {
         pooled_mean(&self.values, &self.common_std)
     }
 
-    /// The same with what a flight's time errors do to it in its errors, and no longer beside them.
-    #[must_use]
-    pub(super) fn with_absolute_spread(mut self) -> Self {
-        let by = std::mem::take(&mut self.spread.absolute);
-        self.values.iter_mut().flatten().for_each(|(_, std)| *std = std.hypot(by));
-        self
-    }
-
-    /// Adds to each flight's error that of a time error of its log, which goes its own way in logs of different kinds.
-    pub(super) fn add_error_of_log(&mut self) {
-        let std = OF_LOG * self.spread.absolute;
-        self.values.iter_mut().flatten().for_each(|(_, own)| *own = own.hypot(std));
+    /// Moves this share of what a flight's time errors do to it into the flights' errors, where it is no longer beside them.
+    pub(super) fn move_spread_into_errors(&mut self, share: f64) {
+        let moved = share * self.spread.absolute;
+        self.spread.absolute *= (1.0 - share * share).sqrt();
+        self.values.iter_mut().flatten().for_each(|(_, std)| *std = std.hypot(moved));
     }
 
     /// The value of one flight alone. The standard error of what the flights have in common is as their scatter leaves it. What is each

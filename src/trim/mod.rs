@@ -8,4 +8,4 @@ mod rotors;
 
 pub use balance::{AIR_LEVER_SPREAD, Balance, FlightBalance, WANDER, balance};
 pub use legs::{AXES, LEAST_LEGS, LEG_S, Leg, TrimError, legs, mean_arm_m};
-pub use rotors::{RotorTrack, rotor_tracks};
+pub use rotors::{RotorTrack, TORQUE_SPREAD, rotor_tracks};

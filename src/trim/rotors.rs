@@ -8,9 +8,10 @@ use nalgebra::{Matrix3, Vector3};
 /// Thrust of a rotor for its command along the flights, over that of the mean of all rotors: value and standard error; one entry a flight.
 pub type RotorTrack = Vec<(f64, f64)>;
 
-/// Share by which a balance about z may differ from what the rotors' thrusts make of it: their torque does not go with their thrust
-/// exactly, and where a rotor lost thrust it need not have lost as much torque. Set by judgement; it widens the errors alone.
-const TORQUE_DOUBT: f64 = 0.5;
+/// A weak rotor gives less torque as well, in proportion to its thrust or not: a shorter blade gives less still, a
+/// motor that turns slower less of both. Standard deviation of torque's share over thrust's. A smaller one would not
+/// recognise a cut blade, a larger one not tell two rotors apart.
+pub const TORQUE_SPREAD: f64 = 0.35;
 
 /// Of each rotor of a vehicle, in the order of its description. The balance has three components: of more than four rotors, it is the
 /// smallest difference between them that makes it. The centre of mass is taken where the description has it. Empty where the rotors' places
@@ -36,7 +37,7 @@ pub fn rotor_tracks(balance: &Balance, vehicle: &Vehicle) -> Vec<RotorTrack> {
         let one = |(place, flight): (usize, &FlightBalance)| {
             let lean = Vector3::from(flight.lean) - mean;
             let mut std = Vector3::from_fn(|axis, _| balance.lean(place, axis).1);
-            std.z = std.z.hypot(TORQUE_DOUBT * flight.lean[2]);
+            std.z = std.z.hypot(TORQUE_SPREAD * flight.lean[2]);
             let share = 1.0 / count + row.dot(&lean);
             // a rotor that gives less for its command is commanded more
             (1.0 / (count * share), row.component_mul(&std).norm() / (count * share * share))

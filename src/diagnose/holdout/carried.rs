@@ -124,32 +124,36 @@ pub(super) fn carried_over(
         pair.notes.push(Note::warning(about(), text));
     }
     pair.own(trace, f64::NEG_INFINITY);
-    if let Some(Loaded { base: after, moved_m, more_kg, until_s }) = loaded(&pair.after, trace, settings)? {
-        let mut own = Vec::new();
-        own.extend(moved_m.map(|[x, y]| {
-            format!(
-                "its centre of mass is not where that of the flights explained is: by ({}, {}) mm along body x and y, as a battery \
-                 that is put back elsewhere moves it",
-                significant(1e3 * x, 2),
-                significant(1e3 * y, 2)
-            )
-        }));
-        own.extend(more_kg.map(|kg| {
-            format!(
-                "its mass differs from that of the flights that predict it by {} kg, a payload",
-                significant(kg, 2)
-            )
-        }));
-        let text = format!(
-            "{}. This is from the first seconds of the flight, and the errors are those of the rest",
-            own.join("; ")
-        );
-        pair.notes.push(Note::remark(about(), text));
+    if let Some(after) = loaded(&pair.after, trace, settings)? {
+        pair.notes.push(Note::remark(about(), of_load(&after)));
         let before = loaded(&pair.before, trace, settings)?
             .map_or_else(|| pair.before.on(&trace.own).into_owned(), |of| of.base);
-        pair.loaded = Some(LoadedPair { before, after, until_s });
+        pair.loaded = Some(LoadedPair { before, after: after.base, until_s: after.until_s });
     }
     Ok(pair)
+}
+
+/// What a flight's load is, in words.
+fn of_load(load: &Loaded) -> String {
+    let mut own = Vec::new();
+    own.extend(load.moved_m.map(|[x, y]| {
+        format!(
+            "its centre of mass is not where that of the flights explained is: by ({}, {}) mm along body x and y, as a battery that is \
+             put back elsewhere moves it",
+            significant(1e3 * x, 2),
+            significant(1e3 * y, 2)
+        )
+    }));
+    own.extend(load.more_kg.map(|kg| {
+        format!(
+            "its mass differs from that of the flights that predict it by {} kg, a payload",
+            significant(kg, 2)
+        )
+    }));
+    format!(
+        "{}. This is from the first seconds of the flight, and the errors are those of the rest",
+        own.join("; ")
+    )
 }
 
 /// A time that no flight reaches, s.

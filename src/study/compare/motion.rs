@@ -54,7 +54,8 @@ pub(super) fn motion(
     let of_each: Vec<(&str, &Explanation)> = paths.zip(explanations).collect();
     let notes = curve(&tracks).into_iter().chain(of_some_flights(&of_each, vehicle)).collect();
     let reasons = explained.iter().map(|of| of.as_ref().err().cloned()).collect();
-    Motion { tracks: tracks.into_iter().map(Track::with_absolute_spread).collect(), reasons, notes }
+    tracks.iter_mut().for_each(|track| track.move_spread_into_errors(1.0));
+    Motion { tracks, reasons, notes }
 }
 
 /// The curve of the thrust is compared where a flight's explanation has it only.

@@ -82,17 +82,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     notes.extend(doubts(&flights));
     let balance = balance(&legs_of(&flights, &vehicle)?);
     progress.stage(Stage::Explaining);
-    let why_not = match &request.vehicle {
-        None => Some(UNWEIGHED),
-        Some(_) => request.balance_only.then_some(UNASKED),
-    };
-    let Motion { tracks, reasons, notes: of_motion } = match why_not {
-        Some(why) => {
-            let reasons = vec![Some(why.to_owned()); flights.signals.len()];
-            Motion { tracks: Vec::new(), reasons, notes: Vec::new() }
-        }
-        None => motion((&flights.inputs, &flights.signals), &vehicle, progress),
-    };
+    let Motion { tracks, reasons, notes: of_motion } = moved(request, &flights, &vehicle, progress);
     notes.extend(of_motion);
     if draft.is_none() {
         notes.extend(contradictions(&tracks, &vehicle).iter().map(Contradiction::note));
@@ -119,6 +109,19 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         history,
         notes,
     })
+}
+
+/// What the motion says; nothing where it is not compared, with the reason.
+fn moved(request: &CompareRequest, flights: &Prepared, vehicle: &Vehicle, progress: &dyn Progress) -> Motion {
+    let why_not = match &request.vehicle {
+        None => Some(UNWEIGHED),
+        Some(_) => request.balance_only.then_some(UNASKED),
+    };
+    let Some(why) = why_not else {
+        return motion((&flights.inputs, &flights.signals), vehicle, progress);
+    };
+    let reasons = vec![Some(why.to_owned()); flights.signals.len()];
+    Motion { tracks: Vec::new(), reasons, notes: Vec::new() }
 }
 
 /// A remark for each flight whose balance differs from the flight's before it by no more than a load moves it, where nothing changed.

@@ -15,7 +15,7 @@ use crate::recording::Quantity;
 use crate::signals::Signals;
 use crate::study::Track;
 use crate::study::flights::Prepared;
-use crate::study::track::CARRIES;
+use crate::study::track::{CARRIES, OF_LOG};
 use crate::text::significant;
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
@@ -80,21 +80,22 @@ impl ExplainStudy {
             .filter_map(|(id, carriers)| Some((*id, sized_by(id, carriers.as_deref()?, &tracks)?)))
             .collect();
         if logged_apart(flights) {
-            tracks.iter_mut().for_each(Track::add_error_of_log);
+            tracks.iter_mut().for_each(|track| track.move_spread_into_errors(OF_LOG));
         }
+        let mut along = AlongFlights { tracks, winds_m_s, carried_by, sized_by, of_one_flight: Vec::new() };
         // one value of a parameter: in the names and in the model that of the flights together
-        let value = |track: &Track| {
-            let by = sized_by.iter().find(|(id, _)| track.effect == Some(id)).map(|(_, flights)| flights);
-            match (by, track.owner) {
-                (Some(flights), _) => track.only(flights).pooled(),
-                (None, Owner::Vehicle) => track.pooled(),
-                (None, Owner::Flight) => None,
-            }
-        };
+        let each = along.tracks.iter();
         let common: Vec<(&str, (f64, f64))> =
-            tracks.iter().filter_map(|track| Some((track.name.as_str(), value(track)?))).collect();
+            each.filter_map(|track| Some((track.name.as_str(), along.together(track)?))).collect();
         self.explanation = self.explanation.with_common(&common);
         self.effects = for_readers(&self.explanation.named);
+        self.tell_payloads(flights);
+        along.of_one_flight = self.names_of_one_flight(flights, alone, !along.sized_by.is_empty());
+        self.along = Some(along);
+    }
+
+    /// A remark on each flight that flew with another load than the others.
+    fn tell_payloads(&mut self, flights: &[Signals]) {
         for (signals, input) in flights.iter().zip(&self.given.inputs) {
             let kg = signals.own.payload_kg;
             if kg != 0.0 {
@@ -106,8 +107,6 @@ impl ExplainStudy {
                 self.notes.push(Note::remark(About::File(input.path.clone()), text));
             }
         }
-        let of_one_flight = self.names_of_one_flight(flights, alone, !sized_by.is_empty());
-        self.along = Some(AlongFlights { tracks, winds_m_s, carried_by, sized_by, of_one_flight });
     }
 
     /// What flights have alone where something tells that they are not alike: a part of them only carries a name, or a force is left that
@@ -131,8 +130,8 @@ impl ExplainStudy {
             if alone.is_empty() { flights.par_iter().map(explained).collect() } else { alone.to_vec() };
         let is_new = |named: &Named| {
             let known = self.explanation.named.iter().any(|known| known.id == named.id);
-            let is_of_one = |of: &Signature| is_of_one_flight(of);
-            !known && !settings.refused.contains(&named.id) && signature_of(named.id).is_some_and(is_of_one)
+            let is_of_one = || signature_of(named.id).is_some_and(|of| is_of_one_flight(of));
+            !known && !settings.refused.contains(&named.id) && is_of_one()
         };
         let of = |(place, names): (usize, Vec<Named>)| {
             names.into_iter().filter(is_new).map(move |named| (place, named)).collect::<Vec<_>>()
