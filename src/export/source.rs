@@ -113,7 +113,10 @@ impl<'a> Source<'a> {
         let mean_s = f64::midpoint(up_s, down_s);
         if (up_s - down_s).abs() > 0.01 * mean_s {
             self.note(format!(
-                "the simulator's rotors speed up and slow down alike: {mean_s} s, the mean of {up_s} s and {down_s} s"
+                "the simulator's rotors speed up and slow down alike: {} s, the mean of {} s and {} s",
+                compact(mean_s),
+                compact(up_s),
+                compact(down_s)
             ));
         }
         Some(mean_s)

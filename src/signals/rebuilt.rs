@@ -184,7 +184,7 @@ mod tests {
     fn noisy_log(slow_part: f64) -> (Recording, RotorThrusts) {
         let (mut recording, mut slow) = log(0.0);
         let mut dice = rand_pcg::Pcg64Mcg::seed_from_u64(7);
-        let mut noise = || 0.05 * dice.random_range(-1.0..1.0);
+        let mut noise = || 0.02 * dice.random_range(-1.0..1.0);
         let at = |time_s: f64, noise: f64| {
             let [x, y, z, thrust] = asked(time_s);
             [slow_part * x + 0.03 + noise, y, z, thrust]
@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn noise_of_another_cycle_lowers_no_torque_and_moves_no_mean() {
-        let (recording, slow) = noisy_log(1.0);
+        let (recording, slow) = noisy_log(0.6);
         let fast = rebuilt(&recording, &slow, &CURVE).unwrap().unwrap();
         assert_eq!(fast.torque_std, STD_BY_SPREAD);
         let setpoints = recording.streams.iter().find(|(key, _)| key.quantity == Quantity::TorqueSetpoint);
@@ -224,8 +224,8 @@ mod tests {
         let (slope, square) = pairs().fold((0.0, 0.0), |(slope, square), (x, n)| {
             (slope + (x - means.0) * (n - means.1), square + (x - means.0).powi(2))
         });
-        // least squares alone give about half of it
-        assert!((slope / square / 6.0 - 1.0).abs() < 0.1, "{}", slope / square);
+        // least squares alone give about three quarters of it
+        assert!((slope / square / 6.0 - 1.0).abs() < 0.08, "{}", slope / square);
         assert!((means.1 / (6.0 * means.0) - 1.0).abs() < 0.1, "{means:?}");
     }
 
