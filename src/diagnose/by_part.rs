@@ -49,13 +49,16 @@ impl ByPart {
         if *std > 0.0 { (value - self.nothing) / std } else { 0.0 }
     }
 
-    fn is_in_each(&self) -> bool {
+    /// Each part shows it by itself, in the same direction.
+    #[must_use]
+    pub fn is_in_each(&self) -> bool {
         let by = |sign: f64| self.parts.iter().all(|part| sign * self.away(part) >= SHOWN);
         by(1.0) || by(-1.0)
     }
 
     /// Whether the parts' sizes scatter no more than their errors let them.
-    fn are_alike(&self) -> bool {
+    #[must_use]
+    pub fn are_alike(&self) -> bool {
         let (mut weights, mut sum) = (0.0, 0.0);
         for (value, std) in &self.parts {
             // one without an error says nothing

@@ -56,6 +56,33 @@ impl Explanation {
         self
     }
 
+    /// Without these names, of effects that are in no model: nothing else changes, and what they were is no deviation.
+    #[must_use]
+    pub fn without_names(mut self, ids: &[&str]) -> Self {
+        self.named.retain(|named| !ids.contains(&named.id));
+        if self.named.is_empty() && matches!(self.verdict, Verdict::Explained | Verdict::PartlyExplained) {
+            self.verdict = Verdict::NothingMissing;
+        }
+        self
+    }
+
+    /// Where names were taken back because the flight shows them too little: none of those comes again, and what they explained is no
+    /// deviation without a cause.
+    #[must_use]
+    pub fn of_unsure_cause(mut self, taken_back: &[&str]) -> Self {
+        self = self.without_names(taken_back);
+        match self.verdict {
+            Verdict::NothingMissing | Verdict::Explained => {}
+            Verdict::PartlyExplained => self.verdict = Verdict::Explained,
+            Verdict::Unexplained => {
+                self = self.refuted();
+                self.verdict = Verdict::NothingMissing;
+                self.closest.clear();
+            }
+        }
+        self
+    }
+
     /// Emits it as tracing events: each name with its evidence and sizes, the remaining deviations, and the verdict.
     pub(super) fn emit(&self) {
         self.named.iter().for_each(|named| named.emit());

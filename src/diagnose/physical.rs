@@ -4,16 +4,29 @@ use super::channels::Nuisance;
 use super::fit::Fitted;
 use super::trace::Trace;
 use crate::estimate::{
-    LARGEST_RELATIVE_STD, MOMENTS, Nominal, THETA, Theta, inertia_of, is_physical, nearest_physical, size_of,
+    Finding, MOMENTS, Nominal, THETA, Theta, finding, inertia_of, is_physical, nearest_physical, size_of,
     theta_of,
 };
 use crate::physics::PhysicsError;
 use crate::vehicle::{Guessed, Vehicle};
 use nalgebra::{SMatrix, SVector};
+use std::ops::AddAssign;
 
 /// Standard errors by which an inertia may be moved to the nearest one that a body can have. The usual three: beyond,
 /// the nearest possible inertia contradicts the flight.
 pub(super) const WITHIN_ERROR: f64 = 3.0;
+
+/// Moments and products of inertia that the flights do not determine, as places in mass and inertia: by their errors, by a window of twice
+/// the width (`by_wider_window`: Ixx, Iyy, Izz as shares), or because the rigid body explains too little of the torque. What the
+/// description only guesses is no matter here: the motion tells ratios to it.
+fn undetermined(fitted: &Fitted, stated: &Vehicle, by_wider_window: [f64; 3]) -> Vec<usize> {
+    let certain = Vehicle { guesses: Vec::new(), ..stated.clone() };
+    let (estimated, nominal) =
+        (fitted.rigid_body().with_wider_window(by_wider_window), Nominal::of(&certain));
+    let is_open =
+        |entry: &usize| matches!(finding(&estimated, &nominal, *entry), Finding::NotDetermined { .. });
+    (1..THETA).filter(is_open).collect()
+}
 
 /// Moves an inertia that no body can have to the nearest possible one in the metric of its covariance, if that lies within its
 /// error. Otherwise the flight does not determine it: the stated one stays, with an error as large as itself. A guessed torque per thrust
@@ -23,10 +36,11 @@ pub(super) const WITHIN_ERROR: f64 = 3.0;
 /// [`PhysicsError`] where the vehicle is not physical.
 pub(super) fn make_physical(
     flights: &[Trace],
-    stated: &Vehicle,
+    (stated, by_wider_window): (&Vehicle, [f64; 3]),
     fitted: &mut Fitted,
 ) -> Result<(), PhysicsError> {
-    stay_at_prior(flights, stated, fitted)?;
+    let open = undetermined(fitted, stated, by_wider_window);
+    stay_at_prior(flights, (stated, &open), fitted)?;
     let theta = theta_of(&fitted.base.vehicle.body);
     if is_physical(&theta) {
         return Ok(());
@@ -63,20 +77,25 @@ fn guesses_torque(vehicle: &Vehicle) -> bool {
     vehicle.guesses.iter().any(|guess| guess.of == Guessed::TorqueRatio)
 }
 
-/// Where a moment of inertia is not determined, or no body can have the inertia, it stays at what the vehicle file states as far as the
-/// flight tells nothing else: the mean of both, weighted by their information.
-fn stay_at_prior(flights: &[Trace], stated: &Vehicle, fitted: &mut Fitted) -> Result<(), PhysicsError> {
+/// Where a part of the inertia is not determined (`open`, as places in mass and inertia), or no body can have the inertia, it stays at what
+/// the vehicle file states as far as the flight tells nothing else: the mean of both, weighted by their information. Of what is open
+/// the flight's error is as large as the moment itself, at least.
+fn stay_at_prior(
+    flights: &[Trace],
+    (stated, open): (&Vehicle, &[usize]),
+    fitted: &mut Fitted,
+) -> Result<(), PhysicsError> {
     let Some(places) = inertia_places(fitted) else { return Ok(()) };
-    let covariance: SMatrix<f64, ENTRIES, ENTRIES> =
+    let mut covariance: SMatrix<f64, ENTRIES, ENTRIES> =
         SMatrix::from_fn(|i, j| fitted.covariance[(places[i], places[j])]);
     let theta = theta_of(&fitted.base.vehicle.body);
     let nominal = Nominal::of(stated);
-    let open = |entry: usize| {
-        let size = size_of(&theta, &nominal, entry);
-        covariance[(entry - 1, entry - 1)].max(0.0).sqrt() > LARGEST_RELATIVE_STD * size
-    };
-    if is_physical(&theta) && !MOMENTS.into_iter().any(open) {
+    if is_physical(&theta) && open.is_empty() {
         return Ok(());
+    }
+    for &entry in open {
+        let size = size_of(&theta, &nominal, entry);
+        covariance[(entry - 1, entry - 1)] += size.powi(2);
     }
     let largest = MOMENTS.into_iter().map(|entry| nominal.theta[entry]).fold(0.0, f64::max);
     let prior = SVector::<f64, ENTRIES>::from_fn(|entry, _| {
@@ -90,11 +109,18 @@ fn stay_at_prior(flights: &[Trace], stated: &Vehicle, fitted: &mut Fitted) -> Re
     else {
         return Ok(());
     };
-    let mut kept = theta;
     let from_prior = posterior * by_prior * (nominal.theta - theta).fixed_rows::<ENTRIES>(1);
-    for (entry, moved) in from_prior.iter().enumerate() {
-        kept[1 + entry] += moved;
-    }
+    let moved_by = |share: f64| {
+        let mut moved = theta;
+        moved.fixed_rows_mut::<ENTRIES>(1).add_assign(share * from_prior);
+        moved
+    };
+    // the mean of entries whose errors go together need not be an inertia that a body can have
+    let shares = [1.0, 0.5, 0.25].into_iter();
+    let kept = shares
+        .map(moved_by)
+        .find(is_physical)
+        .unwrap_or_else(|| if is_physical(&theta) { theta } else { moved_by(1.0) });
     let mut base = fitted.base.clone();
     base.vehicle.body.inertia_kg_m2 = inertia_of(&kept);
     // its standard error is still the flight's own: what it does not determine is said

@@ -21,6 +21,7 @@ use super::thrust_slope::may_be_noise;
 use super::torques_by_instruments::torques_by_instruments;
 use super::trace::Trace;
 use super::trim_check::Trim;
+use crate::estimate::inertia_by_wider_window;
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
 use crate::stats::normal_deviate;
@@ -73,8 +74,9 @@ pub(super) fn refine(
     add_left_over(&mut found.before, &[]);
     add_floors(&mut found.before);
     found.latency.std_s = found.latency.std_s.hypot(FORM * found.latency.total_s);
-    make_physical(traces, vehicle, &mut found.before)?;
-    make_physical(traces, vehicle, &mut found.after)
+    let by_wider_window = inertia_by_wider_window(flights, vehicle);
+    make_physical(traces, (vehicle, by_wider_window), &mut found.before)?;
+    make_physical(traces, (vehicle, by_wider_window), &mut found.after)
 }
 
 /// Removes effects without a name from the model: those of ordinary size, those that are not certain, those that the accelerometer

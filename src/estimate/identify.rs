@@ -1,6 +1,5 @@
 //! The methods for a rigid body alone, on one or several flights of a vehicle.
 
-use super::compensate::{as_stated, compensation, take_out};
 use super::error::EstimateError;
 use super::guessed_curve::{GuessedCurve, MovedByCurve, moved_by_curve};
 use super::method::Method;
@@ -10,14 +9,14 @@ use super::plausible::{FlightApart, disagreeing};
 use super::recommend::Recommendation;
 use super::recursive::History;
 use super::result::{Estimated, MethodResult};
-use super::theta::Theta;
-use super::weak::{Latency, WeakEstimate, latency, solve_weak};
-use super::window::by_wider_window;
+
+use super::weak::{Latency, WeakEstimate, solve_weak};
+use super::weak_flights::WeakFlights;
 use crate::note::{About, Note};
 use crate::physics::ActuationLatency;
-use crate::regression::{WeakMotion, WeakRows, ZeroPhase, weak_rows};
+use crate::regression::ZeroPhase;
 use crate::signals::{
-    Butterworth, Signals, ThrustSource, WEAK_HALF_WIDTH_S, WeakKernel, WindowedFir, highest_harmonic_hz,
+    Butterworth, Signals, ThrustSource, WEAK_HALF_WIDTH_S, WindowedFir, highest_harmonic_hz,
 };
 use crate::vehicle::Vehicle;
 
@@ -106,7 +105,7 @@ pub fn identify(
     let _stage = tracing::info_span!("identify", flights = flights.len()).entered();
     let nominal = Nominal::of(vehicle);
     let mut notes = Vec::new();
-    let mut weak = WeakFlights::from(flights, vehicle, settings);
+    let mut weak = WeakFlights::from(flights, vehicle, settings.weak_half_width_s);
     let (found, compensated) = weak.compensate(&nominal.theta, vehicle);
     let plain = solve_weak(&weak.rows, &nominal.theta).ok_or(EstimateError::NoRows)?;
 
@@ -114,7 +113,7 @@ pub fn identify(
     let (paper, cutoff_hz) = paper_runs(&weak.signals, vehicle, settings, harmonic_hz)?;
     notes.extend(paper.is_empty().then(|| Note::remark(About::Estimate, NO_PAPER)));
 
-    let wider = weak.by_wider_window(&plain, &nominal.theta, settings);
+    let wider = weak.by_wider_window(&plain, &nominal.theta, settings.weak_half_width_s);
     let by_curve = moved_by_curve(flights, vehicle, compensated, &nominal.theta);
     let torque_std = flights.iter().map(|flight| flight.quality.torque_std).fold(0.0, f64::max);
     let whole = |weak: &WeakEstimate| {
@@ -169,11 +168,11 @@ fn paper_runs(
 /// none. Far from 1 where control answers the motion that something else causes.
 #[must_use]
 pub fn inertia_by_wider_window(flights: &[Signals], vehicle: &Vehicle) -> [f64; 3] {
-    let (nominal, settings) = (Nominal::of(vehicle), IdentifySettings::default());
-    let mut weak = WeakFlights::from(flights, vehicle, &settings);
+    let nominal = Nominal::of(vehicle);
+    let mut weak = WeakFlights::from(flights, vehicle, WEAK_HALF_WIDTH_S);
     weak.compensate(&nominal.theta, vehicle);
     let narrow = solve_weak(&weak.rows, &nominal.theta);
-    narrow.map_or([f64::NAN; 3], |narrow| weak.by_wider_window(&narrow, &nominal.theta, &settings))
+    narrow.map_or([f64::NAN; 3], |narrow| weak.by_wider_window(&narrow, &nominal.theta, WEAK_HALF_WIDTH_S))
 }
 
 /// Flights whose masses or moments of inertia contradict those of the first one, each by the rigid body of its flight alone.
@@ -182,8 +181,8 @@ pub fn contradicting_flights(flights: &[Signals], vehicle: &Vehicle) -> Vec<Flig
     if flights.len() < 2 {
         return Vec::new();
     }
-    let (nominal, settings) = (Nominal::of(vehicle), IdentifySettings::default());
-    let mut weak = WeakFlights::from(flights, vehicle, &settings);
+    let nominal = Nominal::of(vehicle);
+    let mut weak = WeakFlights::from(flights, vehicle, WEAK_HALF_WIDTH_S);
     weak.compensate(&nominal.theta, vehicle);
     disagreeing(&weak.rows, &nominal.theta)
 }
@@ -193,8 +192,8 @@ pub fn contradicting_flights(flights: &[Signals], vehicle: &Vehicle) -> Vec<Flig
 #[must_use]
 pub fn moved_by_guessed_curve(flights: &[Signals], vehicle: &Vehicle) -> Option<MovedByCurve> {
     GuessedCurve::of(vehicle)?;
-    let (nominal, settings) = (Nominal::of(vehicle), IdentifySettings::default());
-    let mut weak = WeakFlights::from(flights, vehicle, &settings);
+    let nominal = Nominal::of(vehicle);
+    let mut weak = WeakFlights::from(flights, vehicle, WEAK_HALF_WIDTH_S);
     let (_, latency) = weak.compensate(&nominal.theta, vehicle);
     moved_by_curve(flights, vehicle, latency, &nominal.theta)
 }
@@ -221,68 +220,4 @@ fn zero_phase(settings: &IdentifySettings, cutoff_hz: f64, rate_hz: f64) -> Resu
         Butterworth::new(cutoff_hz, rate_hz).map(ZeroPhase::Butterworth)
     };
     filter.ok_or(EstimateError::Cutoff { cutoff_hz, rate_hz })
-}
-
-/// The flights as rows of the weak form.
-struct WeakFlights {
-    signals: Vec<Signals>,
-    kernels: Vec<WeakKernel>,
-    motions: Vec<WeakMotion>,
-    rows: Vec<WeakRows>,
-    accelerometer_bias: Vec<Option<f64>>,
-    gravity_m_s2: f64,
-}
-
-impl WeakFlights {
-    fn from(flights: &[Signals], vehicle: &Vehicle, settings: &IdentifySettings) -> Self {
-        let signals = flights.to_vec();
-        let gravity_m_s2 = vehicle.gravity_m_s2;
-        let kernels: Vec<WeakKernel> =
-            signals.iter().map(|s| WeakKernel::new(settings.weak_half_width_s, s.grid.step_s)).collect();
-        let motions: Vec<WeakMotion> =
-            signals.iter().zip(&kernels).map(|(s, k)| WeakMotion::measured(s, k, gravity_m_s2)).collect();
-        let accelerometer_bias =
-            motions.iter().map(|m| m.vertical.as_ref().and_then(|v| v.accelerometer_bias)).collect();
-        let mut all = Self { signals, kernels, motions, rows: Vec::new(), accelerometer_bias, gravity_m_s2 };
-        all.refresh();
-        all
-    }
-
-    fn refresh(&mut self) {
-        self.rows = self
-            .signals
-            .iter()
-            .zip(&self.motions)
-            .zip(&self.kernels)
-            .map(|((signals, motion), kernel)| weak_rows(signals, motion, kernel))
-            .collect();
-    }
-
-    /// Estimates the latency with the original commands and corrects the commands for it, so that every method uses the
-    /// wrench on the body.
-    fn compensate(&mut self, nominal: &Theta, vehicle: &Vehicle) -> (Option<Latency>, ActuationLatency) {
-        let Some(found) = latency(&self.rows, nominal) else { return (None, ActuationLatency::default()) };
-        let told = found.total_s.abs() > 4.0 * found.std_s && found.total_s.abs() < 0.3;
-        let compensation =
-            if told { compensation(&found, vehicle) } else { as_stated(&found, vehicle, &self.signals) };
-        if compensation.total_s() == 0.0 {
-            return (Some(found), compensation);
-        }
-        for signals in &mut self.signals {
-            take_out(signals, vehicle, compensation);
-        }
-        self.refresh();
-        (Some(found), compensation)
-    }
-
-    /// Moments of inertia by a window of twice the width, as shares of those of `narrow`.
-    fn by_wider_window(
-        &self,
-        narrow: &WeakEstimate,
-        nominal: &Theta,
-        settings: &IdentifySettings,
-    ) -> [f64; 3] {
-        let window = (settings.weak_half_width_s, self.gravity_m_s2);
-        by_wider_window(&self.signals, (narrow, nominal), window)
-    }
 }

@@ -5,6 +5,7 @@ mod compensate;
 mod error;
 mod expected;
 mod guessed_curve;
+mod guessed_torque;
 mod identify;
 mod information;
 mod live;
@@ -20,12 +21,14 @@ mod result;
 mod theta;
 mod thrust_scale;
 mod weak;
+mod weak_flights;
 mod window;
 
 pub use anchor::{apply_anchor, identified_vehicle, rescaled, scaling_mass, thrust_scale};
 pub use error::EstimateError;
 pub use expected::NoiseTerm;
 pub use guessed_curve::{GuessedCurve, MovedByCurve, rests_on_guessed_curve};
+pub use guessed_torque::torque_by_motion;
 pub use identify::{
     Identification, IdentifySettings, contradicting_flights, identify, inertia_by_wider_window,
     moved_by_guessed_curve,

@@ -31,7 +31,7 @@ impl LoggedBy {
 }
 
 /// A flight and the log that it came from.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Flight {
     pub(super) logged_by: LoggedBy,
     pub(super) recording: Recording,

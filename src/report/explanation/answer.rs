@@ -34,15 +34,19 @@ fn no_model(study: &ExplainStudy) -> String {
         Some(holdout) => (Some(holdout), study.shown_on.words()),
         None => (study.identify.as_ref(), "the flights that were explained"),
     };
-    let worse = predicted.map_or_else(Vec::new, Predicted::worse_than_unchanged);
-    if worse.is_empty() {
+    let over = predicted.map_or_else(Vec::new, Predicted::no_model_over);
+    if over.is_empty() {
         return String::new();
     }
-    let worse: Vec<String> = worse.into_iter().map(ToOwned::to_owned).collect();
+    let each = over.into_iter().map(|(window_s, worse)| {
+        let worse: Vec<String> = worse.into_iter().map(ToOwned::to_owned).collect();
+        format!("the {window_s} s error of {}", list(&worse))
+    });
+    let each: Vec<String> = each.collect();
+    let (are, these) = if each.len() > 1 { ("are", "these") } else { ("is", "this") };
     format!(
-        " On {on} the 0.5 s error of {} is larger than that of a state that does not change: for prediction of this, the \
-         model is not usable.",
-        list(&worse)
+        " On {on} {} {are} larger than that of a state that does not change: for prediction of {these}, the model is not usable.",
+        each.join(" and ")
     )
 }
 
@@ -52,7 +56,9 @@ fn found(study: &ExplainStudy) -> String {
             "" => nothing(study),
             alone => format!("{} But {alone}.", nothing(study)),
         },
-        Verdict::Explained => format!("{}{}.{}", left_out(study), gain(study), not_told_apart(study)),
+        Verdict::Explained => {
+            format!("{}{}.{}{}", left_out(study), gain(study), not_told_apart(study), unsure(study))
+        }
         Verdict::PartlyExplained => format!(
             "{}{}. There is another deviation that no known effect explains: {}.{}",
             left_out(study),
@@ -62,6 +68,18 @@ fn found(study: &ExplainStudy) -> String {
         ),
         Verdict::Unexplained => unexplained(study),
     }
+}
+
+/// A sentence on what a short flight shows beside the names, not surely enough for one.
+fn unsure(study: &ExplainStudy) -> String {
+    match unsure_names(study) {
+        [] => String::new(),
+        unsure => format!(" It also shows {}, but not surely enough for a name.", list(unsure)),
+    }
+}
+
+fn unsure_names(study: &ExplainStudy) -> &[String] {
+    study.short.as_ref().map_or(&[], |short| &short.unsure)
 }
 
 /// The named effects: one effect in full, several with their sizes, the rest without.
@@ -188,6 +206,13 @@ fn nothing(study: &ExplainStudy) -> String {
             study.these_flights()
         );
     }
+    let unsure = unsure_names(study);
+    if !unsure.is_empty() {
+        return format!(
+            "No name is certain: this flight shows {}, but not surely enough, so the model stays the rigid body.{other}",
+            list(unsure)
+        );
+    }
     if let Some(refuted) = &study.refuted {
         return taken_back(refuted, &study.shown_on);
     }
@@ -253,8 +278,26 @@ fn unexplained(study: &ExplainStudy) -> String {
         )
     });
     format!(
-        "There is a deviation that no known effect explains: {}{closest}{term}.",
-        whereabouts(&study.located)
+        "There is a deviation that no known effect explains: {}{closest}{term}.{}",
+        whereabouts(&study.located),
+        each_alone(study)
+    )
+}
+
+/// Sentences on what flights show alone that one model does not explain together.
+fn each_alone(study: &ExplainStudy) -> String {
+    let alone = study.along.iter().flat_map(|along| along.alone.iter().enumerate());
+    let shows = |(flight, names): (usize, &Vec<Named>)| {
+        let names: Vec<String> = names.iter().map(|named| brief(named, study.vehicle(), true)).collect();
+        (!names.is_empty()).then(|| format!("{} shows {}", paths(study, &[flight]), list(&names)))
+    };
+    let each: Vec<String> = alone.filter_map(shows).collect();
+    if each.is_empty() {
+        return String::new();
+    }
+    format!(
+        " Alone, {}. No one model explains these flights together: explain each by itself.",
+        each.join("; ")
     )
 }
 

@@ -7,8 +7,8 @@ use crate::diagnose::Need;
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{
-    Apart, ExplainSettings, Named, Owner, Verdict, apart, each_with_model_of_all, explain, own_wind,
-    relative_to_air,
+    Apart, ExplainSettings, Explanation, Named, Owner, Verdict, apart, each_with_model_of_all, explain,
+    own_wind, relative_to_air,
 };
 use crate::note::{About, Note};
 use crate::recording::Quantity;
@@ -41,6 +41,32 @@ pub(super) fn with_own(flights: &mut Prepared, vehicle: &Vehicle) -> Vec<Vec<Nam
     let Apart { own, alone } = apart(&flights.signals, vehicle, &ExplainSettings::default());
     flights.signals.iter_mut().zip(own).for_each(|(signals, own)| signals.own = own);
     alone
+}
+
+/// Wind that changes irregularly is each flight's own. Where no flight shows it alone, what the flights leave together is that their common
+/// values do not fit, and no gust. `alone` is what each shows alone, where that is known.
+pub(super) fn without_gust_of_none(
+    found: Explanation,
+    flights: &[Signals],
+    alone: &[Vec<Named>],
+    (vehicle, settings): (&Vehicle, &ExplainSettings),
+) -> Explanation {
+    let is_irregular = |named: &Named| signature_of(named.id).is_some_and(|of| of.joint.irregular.is_some());
+    if flights.len() < 2 || !found.named.iter().any(is_irregular) {
+        return found;
+    }
+    let shows = |signals: &Signals| {
+        let alone = explain(std::slice::from_ref(signals), vehicle, settings);
+        alone.is_ok_and(|alone| alone.named.iter().any(is_irregular))
+    };
+    let is_shown = if alone.is_empty() {
+        flights.par_iter().any(shows)
+    } else {
+        alone.iter().flatten().any(is_irregular)
+    };
+    let irregular: Vec<&str> =
+        found.named.iter().filter(|named| is_irregular(named)).map(|named| named.id).collect();
+    if is_shown { found } else { found.without_names(&irregular) }
 }
 
 impl ExplainStudy {
@@ -82,7 +108,14 @@ impl ExplainStudy {
         if logged_apart(flights) {
             tracks.iter_mut().for_each(|track| track.move_spread_into_errors(OF_LOG));
         }
-        let mut along = AlongFlights { tracks, winds_m_s, carried_by, sized_by, of_one_flight: Vec::new() };
+        let mut along = AlongFlights {
+            tracks,
+            winds_m_s,
+            carried_by,
+            sized_by,
+            of_one_flight: Vec::new(),
+            alone: alone.to_vec(),
+        };
         // one value of a parameter: in the names and in the model that of the flights together
         let each = along.tracks.iter();
         let common: Vec<(&str, (f64, f64))> =
@@ -130,7 +163,7 @@ impl ExplainStudy {
             if alone.is_empty() { flights.par_iter().map(explained).collect() } else { alone.to_vec() };
         let is_new = |named: &Named| {
             let known = self.explanation.named.iter().any(|known| known.id == named.id);
-            let is_of_one = || signature_of(named.id).is_some_and(|of| is_of_one_flight(of));
+            let is_of_one = || signature_of(named.id).is_some_and(is_of_one_flight);
             !known && !settings.refused.contains(&named.id) && is_of_one()
         };
         let of = |(place, names): (usize, Vec<Named>)| {

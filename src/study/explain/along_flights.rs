@@ -18,6 +18,8 @@ pub struct AlongFlights {
     pub sized_by: Vec<(&'static str, Vec<usize>)>,
     /// names that a flight has alone and the flights together have not: what a flight is loaded with, or a rotor
     pub of_one_flight: Vec<(usize, Named)>,
+    /// what each flight shows alone; empty where nothing tells the flights apart
+    pub alone: Vec<Vec<Named>>,
 }
 
 impl AlongFlights {

@@ -1,6 +1,7 @@
 //! Why an explanation is doubtful.
 
 use super::result::{BodyParameter, ExplainStudy};
+use super::short::Short;
 use crate::diagnose::Named;
 use crate::diagnose::locate::Redness;
 use crate::diagnose::signature::Signature;
@@ -109,6 +110,7 @@ impl ExplainStudy {
         if self.differing.is_some() || self.given.contradicting.iter().any(other) {
             doubts.push(TWO_VEHICLES.to_owned());
         }
+        doubts.extend(self.short.iter().map(Short::doubt));
         doubts
     }
 

@@ -1,7 +1,7 @@
 //! The errors of open-loop prediction.
 
 use crate::compare::improvement_percent;
-use crate::diagnose::holdout::{Compared, HoldoutFit, Interval, OpenLoop};
+use crate::diagnose::holdout::{Compared, HALF_S, HoldoutFit, Interval, OpenLoop};
 
 /// Open-loop errors on one set of flights.
 #[derive(Debug, Clone, Default)]
@@ -75,6 +75,17 @@ impl Predicted {
     pub fn worse_than_unchanged(&self) -> Vec<&'static str> {
         let worse = self.at_half_second().map_or([false; 4], OpenLoop::worse_than_unchanged);
         QUANTITIES.into_iter().zip(worse).filter(|(_, worse)| *worse).map(|((name, _), _)| name).collect()
+    }
+
+    /// The same over each window from 0.5 s on: its length (s) with the quantities, if there are any.
+    #[must_use]
+    pub fn no_model_over(&self) -> Vec<(f64, Vec<&'static str>)> {
+        let long = self.open_loop.iter().filter(|of| of.window_s >= HALF_S);
+        let of_window = |of: &OpenLoop| {
+            let worse = QUANTITIES.into_iter().zip(of.worse_than_unchanged()).filter(|(_, worse)| *worse);
+            (of.window_s, worse.map(|((name, _), _)| name).collect::<Vec<_>>())
+        };
+        long.map(of_window).filter(|(_, worse)| !worse.is_empty()).collect()
     }
 
     /// Mean over the quantities of what the effects lower the rigid body's errors by, percent. That a state which does not change

@@ -46,3 +46,31 @@ impl Worthless {
         Note::warning(About::HoldOut, text)
     }
 }
+
+/// An effect that a short flight would name, and that it does not show well enough.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Unshown {
+    /// the effect
+    pub(super) id: &'static str,
+    /// in brief, with its size
+    pub(super) name: String,
+    /// each half of the flight shows it by itself
+    pub(super) halves: bool,
+    /// by how much errors over 0.5 s on the flight itself are smaller with it, mean over the quantities, %
+    pub(super) worth_percent: f64,
+}
+
+impl Unshown {
+    pub(super) fn note(&self) -> Note {
+        let why = if self.halves {
+            format!(
+                "with it, errors over 0.5 s on the flight itself are only {} % smaller in the mean",
+                significant(self.worth_percent.max(0.0), 2)
+            )
+        } else {
+            "the halves of the flight do not both show it".to_owned()
+        };
+        let text = format!("this short flight would give a name to {}; {why}, so it gets none", self.name);
+        Note::warning(About::Estimate, text)
+    }
+}

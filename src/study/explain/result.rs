@@ -5,6 +5,7 @@ use super::located::Located;
 use super::predicted::Predicted;
 use super::readers::for_readers;
 use super::refuted::Refuted;
+use super::short::Short;
 use super::validation_data::ValidationData;
 use super::worth::Worth;
 use crate::diagnose::experiment::{NextError, NextFlight};
@@ -85,6 +86,8 @@ pub struct ExplainStudy {
     pub by_part: Vec<ByPart>,
     /// names that were taken back, because flights that were not used refute them
     pub refuted: Option<Refuted>,
+    /// where one flight is too short for a part to be held back
+    pub short: Option<Short>,
     /// the vehicle as it was drafted, where it came from no file
     pub drafted: Option<Draft>,
     /// of several flights: what they have in common, and what is each one's own
@@ -160,6 +163,7 @@ impl ExplainStudy {
             differing: None,
             by_part: Vec::new(),
             refuted: None,
+            short: None,
             drafted: None,
             along: None,
             traces: Vec::new(),

@@ -1,23 +1,16 @@
 //! Opens, conditions, holds out, explains, tries again, shows, and designs the next flight.
 
-use super::along::{with_own, with_own_winds};
-use super::hold_out::{hold_back, refuse_shared};
-use super::refuted::Worthless;
+use super::hold_out::refuse_shared;
+use super::prepared::{Asked, explain_prepared, traces_of};
 use super::request::ExplainRequest;
-use super::result::{ExplainStudy, Given};
-use super::validation_data::ValidationData;
+use super::result::ExplainStudy;
 use crate::config::effects_of;
 use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
-use crate::diagnose::holdout::HoldoutSettings;
-use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, Named, TorqueLaw, Trace, Verdict};
-use crate::estimate::{
-    Contradiction, contradicting_flights, inertia_by_wider_window, moved_by_guessed_curve,
-};
+use crate::estimate::torque_by_motion;
 use crate::note::{About, Note, said_once};
 use crate::signals::{ConditionSettings, STEP_FOR_EFFECTS_S, Signals, ThrustPreference, other_settings};
-use crate::study::flights::{EXPLAINED, Prepared, load_all, names, prepare, refuse_off_mixer, refuse_twins};
+use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_off_mixer, refuse_twins};
 use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
@@ -31,9 +24,6 @@ const SATURATED: f64 = 0.3;
 const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar), or no attitude, is recorded: drag, wind and \
                            other effects of the air cannot be tested, and a named effect may be a substitute for \
                            their effect on the rotation";
-/// Why a whole flight is explained.
-const CHANGES_LATE: &str = "something changes in the part that would be held back, so the whole flight is explained; \
-                            give another flight with --holdout";
 
 /// Names the physics that the vehicle's file leaves out.
 ///
@@ -74,33 +64,17 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let mut flights = prepare(logs, (&vehicle, &origin), &settings).map_err(or_unflown)?;
     let mut held = prepare(held, (&vehicle, &origin), &settings).map_err(of_holdout)?;
     refuse_shared(&flights, &held)?;
-    // the wind of one flight is for its explanation to name
-    let several = flights.signals.len() > 1;
-    let winds_m_s = if several { with_own_winds(&mut flights, &vehicle) } else { Vec::new() };
-    if several {
-        with_own_winds(&mut held, &vehicle);
+    let mut vehicle = vehicle;
+    if let Some((corrected, why)) = torque_by_motion(&flights.signals, &vehicle) {
+        vehicle = corrected;
+        notes.push(why);
     }
-    let alone = if several { with_own(&mut flights, &vehicle) } else { Vec::new() };
-    let whole = flights.signals.last().cloned();
-    let (shown_on, back) = match (held.is_empty(), several) {
-        (true, true) => (ValidationData::LeftOut { flights: flights.signals.len() }, None),
-        (true, false) => hold_back(&mut flights),
-        (false, _) => (ValidationData::Flights(held.inputs.clone()), None),
-    };
     notes.extend(other_settings(&flights.recordings));
     notes.extend(of_data(&flights, &held));
-    let task =
-        Task { request, vehicle: &vehicle, notes: &notes, winds_m_s: &winds_m_s, alone: &alone, progress };
-    progress.stage(Stage::Explaining);
-    let mut study = task.explained(&flights, (&held, back.as_ref(), shown_on))?;
-    // what changed in the part held back, or shortly before it, is nowhere in the part explained
-    if let Some(whole) = whole.filter(|_| back.is_some() && changes_late(&study)) {
-        study = task.explained_again(study, &mut flights, whole)?;
-    }
-    let half_width_s = study.given.settings.half_width_s;
-    let traces =
-        flights.signals.iter().filter_map(|signals| Trace::new(signals, &vehicle, half_width_s).ok());
-    study.traces = traces.collect();
+    let of =
+        Asked { vehicle: &vehicle, notes: &notes, logs: &request.logs, transient_s: request.transient_s };
+    let mut study = explain_prepared(&mut flights, &mut held, of, progress)?;
+    study.traces = traces_of(&flights, &vehicle, &study.given.settings);
     study.drafted = draft;
     if request.design_next {
         study.tell_by_part();
@@ -112,132 +86,6 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
         study.next_flight = Some(design(&study.explanation, &flights.signals, &inside, &settings, &step));
     }
     Ok(study)
-}
-
-/// What every attempt has in common.
-struct Task<'a> {
-    request: &'a ExplainRequest,
-    vehicle: &'a Vehicle,
-    notes: &'a [Note],
-    /// of each flight, where they are several
-    winds_m_s: &'a [Option<[f64; 2]>],
-    /// of each flight, where they are several and not alike
-    alone: &'a [Vec<Named>],
-    progress: &'a dyn Progress,
-}
-
-impl Task<'_> {
-    /// Explains the flights and shows the better model; what is to be said of the data before comes first. An effect without which the
-    /// hold-out is predicted better is left out, and the flights are explained again.
-    fn explained(
-        &self,
-        flights: &Prepared,
-        (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
-    ) -> Result<ExplainStudy, StudyError> {
-        let mut settings = ExplainSettings::default();
-        let mut worthless = Vec::new();
-        loop {
-            let explanation = self.explanation(flights, &settings)?;
-            self.progress.stage(Stage::Predicting);
-            let given = self.given(flights, settings.clone());
-            let mut study = self.evaluated(given, explanation, flights, (held, back, shown_on.clone()));
-            if let Some(refuted) = study.refuted_by_holdout() {
-                let ExplainStudy { given, explanation, .. } = study;
-                study = self.evaluated(given, explanation.refuted(), flights, (held, back, shown_on));
-                study.notes.push(refuted.note());
-                study.refuted = Some(refuted);
-                return Ok(study);
-            }
-            let tried = |of: &Worthless| !settings.refused.contains(&of.id);
-            let Some(more) = study.worthless().filter(tried) else {
-                study.notes.extend(worthless.iter().map(Worthless::note));
-                return Ok(study);
-            };
-            // what would take its place has no more to stand on
-            let terms = &study.explanation.search.after.base.effects;
-            let stays = |id: &str| id != more.id && terms.iter().any(|term| term.id() == id);
-            let ids = settings.signatures.iter().map(|signature| signature.id());
-            settings.refused = ids.filter(|id| !stays(id)).collect();
-            worthless.push(more);
-            self.progress.stage(Stage::ExplainingAgain);
-        }
-    }
-
-    fn explanation(&self, flights: &Prepared, settings: &ExplainSettings) -> Result<Explanation, StudyError> {
-        let tell = |done, of| self.progress.about(done, of);
-        crate::diagnose::explain_watched(&flights.signals, self.vehicle, settings, &tell)
-            .map_err(|source| StudyError::Explain { logs: names(&self.request.logs), source })
-    }
-
-    fn given(&self, flights: &Prepared, settings: ExplainSettings) -> Given {
-        // what a flight has its own is known, and no doubt
-        let own = |flight: usize| flights.signals.get(flight).is_some_and(|signals| !signals.own.is_none());
-        let mut contradicting = contradicting_flights(&flights.signals, self.vehicle);
-        contradicting.retain(|apart| !own(apart.flight) && !own(0));
-        Given {
-            vehicle: self.vehicle.clone(),
-            inputs: flights.inputs.clone(),
-            quality: flights.signals.iter().map(|signals| signals.quality.clone()).collect(),
-            inertia_by_wider_window: inertia_by_wider_window(&flights.signals, self.vehicle),
-            by_guessed_curve: moved_by_guessed_curve(&flights.signals, self.vehicle),
-            contradicting,
-            settings,
-            transient_s: self.request.transient_s,
-        }
-    }
-
-    /// An explanation with what it does on the flights explained and on those held out.
-    fn evaluated(
-        &self,
-        given: Given,
-        explanation: Explanation,
-        flights: &Prepared,
-        (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
-    ) -> ExplainStudy {
-        let mut study = ExplainStudy::new(given, explanation);
-        study.notes.extend_from_slice(self.notes);
-        let contradictions = study.contradictions();
-        study.notes.extend(contradictions.iter().map(Contradiction::note));
-        study.tell_mass();
-        study.notes.extend(study.explanation.torque_law.iter().map(TorqueLaw::note));
-        study.notes.extend(study.gyroscopic().iter().map(GyroscopicShare::note));
-        study.tell_wandering();
-        if flights.signals.len() > 1 {
-            study.tell_along(&flights.signals, self.winds_m_s.to_vec(), self.alone);
-        }
-        study.tell_flights_apart();
-        study.evaluate_explained(flights);
-        if let ValidationData::LeftOut { .. } = shown_on {
-            study.evaluate_left_out(flights);
-        } else {
-            study.evaluate_held_out(held, back, shown_on);
-        }
-        if study.worth.is_none() {
-            study.measure_worth(&flights.held_out(), true, &HoldoutSettings::default());
-        }
-        study
-    }
-
-    /// The whole last flight instead of its part, if that shows a change which the part does not.
-    fn explained_again(
-        &self,
-        of_part: ExplainStudy,
-        flights: &mut Prepared,
-        whole: Signals,
-    ) -> Result<ExplainStudy, StudyError> {
-        let Some(last) = flights.signals.last_mut() else { return Ok(of_part) };
-        let part = std::mem::replace(last, whole);
-        self.progress.stage(Stage::ExplainingAgain);
-        let shown_on = ValidationData::Nothing { reason: CHANGES_LATE.to_owned() };
-        let of_whole = self.explained(flights, (&Prepared::default(), None, shown_on))?;
-        if names_a_change(&of_whole) && !names_a_change(&of_part) {
-            return Ok(of_whole);
-        }
-        if let Some(last) = flights.signals.last_mut() {
-            *last = part;
-        }
-        Ok(of_part)
-    }
 }
 
 /// What is doubtful about the vehicle's file.
@@ -281,19 +129,4 @@ fn of_data(flights: &Prepared, held: &Prepared) -> Vec<Note> {
         notes.push(Note::warning(About::File(input.path.clone()), NO_VELOCITY));
     }
     said_once(notes)
-}
-
-/// The part held back is another's, or what is left of the part explained drifts with time.
-fn changes_late(study: &ExplainStudy) -> bool {
-    let drifts =
-        study.located.state.iter().any(|state| ["time", "voltage"].contains(&state.variable.as_str()));
-    study.other_vehicle().is_some() || (study.verdict() == Verdict::Unexplained && drifts)
-}
-
-/// An effect that begins at an instant is among the names.
-fn names_a_change(study: &ExplainStudy) -> bool {
-    study
-        .effects
-        .iter()
-        .any(|named| signature_of(named.id).is_some_and(|signature| signature.role.moment.is_some()))
 }

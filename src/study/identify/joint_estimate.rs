@@ -1,13 +1,13 @@
 //! Mass and inertia by the estimator of `explain`, together with the effects that the flights show.
 
-use crate::diagnose::{
-    ExplainError, ExplainSettings, Explanation, GyroscopicShare, TorqueLaw, Verdict, brief, explain,
-};
+use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, TorqueLaw, Verdict, brief, explain};
 use crate::estimate::{
     Estimated, Finding, MethodResult, Nominal, Recommendation, THETA, moved_by_guessed_curve,
 };
 use crate::signals::Signals;
-use crate::study::explain::BY_CONTROL;
+use crate::study::explain::{Asked, BY_CONTROL, ValidationData, explain_prepared};
+use crate::study::flights::Prepared;
+use crate::study::{Progress, StudyError};
 use crate::vehicle::Vehicle;
 
 /// The recommended estimate, and what was estimated beside mass and inertia.
@@ -31,17 +31,48 @@ pub(super) fn without_inertia(result: &mut MethodResult) {
     }
 }
 
-/// Searches the flights for effects and takes mass and inertia from the final fit. `alone` is the estimate of the rigid body alone,
-/// with what a wider window says of it.
+/// Flights as `explain` sees them, and what is found in them.
+#[derive(Debug)]
+pub struct Found {
+    /// their signals
+    pub(super) flights: Vec<Signals>,
+    /// with the effects that hold on what was held back
+    pub(super) explanation: Explanation,
+}
+
+/// Explains the flights as `mavid explain` does, a part held back. What holds there is then estimated on the whole flight.
 ///
 /// # Errors
-/// [`ExplainError`] where the flights are too short, or lack what a search needs.
+/// Where the flights are too short, or lack what a search needs: why.
+pub(super) fn found_beside(
+    mut flights: Prepared,
+    asked: Asked,
+    progress: &dyn Progress,
+) -> Result<Found, String> {
+    let why = |error| match error {
+        StudyError::Explain { source, .. } => source.to_string(),
+        other => other.to_string(),
+    };
+    let whole = flights.signals.clone();
+    let study = explain_prepared(&mut flights, &mut Prepared::default(), asked, progress).map_err(why)?;
+    if !matches!(study.shown_on, ValidationData::HeldBack { .. }) {
+        return Ok(Found { flights: flights.signals, explanation: study.explanation });
+    }
+    let terms = &study.explanation.search.after.base.effects;
+    let holds = |id: &str| terms.iter().any(|term| term.id() == id);
+    let mut settings = ExplainSettings::default();
+    settings.refused =
+        settings.signatures.iter().map(|signature| signature.id()).filter(|id| !holds(id)).collect();
+    let explanation = explain(&whole, asked.vehicle, &settings).map_err(|error| error.to_string())?;
+    Ok(Found { flights: whole, explanation })
+}
+
+/// Mass and inertia of the final fit. `alone` is the estimate of the rigid body alone, with what a wider window says of it.
 pub(super) fn joint_estimate(
-    flights: &[Signals],
+    Found { flights, explanation: found }: &Found,
     vehicle: &Vehicle,
     alone: &Estimated,
-) -> Result<EstimateWithEffects, ExplainError> {
-    let found = explain(flights, vehicle, &ExplainSettings::default())?;
+) -> EstimateWithEffects {
     let unexplained = found.verdict == Verdict::Unexplained;
     // what serves as no explanation is not in the model
     let fitted = if unexplained { &found.search.before } else { &found.search.after };
@@ -55,9 +86,9 @@ pub(super) fn joint_estimate(
         estimated = law.in_errors_of(estimated);
     }
     let effects: Vec<&'static str> = found.named.iter().map(|named| named.id).collect();
-    let best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(&found, vehicle));
+    let best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(found, vehicle));
     let (turned_by_control, torque_law) = (found.turned_by_control, found.torque_law);
-    Ok(EstimateWithEffects { best, effects, turned_by_control, gyroscopic: fitted.gyroscopic(), torque_law })
+    EstimateWithEffects { best, effects, turned_by_control, gyroscopic: fitted.gyroscopic(), torque_law }
 }
 
 /// The reason for the user.

@@ -1,6 +1,6 @@
 //! The result of identifying: what went in, the estimates, and what is to be known of them.
 
-use super::joint_estimate::{joint_estimate, without_inertia};
+use super::joint_estimate::{Found, joint_estimate, without_inertia};
 use crate::diagnose::joint::JointEstimate;
 use crate::diagnose::{CHANNEL_NAMES, GyroscopicShare, TorqueLaw};
 use crate::estimate::{
@@ -77,8 +77,8 @@ impl WithEffects {
 }
 
 impl IdentifyStudy {
-    /// Mass and inertia from signals and the files that they came from. `explained` are the same flights as `explain` conditions
-    /// them.
+    /// Mass and inertia from signals and the files that they came from. `found` is what `explain` finds in the same flights, or why it
+    /// finds nothing.
     ///
     /// # Errors
     /// [`EstimateError`] where no method can run.
@@ -87,13 +87,15 @@ impl IdentifyStudy {
         inputs: Vec<InputFile>,
         vehicle: Vehicle,
         settings: &IdentifySettings,
-        explained: &[Signals],
+        found: &Result<Found, String>,
     ) -> Result<Self, EstimateError> {
         let mut identification = identify(&flights, &vehicle, settings)?;
+        // flights apart are all that it warns of
+        let disagree = identification.notes.iter().any(Note::is_warning);
         let alone = &identification.best.result.estimated;
         let (mut effects, mut turned_by_control) = (Vec::new(), false);
         let (mut gyroscopic, mut torque_law) = (None, None);
-        match joint_estimate(explained, &vehicle, alone) {
+        match found.as_ref().map(|found| joint_estimate(found, &vehicle, alone)) {
             Ok(found) => {
                 identification.methods.push(found.best.result.clone());
                 identification.best = found.best;
@@ -116,7 +118,6 @@ impl IdentifyStudy {
             identification.methods.iter_mut().filter(joint).for_each(without_inertia);
             without_inertia(&mut identification.best.result);
         }
-        let disagree = identification.notes.iter().any(Note::is_warning);
         let contradictions = contradictions(&identification.best.result, &vehicle, scale.as_ref());
         identification.notes.extend(contradictions.iter().map(Contradiction::note));
         identification.notes.extend(rests_on_guessed_curve(&identification.best.result.estimated));

@@ -1,11 +1,14 @@
 //! Opens, conditions and identifies; with effects where they are asked for.
 
+use super::joint_estimate::found_beside;
 use super::request::IdentifyRequest;
 use super::result::{IdentifyStudy, WithEffects};
 use crate::config::effects_of;
 use crate::diagnose::ExplainSettings;
 use crate::diagnose::joint::{RequestedEffects, identify_jointly};
+use crate::estimate::torque_by_motion;
 use crate::signals::{ConditionSettings, Signals, other_settings};
+use crate::study::explain::{Asked, ExplainRequest};
 use crate::study::flight::Flight;
 use crate::study::flights::{IDENTIFIED, Prepared, load_all, names, prepare, refuse_twins};
 use crate::study::one_vehicle::refuse_other_builds;
@@ -31,13 +34,30 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     refuse_other_builds(logs.iter().flatten())?;
     let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
     let known = request.vehicle.of_flights(known, &logs).map_err(or_unflown)?;
+    let mut known = known;
     let mut notes = known.notes();
-    notes.iter().for_each(|note| progress.note(note));
     progress.stage(Stage::Identifying);
+    let beside = request.conditioning_beside();
+    let prepared = prepare(logs.clone(), (&known.loaded.vehicle, &known.origin), &beside);
+    let corrected =
+        prepared.as_ref().ok().and_then(|flights| torque_by_motion(&flights.signals, &known.loaded.vehicle));
+    if let Some((corrected, why)) = corrected {
+        known.loaded.vehicle = corrected;
+        notes.push(why);
+    }
+    notes.iter().for_each(|note| progress.note(note));
     let with = wanted.map(|wanted| with_effects(request, (&logs, &known), &wanted));
     let with = with.transpose().map_err(or_unflown)?;
     let vehicle = (&known.loaded.vehicle, known.origin.as_path());
-    let explained = conditioned(&logs, vehicle, &request.conditioning_beside()).unwrap_or_default();
+    let asked = Asked {
+        vehicle: &known.loaded.vehicle,
+        notes: &[],
+        logs: &request.logs,
+        transient_s: beside.transient_s.unwrap_or(ExplainRequest::TRANSIENT_S),
+    };
+    let found = prepared
+        .map_err(|error| error.to_string())
+        .and_then(|flights| found_beside(flights, asked, progress));
     let Prepared { recordings, signals, inputs, .. } =
         prepare(logs, vehicle, &request.conditioning()).map_err(or_unflown)?;
     let apart = other_settings(&recordings);
@@ -46,9 +66,8 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     // memory for the work that begins
     drop(recordings);
     let lost: Vec<String> = inputs.iter().flat_map(InputFile::losses).map(str::to_owned).collect();
-    let study =
-        IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings(), &explained)
-            .map_err(|error| StudyError::of_estimate(error, &lost))?;
+    let study = IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings(), &found)
+        .map_err(|error| StudyError::of_estimate(error, &lost))?;
     let study = match &with {
         Some(with) => study.with_law_of(with.joint.torque_law),
         None => study,

@@ -1,0 +1,78 @@
+//! Flights as rows of the weak form, with their commands' latency taken out.
+
+use super::compensate::{as_stated, compensation, take_out};
+use super::theta::Theta;
+use super::weak::{Latency, WeakEstimate, latency};
+use super::window::by_wider_window;
+use crate::physics::ActuationLatency;
+use crate::regression::{WeakMotion, WeakRows, weak_rows};
+use crate::signals::{Signals, WeakKernel};
+use crate::vehicle::Vehicle;
+
+/// The flights as rows of the weak form.
+pub(super) struct WeakFlights {
+    pub(super) signals: Vec<Signals>,
+    kernels: Vec<WeakKernel>,
+    motions: Vec<WeakMotion>,
+    pub(super) rows: Vec<WeakRows>,
+    pub(super) accelerometer_bias: Vec<Option<f64>>,
+    gravity_m_s2: f64,
+}
+
+impl WeakFlights {
+    pub(super) fn from(flights: &[Signals], vehicle: &Vehicle, half_width_s: f64) -> Self {
+        let signals = flights.to_vec();
+        let gravity_m_s2 = vehicle.gravity_m_s2;
+        let kernels: Vec<WeakKernel> =
+            signals.iter().map(|s| WeakKernel::new(half_width_s, s.grid.step_s)).collect();
+        let motions: Vec<WeakMotion> =
+            signals.iter().zip(&kernels).map(|(s, k)| WeakMotion::measured(s, k, gravity_m_s2)).collect();
+        let accelerometer_bias =
+            motions.iter().map(|m| m.vertical.as_ref().and_then(|v| v.accelerometer_bias)).collect();
+        let mut all = Self { signals, kernels, motions, rows: Vec::new(), accelerometer_bias, gravity_m_s2 };
+        all.refresh();
+        all
+    }
+
+    fn refresh(&mut self) {
+        self.rows = self
+            .signals
+            .iter()
+            .zip(&self.motions)
+            .zip(&self.kernels)
+            .map(|((signals, motion), kernel)| weak_rows(signals, motion, kernel))
+            .collect();
+    }
+
+    /// Estimates the latency with the original commands and corrects the commands for it, so that every method uses the
+    /// wrench on the body.
+    pub(super) fn compensate(
+        &mut self,
+        nominal: &Theta,
+        vehicle: &Vehicle,
+    ) -> (Option<Latency>, ActuationLatency) {
+        let Some(found) = latency(&self.rows, nominal) else { return (None, ActuationLatency::default()) };
+        let told = found.total_s.abs() > 4.0 * found.std_s && found.total_s.abs() < 0.3;
+        let compensation =
+            if told { compensation(&found, vehicle) } else { as_stated(&found, vehicle, &self.signals) };
+        if compensation.total_s() == 0.0 {
+            return (Some(found), compensation);
+        }
+        for signals in &mut self.signals {
+            take_out(signals, vehicle, compensation);
+        }
+        self.refresh();
+        (Some(found), compensation)
+    }
+
+    /// Moments of inertia by a window of twice the width, as shares of those of `narrow`.
+    pub(super) fn by_wider_window(
+        &self,
+        narrow: &WeakEstimate,
+        nominal: &Theta,
+        half_width_s: f64,
+    ) -> [f64; 3] {
+        let window = (half_width_s, self.gravity_m_s2);
+        by_wider_window(&self.signals, (narrow, nominal), window)
+    }
+}

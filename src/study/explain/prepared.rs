@@ -1,0 +1,236 @@
+//! Flights that are ready: held out, explained, shown, and explained again where that is called for.
+
+use super::along::{with_own, with_own_winds, without_gust_of_none};
+use super::hold_out::hold_back;
+use super::result::{ExplainStudy, Given};
+use super::short::Short;
+use super::validation_data::ValidationData;
+use crate::diagnose::holdout::HoldoutSettings;
+use crate::diagnose::signatures::signature_of;
+use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, Named, TorqueLaw, Trace, Verdict};
+use crate::estimate::{
+    Contradiction, contradicting_flights, inertia_by_wider_window, moved_by_guessed_curve,
+};
+use crate::note::Note;
+use crate::signals::Signals;
+use crate::study::flights::{Prepared, names};
+use crate::study::{Progress, Stage, StudyError};
+use crate::vehicle::Vehicle;
+use std::path::PathBuf;
+
+/// Why a whole flight is explained.
+const CHANGES_LATE: &str = "something changes in the part that would be held back, so the whole flight is explained; \
+                            give another flight with --holdout";
+
+/// What is asked of the flights.
+#[derive(Clone, Copy)]
+pub(in crate::study) struct Asked<'a> {
+    /// nominal
+    pub(in crate::study) vehicle: &'a Vehicle,
+    /// what is to be said of the data before anything else
+    pub(in crate::study) notes: &'a [Note],
+    /// the files that the flights came from
+    pub(in crate::study) logs: &'a [PathBuf],
+    /// s left out at the beginning of each flight
+    pub(in crate::study) transient_s: f64,
+}
+
+/// Names what the model leaves out, and shows the model with it on `held`, on each flight by the others, or on the end of the only one.
+/// Where something changes at the very end, the whole flight is explained. Afterwards `flights` hold what was explained.
+///
+/// # Errors
+/// [`StudyError::Explain`] where the flights cannot be explained.
+pub(in crate::study) fn explain_prepared(
+    flights: &mut Prepared,
+    held: &mut Prepared,
+    asked: Asked,
+    progress: &dyn Progress,
+) -> Result<ExplainStudy, StudyError> {
+    // the wind of one flight is for its explanation to name
+    let several = flights.signals.len() > 1;
+    let winds_m_s = if several { with_own_winds(flights, asked.vehicle) } else { Vec::new() };
+    if several {
+        with_own_winds(held, asked.vehicle);
+    }
+    let alone = if several { with_own(flights, asked.vehicle) } else { Vec::new() };
+    let whole = flights.signals.last().cloned();
+    let (shown_on, back) = match (held.is_empty(), several) {
+        (true, true) => (ValidationData::LeftOut { flights: flights.signals.len() }, None),
+        (true, false) => hold_back(flights),
+        (false, _) => (ValidationData::Flights(held.inputs.clone()), None),
+    };
+    let is_short = matches!(shown_on, ValidationData::Nothing { .. });
+    let usable_s = flights.signals.iter().map(|signals| signals.quality.usable.usable_s).sum();
+    let short = is_short.then_some(Short { usable_s, unsure: Vec::new() });
+    let task = Task { asked, winds_m_s: &winds_m_s, alone: &alone, short, progress };
+    progress.stage(Stage::Explaining);
+    let study = task.explained(flights, (held, back.as_ref(), shown_on))?;
+    // what changed in the part held back, or shortly before it, is nowhere in the part explained
+    match whole.filter(|_| back.is_some() && changes_late(&study)) {
+        Some(whole) => task.explained_again(study, flights, whole),
+        None => Ok(study),
+    }
+}
+
+/// The flights as the weak form sees them.
+pub(super) fn traces_of(flights: &Prepared, vehicle: &Vehicle, settings: &ExplainSettings) -> Vec<Trace> {
+    let traces =
+        flights.signals.iter().filter_map(|signals| Trace::new(signals, vehicle, settings.half_width_s).ok());
+    traces.collect()
+}
+
+/// What every attempt has in common.
+struct Task<'a> {
+    asked: Asked<'a>,
+    /// of each flight, where they are several
+    winds_m_s: &'a [Option<[f64; 2]>],
+    /// of each flight, where they are several and not alike
+    alone: &'a [Vec<Named>],
+    /// where one flight is given, and no part of it can be held back
+    short: Option<Short>,
+    progress: &'a dyn Progress,
+}
+
+impl Task<'_> {
+    /// Explains the flights and shows the better model; what is to be said of the data before comes first. An effect without which the
+    /// hold-out is predicted better is left out, and the flights are explained again.
+    fn explained(
+        &self,
+        flights: &Prepared,
+        (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
+    ) -> Result<ExplainStudy, StudyError> {
+        let mut settings = ExplainSettings::default();
+        let (mut refused, mut unsure) = (Vec::new(), Vec::new());
+        loop {
+            let mut explanation = self.explanation(flights, &settings)?;
+            if !unsure.is_empty() {
+                explanation = explanation.of_unsure_cause(&settings.refused);
+            }
+            self.progress.stage(Stage::Predicting);
+            let given = self.given(flights, settings.clone());
+            let mut study = self.evaluated(given, explanation, flights, (held, back, shown_on.clone()));
+            if let Some(refuted) = study.refuted_by_holdout() {
+                let ExplainStudy { given, explanation, .. } = study;
+                study = self.evaluated(given, explanation.refuted(), flights, (held, back, shown_on));
+                study.notes.push(refuted.note());
+                study.refuted = Some(refuted);
+                return Ok(study);
+            }
+            let unshown = study.unshown(&traces_of(flights, self.asked.vehicle, &settings));
+            let worthless = study.worthless().filter(|of| !settings.refused.contains(&of.id));
+            let (id, note) = match (unshown, worthless) {
+                (Some(of), _) => {
+                    let more = (of.id, of.note());
+                    unsure.push(of.name);
+                    more
+                }
+                (None, Some(of)) => (of.id, of.note()),
+                (None, None) => {
+                    study.notes.extend(refused);
+                    study.short.iter_mut().for_each(|short| short.unsure = std::mem::take(&mut unsure));
+                    return Ok(study);
+                }
+            };
+            // what would take its place has no more to stand on
+            let terms = &study.explanation.search.after.base.effects;
+            let stays = |of: &str| of != id && terms.iter().any(|term| term.id() == of);
+            let ids = settings.signatures.iter().map(|signature| signature.id());
+            settings.refused = ids.filter(|id| !stays(id)).collect();
+            refused.push(note);
+            self.progress.stage(Stage::ExplainingAgain);
+        }
+    }
+
+    fn explanation(&self, flights: &Prepared, settings: &ExplainSettings) -> Result<Explanation, StudyError> {
+        let tell = |done, of| self.progress.about(done, of);
+        let found = crate::diagnose::explain_watched(&flights.signals, self.asked.vehicle, settings, &tell)
+            .map_err(|source| StudyError::Explain { logs: names(&self.asked.logs), source })?;
+        Ok(without_gust_of_none(found, &flights.signals, self.alone, (self.asked.vehicle, settings)))
+    }
+
+    fn given(&self, flights: &Prepared, settings: ExplainSettings) -> Given {
+        // what a flight has its own is known, and no doubt
+        let own = |flight: usize| flights.signals.get(flight).is_some_and(|signals| !signals.own.is_none());
+        let mut contradicting = contradicting_flights(&flights.signals, self.asked.vehicle);
+        contradicting.retain(|apart| !own(apart.flight) && !own(0));
+        Given {
+            vehicle: self.asked.vehicle.clone(),
+            inputs: flights.inputs.clone(),
+            quality: flights.signals.iter().map(|signals| signals.quality.clone()).collect(),
+            inertia_by_wider_window: inertia_by_wider_window(&flights.signals, self.asked.vehicle),
+            by_guessed_curve: moved_by_guessed_curve(&flights.signals, self.asked.vehicle),
+            contradicting,
+            settings,
+            transient_s: self.asked.transient_s,
+        }
+    }
+
+    /// An explanation with what it does on the flights explained and on those held out.
+    fn evaluated(
+        &self,
+        given: Given,
+        explanation: Explanation,
+        flights: &Prepared,
+        (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
+    ) -> ExplainStudy {
+        let mut study = ExplainStudy::new(given, explanation);
+        study.short = self.short.clone().filter(|_| matches!(shown_on, ValidationData::Nothing { .. }));
+        study.notes.extend_from_slice(self.asked.notes);
+        let contradictions = study.contradictions();
+        study.notes.extend(contradictions.iter().map(Contradiction::note));
+        study.tell_mass();
+        study.notes.extend(study.explanation.torque_law.iter().map(TorqueLaw::note));
+        study.notes.extend(study.gyroscopic().iter().map(GyroscopicShare::note));
+        study.tell_wandering();
+        if flights.signals.len() > 1 {
+            study.tell_along(&flights.signals, self.winds_m_s.to_vec(), self.alone);
+        }
+        study.tell_flights_apart();
+        study.evaluate_explained(flights);
+        if let ValidationData::LeftOut { .. } = shown_on {
+            study.evaluate_left_out(flights);
+        } else {
+            study.evaluate_held_out(held, back, shown_on);
+        }
+        if study.worth.is_none() {
+            study.measure_worth(&flights.held_out(), true, &HoldoutSettings::default());
+        }
+        study
+    }
+
+    /// The whole last flight instead of its part, if that shows a change which the part does not.
+    fn explained_again(
+        &self,
+        of_part: ExplainStudy,
+        flights: &mut Prepared,
+        whole: Signals,
+    ) -> Result<ExplainStudy, StudyError> {
+        let Some(last) = flights.signals.last_mut() else { return Ok(of_part) };
+        let part = std::mem::replace(last, whole);
+        self.progress.stage(Stage::ExplainingAgain);
+        let shown_on = ValidationData::Nothing { reason: CHANGES_LATE.to_owned() };
+        let of_whole = self.explained(flights, (&Prepared::default(), None, shown_on))?;
+        if names_a_change(&of_whole) && !names_a_change(&of_part) {
+            return Ok(of_whole);
+        }
+        if let Some(last) = flights.signals.last_mut() {
+            *last = part;
+        }
+        Ok(of_part)
+    }
+}
+
+/// The part held back is another's, or what is left of the part explained drifts with time.
+fn changes_late(study: &ExplainStudy) -> bool {
+    let drifts =
+        study.located.state.iter().any(|state| ["time", "voltage"].contains(&state.variable.as_str()));
+    study.other_vehicle().is_some() || (study.verdict() == Verdict::Unexplained && drifts)
+}
+
+/// An effect that begins at an instant is among the names.
+fn names_a_change(study: &ExplainStudy) -> bool {
+    study
+        .effects
+        .iter()
+        .any(|named| signature_of(named.id).is_some_and(|signature| signature.role.moment.is_some()))
+}
