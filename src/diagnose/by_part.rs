@@ -95,9 +95,13 @@ pub fn by_part(traces: &[Trace], explanation: &Explanation) -> Result<Vec<ByPart
         [one] => [0..one.rows() / 2, one.rows() / 2..one.rows()].map(|rows| part_of(one, &rows)).into(),
         several => several.to_vec(),
     };
+    // a part that lies on one side of a moment does not tell what changed then from the mass
+    let mut base = after.base.clone();
+    let of_moment = base.effects.iter_mut().filter(|term| term.signature.role.moment.is_some());
+    of_moment.for_each(|term| term.free.clear());
     let each = parts
         .par_iter()
-        .map(|part| fit(std::slice::from_ref(part), after.base.clone(), Newton::Held))
+        .map(|part| fit(std::slice::from_ref(part), base.clone(), Newton::Held))
         .collect::<Result<Vec<Fitted>, _>>()?;
     let one = |amount: &Amount| ByPart {
         id: amount.id,
@@ -131,15 +135,17 @@ struct Amount {
     /// of the effect
     place: usize,
     slot: usize,
-    /// among the free parameters of all effects
-    column: usize,
+    /// among the free parameters of the effect
+    index: usize,
 }
 
 impl Amount {
     /// Its value in a fit of the same base, and the standard error.
     fn of(&self, fitted: &Fitted) -> (f64, f64) {
-        let value = fitted.base.effects[self.place].values[self.slot];
-        (value, fitted.std_of(fitted.rows.nuisances.len() + self.column, (value, self.unit)))
+        let effects = &fitted.base.effects;
+        let before: usize = effects[..self.place].iter().map(|term| term.free.len()).sum();
+        let value = effects[self.place].values[self.slot];
+        (value, fitted.std_of(fitted.rows.nuisances.len() + before + self.index, (value, self.unit)))
     }
 }
 
@@ -147,13 +153,12 @@ impl Amount {
 fn amount(fitted: &Fitted, place: usize, is_asked: impl Fn(&EffectTerm) -> bool) -> Option<Amount> {
     let Base { effects, .. } = &fitted.base;
     let term = effects.get(place).filter(|term| is_asked(term))?;
-    let first: usize = effects[..place].iter().map(|before| before.free.len()).sum();
     let free = term.free.iter().enumerate().filter(|(_, slot)| term.is_amount(**slot));
     let amounts = free.filter_map(|(index, &slot)| {
         let parameter = term.parameter(slot)?;
         let (name, unit) = (parameter.name, parameter.unit);
         let nothing = term.signature.nothing;
-        Some(Amount { id: term.id(), parameter: name, unit, nothing, place, slot, column: first + index })
+        Some(Amount { id: term.id(), parameter: name, unit, nothing, place, slot, index })
     });
     let away = |amount: &Amount| {
         let (value, std) = amount.of(fitted);
@@ -215,5 +220,23 @@ mod tests {
         assert!(certain > 0.985 && in_each < 0.92, "{certain}, {in_each}");
         let (certain, _) = shares(8.0, 0.0);
         assert!(certain < 0.05, "{certain}");
+    }
+
+    #[test]
+    fn halves_show_an_effect_each_by_itself_and_alike() {
+        let of = |parts: [(f64, f64); 2]| ByPart {
+            id: "inflow",
+            parameter: "kz",
+            unit: "N/(m/s)",
+            nothing: 0.0,
+            whole: (0.5, 0.05),
+            parts: parts.to_vec(),
+        };
+        let shown = |parts| (of(parts).is_in_each(), of(parts).are_alike());
+        assert_eq!(shown([(0.5, 0.1), (0.45, 0.1)]), (true, true));
+        assert_eq!(shown([(0.5, 0.1), (0.1, 0.1)]), (false, false));
+        assert_eq!(shown([(0.5, 0.05), (0.2, 0.05)]), (true, false));
+        assert_eq!(shown([(0.3, 0.1), (0.1, 0.1)]), (false, true));
+        assert_eq!(shown([(0.5, 0.1), (-0.5, 0.1)]), (false, false));
     }
 }

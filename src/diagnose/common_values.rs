@@ -59,7 +59,8 @@ fn set_values(fitted: &mut Fitted, values: &[(&str, (f64, f64))]) {
             Nuisance::Mass => of(NAMES[0]).inspect(|known| body.mass_kg = known.0),
             Nuisance::Inertia(entry) => {
                 let (row, column) = INERTIA_ENTRIES[entry];
-                let moment = (row == column).then(|| of(NAMES[1 + entry])).flatten();
+                let is_known = row == column && !fitted.undetermined.contains(&(1 + entry));
+                let moment = is_known.then(|| of(NAMES[1 + entry])).flatten();
                 moment.inspect(|known| body.inertia_kg_m2[(row, column)] = known.0)
             }
             _ => None,

@@ -4,6 +4,7 @@ use super::harmonics::LackOfFit;
 use super::latency::{LatencyFinding, finding_of};
 use super::locate::{Aperiodic, FieldTest, Localisation};
 use super::named::{DetectionLimit, Named};
+use super::signatures::signature_of;
 use super::slight::Slight;
 use super::tested::Search;
 use super::torque_law::TorqueLaw;
@@ -56,21 +57,26 @@ impl Explanation {
         self
     }
 
-    /// Without these names, of effects that are in no model: nothing else changes, and what they were is no deviation.
+    /// Without the name of a wind that changes irregularly: it is in no model, and nothing else changes.
     #[must_use]
-    pub fn without_names(mut self, ids: &[&str]) -> Self {
-        self.named.retain(|named| !ids.contains(&named.id));
-        if self.named.is_empty() && matches!(self.verdict, Verdict::Explained | Verdict::PartlyExplained) {
-            self.verdict = Verdict::NothingMissing;
+    pub fn without_gust(mut self) -> Self {
+        let is_gust = |named: &Named| signature_of(named.id).is_some_and(|of| of.joint.irregular.is_some());
+        self.named.retain(|named| !is_gust(named));
+        self.aperiodic.gust = None;
+        if self.named.is_empty() {
+            self.verdict = match self.verdict {
+                Verdict::Explained => Verdict::NothingMissing,
+                Verdict::PartlyExplained => Verdict::Unexplained,
+                verdict => verdict,
+            };
         }
         self
     }
 
-    /// Where names were taken back because the flight shows them too little: none of those comes again, and what they explained is no
+    /// Where names were taken back because the flight shows them too little, and all was explained with them: what they explained is no
     /// deviation without a cause.
     #[must_use]
-    pub fn of_unsure_cause(mut self, taken_back: &[&str]) -> Self {
-        self = self.without_names(taken_back);
+    pub fn of_unsure_cause(mut self) -> Self {
         match self.verdict {
             Verdict::NothingMissing | Verdict::Explained => {}
             Verdict::PartlyExplained => self.verdict = Verdict::Explained,

@@ -23,6 +23,9 @@ pub struct Fitted {
     pub coefficients: DVector<f64>,
     /// their covariance
     pub covariance: DMatrix<f64>,
+    /// places in mass and inertia of what the flights do not determine: the model has what the vehicle file states there, as far as they
+    /// tell nothing else
+    pub undetermined: Vec<usize>,
 }
 
 impl Fitted {
@@ -196,7 +199,7 @@ pub(super) fn linearised(flights: &[Trace], base: Base) -> Result<Fitted, Physic
     let weighted = Weighted::new(&rows);
     let count = rows.nuisances.len() + rows.effects.len();
     let (coefficients, covariance) = (DVector::zeros(count), DMatrix::zeros(count, count));
-    Ok(Fitted { base, rows, weighted, coefficients, covariance })
+    Ok(Fitted { base, rows, weighted, coefficients, covariance, undetermined: Vec::new() })
 }
 
 /// Coefficients of the rows' columns, and their covariance.

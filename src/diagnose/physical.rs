@@ -43,6 +43,7 @@ pub(super) fn make_physical(
     stay_at_prior(flights, (stated, &open), fitted)?;
     let theta = theta_of(&fitted.base.vehicle.body);
     if is_physical(&theta) {
+        fitted.undetermined = open;
         return Ok(());
     }
     let nominal = theta_of(&stated.body);
@@ -66,7 +67,7 @@ pub(super) fn make_physical(
             after.covariance[(place, place)] = size.powi(2);
         }
     }
-    *fitted = after;
+    *fitted = Fitted { undetermined: open, ..after };
     Ok(())
 }
 
@@ -90,20 +91,25 @@ fn stay_at_prior(
         SMatrix::from_fn(|i, j| fitted.covariance[(places[i], places[j])]);
     let theta = theta_of(&fitted.base.vehicle.body);
     let nominal = Nominal::of(stated);
-    if is_physical(&theta) && open.is_empty() {
+    let is_possible = is_physical(&theta);
+    if is_possible && open.is_empty() {
         return Ok(());
+    }
+    for entry in 1..THETA {
+        // what the description guesses is no knowledge of the flight's
+        covariance[(entry - 1, entry - 1)] += (nominal.guessed(entry) * theta[entry]).powi(2);
     }
     for &entry in open {
         let size = size_of(&theta, &nominal, entry);
         covariance[(entry - 1, entry - 1)] += size.powi(2);
     }
     let largest = MOMENTS.into_iter().map(|entry| nominal.theta[entry]).fold(0.0, f64::max);
-    let prior = SVector::<f64, ENTRIES>::from_fn(|entry, _| {
-        let share = if MOMENTS.contains(&(1 + entry)) { MOMENT_STD } else { PRODUCT_STD };
-        let size = if MOMENTS.contains(&(1 + entry)) { nominal.theta[1 + entry] } else { largest };
-        size * share.hypot(nominal.guessed(1 + entry))
-    });
-    let by_prior = SMatrix::from_diagonal(&prior.map(|std| std.powi(-2)));
+    // what the flight determines stays where it is, unless no body can have the whole
+    let by_prior = SMatrix::from_diagonal(&SVector::<f64, ENTRIES>::from_fn(|entry, _| {
+        let is_moment = MOMENTS.contains(&(1 + entry));
+        let std = if is_moment { MOMENT_STD * nominal.theta[1 + entry] } else { PRODUCT_STD * largest };
+        if is_possible && !open.contains(&(1 + entry)) { 0.0 } else { std.powi(-2) }
+    }));
     let by_flight = covariance.cholesky().map(|root| root.inverse());
     let Some(posterior) = by_flight.and_then(|of| (of + by_prior).cholesky()).map(|root| root.inverse())
     else {
@@ -123,6 +129,10 @@ fn stay_at_prior(
         .unwrap_or_else(|| if is_physical(&theta) { theta } else { moved_by(1.0) });
     let mut base = fitted.base.clone();
     base.vehicle.body.inertia_kg_m2 = inertia_of(&kept);
+    if guesses_torque(stated) && theta[ABOUT_Z] > 0.0 && kept[ABOUT_Z] > 0.0 {
+        // the motion tells the ratio of izz and of this torque
+        base.vehicle.propulsion.torque_per_thrust_m *= kept[ABOUT_Z] / theta[ABOUT_Z];
+    }
     // its standard error is still the flight's own: what it does not determine is said
     *fitted = fitted.moved_to(flights, base)?;
     Ok(())

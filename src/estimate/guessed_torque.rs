@@ -4,12 +4,12 @@
 //! No body has more of it than ixx + iyy, which the thrusts tell.
 
 use super::nominal::Nominal;
-use super::result::Estimated;
+use super::result::{Estimated, Finding, finding};
+use super::theta::MOMENTS;
 use super::weak::solve_weak;
 use super::weak_flights::WeakFlights;
 use crate::note::{About, Note};
 use crate::signals::{Signals, WEAK_HALF_WIDTH_S};
-use crate::text::significant;
 use crate::vehicle::{Guessed, Vehicle};
 
 /// izz over ixx + iyy of multirotors: 1 of a flat one, 0.8 to 0.96 of those with a body, less of tall ones.
@@ -18,42 +18,98 @@ const USUAL_SHARE: f64 = 0.85;
 const RELATIVE: f64 = 0.2;
 /// Standard errors from which on the motion excludes a guess. The usual three.
 const CERTAIN: f64 = 3.0;
-/// Standard error of a logarithm of the ratio of izz to ixx + iyy above which the motion tells too little to correct a guess by it.
-const LARGEST_STD: f64 = 0.1;
-
 /// The vehicle with another torque per thrust, and a note on it, where that is guessed and no body could have the izz which the flights
-/// show with it. `None` where it is no guess, or the flights do not exclude it.
+/// show with it. `None` where it is no guess, where the flights do not determine the moments, and where they do not exclude it.
 #[must_use]
 pub fn torque_by_motion(flights: &[Signals], vehicle: &Vehicle) -> Option<(Vehicle, Note)> {
-    vehicle.guesses.iter().find(|guess| guess.of == Guessed::TorqueRatio)?;
-    let nominal = Nominal::of(vehicle);
+    let relative = |of: Guessed| {
+        let of = vehicle.guesses.iter().filter(|guess| guess.of == of).map(|guess| guess.relative);
+        of.fold(0.0, f64::max)
+    };
+    let (guess, arms) = (relative(Guessed::TorqueRatio), relative(Guessed::Arms));
+    if guess <= 0.0 {
+        return None;
+    }
+    // what is only guessed is no question of the motion
+    let nominal = Nominal::of(&Vehicle { guesses: Vec::new(), ..vehicle.clone() });
     let mut weak = WeakFlights::from(flights, vehicle, WEAK_HALF_WIDTH_S);
     weak.compensate(&nominal.theta, vehicle);
-    let Estimated { theta, covariance, .. } = Estimated::of(&solve_weak(&weak.rows, &nominal.theta)?);
+    let found = solve_weak(&weak.rows, &nominal.theta)?;
+    let by_wider_window = weak.by_wider_window(&found, &nominal.theta, WEAK_HALF_WIDTH_S);
+    let estimated = Estimated::of(&found).with_wider_window(by_wider_window);
+    let is_determined =
+        |index: usize| matches!(finding(&estimated, &nominal, index), Finding::Determined { .. });
+    if !MOMENTS.into_iter().all(is_determined) {
+        return None;
+    }
+    let Estimated { theta, covariance, .. } = &estimated;
     let (across, about) = (theta[1] + theta[4], theta[6]);
-    if !(across > 0.0 && about > 0.0) {
-        return None;
-    }
-    let variance_across = covariance[(1, 1)] + covariance[(4, 4)] + 2.0 * covariance[(1, 4)];
-    let std = (variance_across / across.powi(2) + covariance[(6, 6)] / about.powi(2)).sqrt();
+    // of the logarithm of izz / (ixx + iyy)
+    let variance = (covariance[(1, 1)] + covariance[(4, 4)] + 2.0 * covariance[(1, 4)]) / across.powi(2)
+        + covariance[(6, 6)] / about.powi(2)
+        - 2.0 * (covariance[(1, 6)] + covariance[(4, 6)]) / (across * about);
+    let std = variance.max(0.0).sqrt().hypot(arms);
     let share = about / across;
-    // not below by a number that is none
-    if !(std < LARGEST_STD && share.ln() > CERTAIN * std) {
+    let is_excluded = share.ln() > CERTAIN * std;
+    if !is_excluded {
         return None;
     }
+    // two opinions of the logarithm of its factor: the guess, and the motion with the usual flatness
+    let by_motion = (USUAL_SHARE / share).ln();
+    let (weight_of_guess, weight) = (guess.powi(-2), RELATIVE.hypot(std).powi(-2));
+    let factor = (by_motion * weight / (weight + weight_of_guess)).exp();
+    let left = (weight + weight_of_guess).sqrt().recip();
     let mut corrected = vehicle.clone();
-    corrected.propulsion.torque_per_thrust_m *= USUAL_SHARE / share;
-    let why = "from the motion and the usual flatness of a multirotor";
+    corrected.propulsion.torque_per_thrust_m *= factor;
+    let why = "from the rotors' radius, the motion and the usual flatness of a multirotor";
     for guess in corrected.guesses.iter_mut().filter(|guess| guess.of == Guessed::TorqueRatio) {
-        (guess.relative, guess.why) = (RELATIVE, why.to_owned());
+        (guess.relative, guess.why) = (left, why.to_owned());
     }
     let text = format!(
-        "with the guessed torque per thrust of {} m, the inertia about z would be {} times what a body with this ixx and iyy can have: {} m +- \
-         {:.0} % is taken, {why}",
-        significant(vehicle.propulsion.torque_per_thrust_m, 3),
-        significant(share, 2),
-        significant(corrected.propulsion.torque_per_thrust_m, 3),
-        100.0 * RELATIVE
+        "with the guessed torque per thrust of {:.4} m, the inertia about z would be {share:.1} times what a body with this ixx and iyy can \
+         have: {:.4} m +- {:.0} % is taken, {why}",
+        vehicle.propulsion.torque_per_thrust_m,
+        corrected.propulsion.torque_per_thrust_m,
+        100.0 * left
     );
     Some((corrected, Note::remark(About::Vehicle, text)))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+    use super::*;
+    use crate::signals::{ConditionSettings, condition};
+    use crate::simulate::{
+        FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight,
+    };
+    use crate::vehicle::Guess;
+
+    #[test]
+    fn a_guess_that_no_body_allows_is_corrected_and_another_one_stays() {
+        let pair = random_vehicle(31);
+        let trajectory = RandomTrajectory::default().draw(3101).unwrap();
+        let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
+        let settings = FlightSettings { seed: 31, ..FlightSettings::default() };
+        let truth = Truth::clean(pair.truth.clone());
+        let flight = simulate_flight(truth, &pair.nominal, &reference, &settings).unwrap();
+        let guessed = |factor: f64, is_guess: bool| {
+            let mut vehicle = pair.nominal.clone();
+            vehicle.propulsion.torque_per_thrust_m *= factor;
+            let guess = Guess { of: Guessed::TorqueRatio, relative: 0.45, why: String::new() };
+            vehicle.guesses = if is_guess { vec![guess] } else { Vec::new() };
+            let signals = condition(&flight.recording, &vehicle, &ConditionSettings::default()).unwrap();
+            torque_by_motion(&[signals], &vehicle)
+        };
+        let truth_m = pair.truth.propulsion.torque_per_thrust_m;
+        let (corrected, note) = guessed(3.0, true).unwrap();
+        let ratio = corrected.propulsion.torque_per_thrust_m / truth_m;
+        // the guess itself is another opinion
+        assert!((0.7..1.8).contains(&ratio), "{ratio}");
+        assert!((0.1..RELATIVE).contains(&corrected.guesses[0].relative), "{:?}", corrected.guesses);
+        assert!(note.text.contains("the inertia about z would be"), "{}", note.text);
+        assert_eq!(guessed(1.0, true), None);
+        // what is stated is not touched
+        assert_eq!(guessed(3.0, false), None);
+    }
 }

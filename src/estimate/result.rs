@@ -247,6 +247,24 @@ fn of_feedback(estimated: &Estimated, index: usize) -> Option<String> {
     })
 }
 
+/// The reason if a product of inertia couples an axis whose moment is not determined: it says nothing beside that.
+fn of_open_moment(estimated: &Estimated, nominal: &Nominal, index: usize) -> Option<String> {
+    let axes = axes_of(index);
+    let moments = axes.iter().map(|axis| [1, 4, 6][*axis]).filter(|_| axes.len() > 1);
+    let relative = |moment: usize| {
+        let std = estimated.covariance[(moment, moment)].max(0.0).sqrt();
+        std / size_of(&estimated.theta, nominal, moment)
+    };
+    let mut open = moments.filter(|moment| !(relative(*moment) <= LARGEST_RELATIVE_STD));
+    open.next().map(|moment| {
+        format!(
+            "it couples an axis whose moment, {}, has a standard error of {} of its size",
+            NAMES[moment],
+            percent(relative(moment))
+        )
+    })
+}
+
 /// Size of a parameter by which its errors are judged: the larger of the nominal and of the estimate.
 #[must_use]
 pub fn size_of(theta: &Theta, nominal: &Nominal, index: usize) -> f64 {
@@ -295,6 +313,9 @@ pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Findin
         return Finding::NotDetermined { reason };
     }
     if let Some(reason) = of_feedback(estimated, index) {
+        return Finding::NotDetermined { reason };
+    }
+    if let Some(reason) = of_open_moment(estimated, nominal, index) {
         return Finding::NotDetermined { reason };
     }
     let moment = matches!(index, 0 | 1 | 4 | 6);

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::autopilot::VehicleKind;
 use crate::config::{ConfigError, load_csv_mapping};
 use crate::diagnose::holdout::HeldOut;
+use crate::estimate::torque_by_motion;
 use crate::log::{
     Hold, LogError, LogFlight, OpenOptions, OpenedFlights, ReadReport, format_of, open_flights,
 };
@@ -15,7 +16,7 @@ use crate::signals::{
     spans,
 };
 use crate::text;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Guessed, Vehicle};
 use crate::wire::SystemId;
 use rayon::prelude::*;
 
@@ -244,6 +245,24 @@ pub(super) fn prepare(
         }
     }
     Ok(prepared)
+}
+
+/// The same. Where the motion excludes a torque per thrust that is only guessed, the vehicle with another one, a note on it, and the flights
+/// prepared for that.
+pub(super) fn prepare_by_motion(
+    logs: Vec<Vec<Flight>>,
+    (vehicle, file): (&Vehicle, &Path),
+    settings: &ConditionSettings,
+) -> Result<(Prepared, Option<(Vehicle, Note)>), StudyError> {
+    let guesses = vehicle.guesses.iter().any(|guess| guess.of == Guessed::TorqueRatio);
+    let again = guesses.then(|| logs.clone());
+    let prepared = prepare(logs, (vehicle, file), settings)?;
+    match again.zip(torque_by_motion(&prepared.signals, vehicle)) {
+        None => Ok((prepared, None)),
+        Some((logs, (corrected, note))) => {
+            Ok((prepare(logs, (&corrected, file), settings)?, Some((corrected, note))))
+        }
+    }
 }
 
 /// The flights of one log that can be made ready. Of several flights one that cannot is left out, and noted with the first

@@ -68,6 +68,10 @@ impl Agreement {
         self.name == NAMES[0] && self.share().abs() < PAYLOAD_SHARE
     }
 
+    fn is_of_inertia(&self) -> bool {
+        NAMES[1..].contains(&self.name.as_str())
+    }
+
     /// Whether they differ significantly, and by more than flights of one vehicle do.
     fn differs(&self) -> bool {
         let Some(Relevance { share, amount }) = self.relevance else { return false };
@@ -130,8 +134,11 @@ pub(super) fn judged(
         .collect();
     // of flights that are explained together, the load is each one's own
     let loaded = |agreement: &Agreement| !is_one_model && agreement.is_by_a_load();
-    let different: Vec<&Agreement> =
-        all.iter().filter(|agreement| agreement.differs() && !loaded(agreement)).collect();
+    // a body keeps its moments of inertia in the air unless its mass changes: another estimate there is one of the method
+    let drops = all.iter().any(|agreement| agreement.name == NAMES[0] && agreement.differs());
+    let kept = |agreement: &Agreement| same_flight && !drops && agreement.is_of_inertia();
+    let differs = |agreement: &&Agreement| agreement.differs() && !loaded(agreement) && !kept(agreement);
+    let different: Vec<&Agreement> = all.iter().filter(differs).collect();
     let worst = jumps.iter().max_by(|a, b| a.1.total_cmp(&b.1));
     let whose = if same_flight {
         "something changed in the part of the flight that was held back"

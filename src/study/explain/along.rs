@@ -64,9 +64,7 @@ pub(super) fn without_gust_of_none(
     } else {
         alone.iter().flatten().any(is_irregular)
     };
-    let irregular: Vec<&str> =
-        found.named.iter().filter(|named| is_irregular(named)).map(|named| named.id).collect();
-    if is_shown { found } else { found.without_names(&irregular) }
+    if is_shown { found } else { found.without_gust() }
 }
 
 impl ExplainStudy {

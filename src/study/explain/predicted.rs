@@ -154,4 +154,36 @@ mod tests {
         assert!((found - 12.5).abs() < 1e-12, "{found}");
         assert_eq!(predicted(None, None).work_of_effects(), None);
     }
+
+    #[test]
+    fn a_model_is_none_over_each_window_in_which_no_change_is_better() {
+        let value = |value| Interval { value, range: None };
+        let of = |unchanged, after| {
+            Some(Compared {
+                before: value(after),
+                after: value(after),
+                unchanged: Some(value(unchanged)),
+                floor: None,
+                improvement_percent: value(0.0),
+                at_end: None,
+            })
+        };
+        let window = |window_s, position_m, attitude_rad| OpenLoop {
+            window_s,
+            windows: 10,
+            position_m,
+            velocity_m_s: None,
+            attitude_rad,
+            rates_rad_s: None,
+        };
+        let open_loop = vec![
+            window(0.1, of(1.0, 2.0), None),
+            window(0.5, of(2.0, 1.0), of(2.0, 1.0)),
+            window(1.0, of(2.0, 1.0), of(1.0, 2.0)),
+        ];
+        let predicted = Predicted { open_loop, improvement_percent: None };
+        // a tenth of a second is no prediction that anyone needs
+        assert_eq!(predicted.no_model_over(), [(1.0, vec!["attitude"])]);
+        assert!(predicted.worse_than_unchanged().is_empty());
+    }
 }

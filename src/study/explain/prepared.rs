@@ -101,10 +101,13 @@ impl Task<'_> {
     ) -> Result<ExplainStudy, StudyError> {
         let mut settings = ExplainSettings::default();
         let (mut refused, mut unsure) = (Vec::new(), Vec::new());
+        let mut all_was_explained = false;
         loop {
             let mut explanation = self.explanation(flights, &settings)?;
-            if !unsure.is_empty() {
-                explanation = explanation.of_unsure_cause(&settings.refused);
+            match unsure.is_empty() {
+                true => all_was_explained = explanation.verdict == Verdict::Explained,
+                false if all_was_explained => explanation = explanation.of_unsure_cause(),
+                false => {}
             }
             self.progress.stage(Stage::Predicting);
             let given = self.given(flights, settings.clone());
@@ -135,7 +138,8 @@ impl Task<'_> {
             let terms = &study.explanation.search.after.base.effects;
             let stays = |of: &str| of != id && terms.iter().any(|term| term.id() == of);
             let ids = settings.signatures.iter().map(|signature| signature.id());
-            settings.refused = ids.filter(|id| !stays(id)).collect();
+            let gone: Vec<&str> = ids.filter(|id| !stays(id)).collect();
+            settings.refused.extend(gone);
             refused.push(note);
             self.progress.stage(Stage::ExplainingAgain);
         }

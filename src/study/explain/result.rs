@@ -2,6 +2,7 @@
 
 use super::along_flights::AlongFlights;
 use super::located::Located;
+use super::not_determined::{BY_CONTROL, KEPT};
 use super::predicted::Predicted;
 use super::readers::for_readers;
 use super::refuted::Refuted;
@@ -138,11 +139,6 @@ pub struct AxisFit {
     pub after: f64,
 }
 
-/// Why moments of inertia are not determined where the excitation is too small.
-pub(in crate::study) const BY_CONTROL: &str = "almost all rotation was the controller's answer to the noise of the \
-                                               gyroscopes; fly an identification trajectory, which excites the \
-                                               rotation";
-
 impl ExplainStudy {
     /// Puts it together, not shown on anything yet.
     #[must_use]
@@ -198,10 +194,12 @@ impl ExplainStudy {
         let nominal = Nominal::of(&self.given.vehicle);
         let estimated = self.on_scale(self.fitted()).with_wider_window(self.given.inertia_by_wider_window);
         let is_weighed = |index| index == 0 && self.fitted().base.weighed_kg.is_some();
+        let fitted = self.fitted();
         let by_control = |index: usize| index > 0 && self.explanation.turned_by_control;
         let not_determined = |index| match finding(&estimated, &nominal, index) {
             _ if by_control(index) => Some(BY_CONTROL.to_owned()),
             Finding::NotDetermined { reason } if !is_weighed(index) => Some(reason),
+            _ if fitted.undetermined.contains(&index) => Some(KEPT.to_owned()),
             _ => None,
         };
         (0..NAMES.len())

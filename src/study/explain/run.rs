@@ -7,10 +7,11 @@ use super::result::ExplainStudy;
 use crate::config::effects_of;
 use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
-use crate::estimate::torque_by_motion;
 use crate::note::{About, Note, said_once};
 use crate::signals::{ConditionSettings, STEP_FOR_EFFECTS_S, Signals, ThrustPreference, other_settings};
-use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_off_mixer, refuse_twins};
+use crate::study::flights::{
+    EXPLAINED, Prepared, load_all, prepare, prepare_by_motion, refuse_off_mixer, refuse_twins,
+};
 use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
@@ -45,10 +46,9 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let known = request.vehicle.of_flights(known, &logs).map_err(or_unflown)?;
     let mut notes = of_vehicle(&known)?;
     let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft, .. } = known;
-    let of_holdout = |why| StudyError::Setting {
-        name: "holdout",
-        why: format!("expected a flight of {}: {why}", vehicle.name),
-    };
+    let name = vehicle.name.clone();
+    let of_holdout =
+        |why| StudyError::Setting { name: "holdout", why: format!("expected a flight of {name}: {why}") };
     let mut held = load_all(&request.holdout, &request.read, &EXPLAINED).map_err(of_holdout)?;
     request.vehicle.own_units(&mut held);
     refuse_twins(logs.iter().chain(&held))?;
@@ -61,14 +61,15 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
         least_step_s: STEP_FOR_EFFECTS_S,
         ..ConditionSettings::default()
     };
-    let mut flights = prepare(logs, (&vehicle, &origin), &settings).map_err(or_unflown)?;
-    let mut held = prepare(held, (&vehicle, &origin), &settings).map_err(of_holdout)?;
-    refuse_shared(&flights, &held)?;
+    let (mut flights, corrected) =
+        prepare_by_motion(logs, (&vehicle, &origin), &settings).map_err(or_unflown)?;
     let mut vehicle = vehicle;
-    if let Some((corrected, why)) = torque_by_motion(&flights.signals, &vehicle) {
+    if let Some((corrected, why)) = corrected {
         vehicle = corrected;
         notes.push(why);
     }
+    let mut held = prepare(held, (&vehicle, &origin), &settings).map_err(of_holdout)?;
+    refuse_shared(&flights, &held)?;
     notes.extend(other_settings(&flights.recordings));
     notes.extend(of_data(&flights, &held));
     let of =

@@ -2,10 +2,10 @@
 
 use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, TorqueLaw, Verdict, brief, explain};
 use crate::estimate::{
-    Estimated, Finding, MethodResult, Nominal, Recommendation, THETA, moved_by_guessed_curve,
+    Finding, MethodResult, Nominal, Recommendation, THETA, inertia_by_wider_window, moved_by_guessed_curve,
 };
 use crate::signals::Signals;
-use crate::study::explain::{Asked, BY_CONTROL, ValidationData, explain_prepared};
+use crate::study::explain::{Asked, BY_CONTROL, KEPT, explain_prepared};
 use crate::study::flights::Prepared;
 use crate::study::{Progress, StudyError};
 use crate::vehicle::Vehicle;
@@ -33,11 +33,20 @@ pub(super) fn without_inertia(result: &mut MethodResult) {
 
 /// Flights as `explain` sees them, and what is found in them.
 #[derive(Debug)]
-pub struct Found {
+pub(super) struct Found {
     /// their signals
     pub(super) flights: Vec<Signals>,
     /// with the effects that hold on what was held back
     pub(super) explanation: Explanation,
+}
+
+impl Found {
+    /// In whole flights: nothing is held back, so every name that they give stays.
+    pub(super) fn in_whole(flights: &[Signals], vehicle: &Vehicle) -> Result<Self, String> {
+        let explanation =
+            explain(flights, vehicle, &ExplainSettings::default()).map_err(|why| why.to_string())?;
+        Ok(Self { flights: flights.to_vec(), explanation })
+    }
 }
 
 /// Explains the flights as `mavid explain` does, a part held back. What holds there is then estimated on the whole flight.
@@ -55,29 +64,38 @@ pub(super) fn found_beside(
     };
     let whole = flights.signals.clone();
     let study = explain_prepared(&mut flights, &mut Prepared::default(), asked, progress).map_err(why)?;
-    if !matches!(study.shown_on, ValidationData::HeldBack { .. }) {
+    let usable = |signals: &[Signals]| -> usize {
+        signals.iter().flat_map(|one| one.usable.iter()).filter(|usable| **usable).count()
+    };
+    if usable(&flights.signals) == usable(&whole) {
         return Ok(Found { flights: flights.signals, explanation: study.explanation });
     }
-    let terms = &study.explanation.search.after.base.effects;
-    let holds = |id: &str| terms.iter().any(|term| term.id() == id);
+    let of_part = &study.explanation;
+    let (unexplained, terms) = (of_part.verdict == Verdict::Unexplained, &of_part.search.after.base.effects);
+    let holds = |id: &str| !unexplained && terms.iter().any(|term| term.id() == id);
     let mut settings = ExplainSettings::default();
     settings.refused =
         settings.signatures.iter().map(|signature| signature.id()).filter(|id| !holds(id)).collect();
-    let explanation = explain(&whole, asked.vehicle, &settings).map_err(|error| error.to_string())?;
+    let mut explanation = explain(&whole, asked.vehicle, &settings).map_err(|error| error.to_string())?;
+    // a latency or a gust is no candidate that could be refused
+    explanation.named.retain(|named| of_part.named.iter().any(|known| known.id == named.id));
+    if unexplained {
+        explanation.verdict = Verdict::Unexplained;
+    }
     Ok(Found { flights: whole, explanation })
 }
 
-/// Mass and inertia of the final fit. `alone` is the estimate of the rigid body alone, with what a wider window says of it.
+/// Mass and inertia of the final fit.
 pub(super) fn joint_estimate(
     Found { flights, explanation: found }: &Found,
     vehicle: &Vehicle,
-    alone: &Estimated,
 ) -> EstimateWithEffects {
     let unexplained = found.verdict == Verdict::Unexplained;
     // what serves as no explanation is not in the model
     let fitted = if unexplained { &found.search.before } else { &found.search.after };
     let mut estimated = fitted.with_stated_thrust(&vehicle.propulsion);
-    estimated.by_wider_window = alone.by_wider_window;
+    // of the same signals as the fit
+    estimated.by_wider_window = Some(inertia_by_wider_window(flights, vehicle));
     if !fitted.base.estimates_bend() {
         let moved = moved_by_guessed_curve(flights, vehicle).map(|by| by.on(&estimated.theta));
         estimated = estimated.with_guessed_curve(moved);
@@ -86,7 +104,13 @@ pub(super) fn joint_estimate(
         estimated = law.in_errors_of(estimated);
     }
     let effects: Vec<&'static str> = found.named.iter().map(|named| named.id).collect();
-    let best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(found, vehicle));
+    let mut best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(found, vehicle));
+    for &index in &fitted.undetermined {
+        let finding = &mut best.result.parameters[index].finding;
+        if matches!(finding, Finding::Determined { .. }) {
+            *finding = Finding::NotDetermined { reason: KEPT.to_owned() };
+        }
+    }
     let (turned_by_control, torque_law) = (found.turned_by_control, found.torque_law);
     EstimateWithEffects { best, effects, turned_by_control, gyroscopic: fitted.gyroscopic(), torque_law }
 }

@@ -77,12 +77,24 @@ impl WithEffects {
 }
 
 impl IdentifyStudy {
-    /// Mass and inertia from signals and the files that they came from. `found` is what `explain` finds in the same flights, or why it
-    /// finds nothing.
+    /// Mass and inertia from signals and the files that they came from. `explained` are the same flights as `explain` conditions them:
+    /// no part of them is held back.
     ///
     /// # Errors
     /// [`EstimateError`] where no method can run.
     pub fn of_signals(
+        flights: Vec<Signals>,
+        inputs: Vec<InputFile>,
+        vehicle: Vehicle,
+        settings: &IdentifySettings,
+        explained: &[Signals],
+    ) -> Result<Self, EstimateError> {
+        let found = Found::in_whole(explained, &vehicle);
+        Self::of_found(flights, inputs, vehicle, settings, &found)
+    }
+
+    /// The same with what `explain` finds in the flights, or why it finds nothing.
+    pub(super) fn of_found(
         flights: Vec<Signals>,
         inputs: Vec<InputFile>,
         vehicle: Vehicle,
@@ -92,10 +104,9 @@ impl IdentifyStudy {
         let mut identification = identify(&flights, &vehicle, settings)?;
         // flights apart are all that it warns of
         let disagree = identification.notes.iter().any(Note::is_warning);
-        let alone = &identification.best.result.estimated;
         let (mut effects, mut turned_by_control) = (Vec::new(), false);
         let (mut gyroscopic, mut torque_law) = (None, None);
-        match found.as_ref().map(|found| joint_estimate(found, &vehicle, alone)) {
+        match found.as_ref().map(|found| joint_estimate(found, &vehicle)) {
             Ok(found) => {
                 identification.methods.push(found.best.result.clone());
                 identification.best = found.best;

@@ -6,11 +6,12 @@ use super::result::{IdentifyStudy, WithEffects};
 use crate::config::effects_of;
 use crate::diagnose::ExplainSettings;
 use crate::diagnose::joint::{RequestedEffects, identify_jointly};
-use crate::estimate::torque_by_motion;
 use crate::signals::{ConditionSettings, Signals, other_settings};
 use crate::study::explain::{Asked, ExplainRequest};
 use crate::study::flight::Flight;
-use crate::study::flights::{IDENTIFIED, Prepared, load_all, names, prepare, refuse_twins};
+use crate::study::flights::{
+    IDENTIFIED, Prepared, load_all, names, prepare, prepare_by_motion, refuse_twins,
+};
 use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
@@ -38,13 +39,14 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     let mut notes = known.notes();
     progress.stage(Stage::Identifying);
     let beside = request.conditioning_beside();
-    let prepared = prepare(logs.clone(), (&known.loaded.vehicle, &known.origin), &beside);
-    let corrected =
-        prepared.as_ref().ok().and_then(|flights| torque_by_motion(&flights.signals, &known.loaded.vehicle));
-    if let Some((corrected, why)) = corrected {
-        known.loaded.vehicle = corrected;
-        notes.push(why);
-    }
+    let prepared = prepare_by_motion(logs.clone(), (&known.loaded.vehicle, &known.origin), &beside);
+    let prepared = prepared.map(|(flights, corrected)| {
+        if let Some((corrected, why)) = corrected {
+            known.loaded.vehicle = corrected;
+            notes.push(why);
+        }
+        flights
+    });
     notes.iter().for_each(|note| progress.note(note));
     let with = wanted.map(|wanted| with_effects(request, (&logs, &known), &wanted));
     let with = with.transpose().map_err(or_unflown)?;
@@ -66,7 +68,7 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     // memory for the work that begins
     drop(recordings);
     let lost: Vec<String> = inputs.iter().flat_map(InputFile::losses).map(str::to_owned).collect();
-    let study = IdentifyStudy::of_signals(signals, inputs, known.loaded.vehicle, &request.settings(), &found)
+    let study = IdentifyStudy::of_found(signals, inputs, known.loaded.vehicle, &request.settings(), &found)
         .map_err(|error| StudyError::of_estimate(error, &lost))?;
     let study = match &with {
         Some(with) => study.with_law_of(with.joint.torque_law),

@@ -1,0 +1,39 @@
+//! Names that a short flight does not show well enough.
+
+use super::refuted::Unshown;
+use super::result::ExplainStudy;
+use crate::diagnose::signatures::signature_of;
+use crate::diagnose::{ByPart, Named, Trace, brief, by_part};
+
+/// Least share by which errors over 0.5 s have to be smaller with an effect, mean over the quantities, %. On the data that an effect
+/// was fitted to they are smaller even where it is worth nothing. Set by judgement.
+const LEAST_WORTH_PERCENT: f64 = 5.0;
+
+impl ExplainStudy {
+    /// The named effect of a short flight that is shown least: one that the halves of the flight do not both show by themselves and
+    /// alike, or with which the flight itself is hardly predicted better. `None` where each name is shown, and where the flight is not
+    /// short. A lag or delay is told by how sharp its latency is, and what changes at one moment by the seconds about it.
+    pub(super) fn unshown(&self, traces: &[Trace]) -> Option<Unshown> {
+        self.short.as_ref()?;
+        let parts = by_part(traces, &self.explanation).unwrap_or_default();
+        let is_judged = |named: &&Named| {
+            let judged =
+                |role: &crate::diagnose::signature::Role| role.latency.is_none() && role.moment.is_none();
+            let refused = self.given.settings.refused.contains(&named.id);
+            !refused && signature_of(named.id).is_some_and(|of| judged(&of.role))
+        };
+        let of = |named: &Named| {
+            let of: Vec<&ByPart> = parts.iter().filter(|part| part.id == named.id).collect();
+            // what irregular wind does has no halves that could show it
+            let halves = !of.is_empty() && of.iter().all(|part| part.is_in_each() && part.are_alike());
+            let better_without = self.worth.as_ref().and_then(|worth| worth.better_without_percent(named.id));
+            // of one that predicts together with another one nothing is known
+            let worth_percent = better_without.map_or(f64::INFINITY, |better| -better);
+            let unshown = !halves || worth_percent < LEAST_WORTH_PERCENT;
+            let name = brief(named, &self.given.vehicle, true);
+            unshown.then_some(Unshown { id: named.id, name, halves, worth_percent })
+        };
+        let unshown = self.explanation.named.iter().filter(is_judged).filter_map(of);
+        unshown.min_by(|a, b| a.worth_percent.total_cmp(&b.worth_percent))
+    }
+}
