@@ -43,6 +43,7 @@ pub fn run(data: &[u8], seeded: bool) {
         contradicting: contradicting_flights(&flights, &flight.vehicle),
         settings,
         transient_s: TRANSIENT_S,
+        own_load: false,
     };
     let study = ExplainStudy::new(given, explanation);
     is_readable(&explanation_text(&study));

@@ -62,7 +62,8 @@ pub enum ExplainError {
     Physics(#[from] PhysicsError),
     /// too little flight
     #[error(
-        "{seconds:.1} s of flight can be used, at least {needed_s:.0} s are needed to tell physics from noise"
+        "{:.1} s of flight can be used, at least {needed_s:.0} s are needed to tell physics from noise",
+        (10.0 * .seconds).floor() / 10.0
     )]
     TooShort {
         /// s that can be used

@@ -4,6 +4,8 @@ use super::base::{Base, follows_force};
 use super::channels::Nuisance;
 use super::fit::Fitted;
 use super::signature::EffectTerm;
+use crate::physics::Parameter;
+use crate::vehicle::{Guessed, Vehicle};
 
 /// Relative standard error of the mass that the thrust law adds: of 20 flights of both autopilots' simulators 16 were within 0.2 %,
 /// four within 0.4 %.
@@ -36,6 +38,17 @@ fn of_scale(base: &Base) -> f64 {
     if base.weighed_kg.is_some() { 0.0 } else { ELSEWHERE * bend_of(base) }
 }
 
+/// Relative standard error of a size by what the vehicle's description guesses of the torques: moments about z go with the torque per thrust,
+/// the others with the arms.
+fn guessed(vehicle: &Vehicle, parameter: &Parameter) -> f64 {
+    if !parameter.unit.starts_with("N m") {
+        return 0.0;
+    }
+    let of = if parameter.name.ends_with('z') { Guessed::TorqueRatio } else { Guessed::Arms };
+    let guesses = vehicle.guesses.iter().filter(|guess| guess.of == of);
+    guesses.map(|guess| guess.relative).fold(0.0, f64::max)
+}
+
 /// Adds the errors of the laws to those of a fit's mass, moments of inertia and sizes of effects.
 pub(super) fn add_floors(fitted: &mut Fitted) {
     let body = &fitted.base.vehicle.body;
@@ -46,7 +59,8 @@ pub(super) fn add_floors(fitted: &mut Fitted) {
         for &slot in &term.free {
             if term.is_amount(slot) && fitted.covariance[(index, index)] > 0.0 {
                 let on_scale = term.parameter(slot).is_some_and(|of| follows_force(of.unit));
-                let law = if on_scale { FORM.hypot(scale) } else { FORM };
+                let guess = term.parameter(slot).map_or(0.0, |of| guessed(&fitted.base.vehicle, of));
+                let law = if on_scale { FORM.hypot(scale) } else { FORM }.hypot(guess);
                 fitted.covariance[(index, index)] += (law * term.from_nothing(slot)).powi(2);
             }
             index += 1;

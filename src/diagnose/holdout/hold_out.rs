@@ -58,7 +58,7 @@ pub fn on_left_out(
         };
     let weak = weak::residuals(&ready, explanation, empirical, settings)?;
     let (agreement, other_vehicle) =
-        other_vehicle::judged(&ready, (explanation, of_others), &weak, settings.same_flight)?;
+        other_vehicle::judged(&ready, (explanation, of_others), &weak, settings)?;
     let closed_loop = closed_loop::flown_again(&ready, empirical, vehicle, settings);
     let improvement = improvement_percent.map(|improvement| improvement.value);
     let another = other_vehicle.is_some();

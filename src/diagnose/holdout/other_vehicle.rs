@@ -83,8 +83,7 @@ impl Agreement {
 
 /// Largest share of the mass that a payload is, with which a multirotor still flies well.
 const PAYLOAD_SHARE: f64 = 0.5;
-/// Standard errors beyond which a difference between flights is certain. Set by judgement: twice what a name needs,
-/// because a false word takes the whole hold-out away.
+/// Standard errors beyond which flights certainly differ: twice what a name needs, because a false word takes the whole hold-out away.
 const SIGMAS: f64 = 8.0;
 /// Least relevant difference, as a share of the mass. Set by judgement: with less, two batteries would be two
 /// vehicles.
@@ -108,7 +107,7 @@ pub(super) fn judged(
     ready: &[Ready],
     (explanation, of_each): (&Explanation, &[Explained]),
     weak: &Weak,
-    same_flight: bool,
+    settings: &HoldoutSettings,
 ) -> Result<(Vec<Agreement>, Option<OtherVehicle>), PhysicsError> {
     let identified = &explanation.search.after;
     let is_one_model = of_each.iter().all(|of| std::ptr::eq(of.explanation, explanation));
@@ -132,15 +131,15 @@ pub(super) fn judged(
             (ratio > RESIDUAL_RATIO).then_some((channel, ratio))
         })
         .collect();
-    // of flights that are explained together, the load is each one's own
-    let loaded = |agreement: &Agreement| !is_one_model && agreement.is_by_a_load();
-    // a body keeps its moments of inertia in the air unless its mass changes: another estimate there is one of the method
+    // of flights that are explained together, and of those that were given their own, the load is each one's own
+    let loaded = |agreement: &Agreement| (settings.own_mass || !is_one_model) && agreement.is_by_a_load();
+    // in the air a body keeps its moments of inertia unless its mass changes
     let drops = all.iter().any(|agreement| agreement.name == NAMES[0] && agreement.differs());
-    let kept = |agreement: &Agreement| same_flight && !drops && agreement.is_of_inertia();
+    let kept = |agreement: &Agreement| settings.same_flight && !drops && agreement.is_of_inertia();
     let differs = |agreement: &&Agreement| agreement.differs() && !loaded(agreement) && !kept(agreement);
     let different: Vec<&Agreement> = all.iter().filter(differs).collect();
     let worst = jumps.iter().max_by(|a, b| a.1.total_cmp(&b.1));
-    let whose = if same_flight {
+    let whose = if settings.same_flight {
         "something changed in the part of the flight that was held back"
     } else if !is_one_model {
         "the flights are not of one vehicle"
@@ -281,7 +280,8 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
             Nuisance::Inertia(entry) => {
                 let (row, column) = INERTIA_ENTRIES[entry];
                 // a flight whose torque the rigid body does not explain has none of its own
-                let tells = row == column && own_body.explains(1 + entry);
+                let known = !identified.undetermined.contains(&(1 + entry));
+                let tells = row == column && known && own_body.explains(1 + entry);
                 let principal = tells.then_some(INERTIA_SHARE).and_then(Relevance::share);
                 (NAMES[1 + entry], UNITS[1 + entry], body.inertia_kg_m2[(row, column)], principal)
             }

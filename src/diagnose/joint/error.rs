@@ -66,7 +66,8 @@ pub enum JointError {
     },
     /// too little flight
     #[error(
-        "{seconds:.1} s of flight can be used, at least {needed_s:.0} s are needed to tell effects from noise"
+        "{:.1} s of flight can be used, at least {needed_s:.0} s are needed to tell effects from noise",
+        (10.0 * .seconds).floor() / 10.0
     )]
     TooShort {
         /// s that can be used

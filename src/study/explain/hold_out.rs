@@ -208,7 +208,8 @@ impl ExplainStudy {
 
     fn evaluate_on(&mut self, flights: &[HeldOut], shown_on: ValidationData) -> Result<(), HoldoutError> {
         let same_flight = matches!(shown_on, ValidationData::HeldBack { .. });
-        let settings = HoldoutSettings { same_flight, ..HoldoutSettings::default() };
+        let own_mass = self.given.own_load;
+        let settings = HoldoutSettings { same_flight, own_mass, ..HoldoutSettings::default() };
         let shown = on_holdout(self.explained(), flights, &self.given.vehicle, &settings)?;
         self.take_prediction(shown, shown_on);
         self.measure_worth(flights, false, &settings);

@@ -70,7 +70,7 @@ impl Located {
     pub fn of(explanation: &Explanation) -> Self {
         match (explanation.verdict, &explanation.located_before) {
             (Verdict::NothingMissing, _) | (_, None) => Self::default(),
-            (_, Some(found)) => Self { field: field(explanation), ..Self::new(found) },
+            (_, Some(found)) => Self { field: field(explanation), ..Self::new(found, explanation) },
         }
     }
 
@@ -78,11 +78,18 @@ impl Located {
     #[must_use]
     pub fn left(explanation: &Explanation) -> Self {
         let found = explanation.located_after.as_ref();
-        found.map_or_else(Self::default, |found| Self { field: field(explanation), ..Self::new(found) })
+        found.map_or_else(Self::default, |found| Self {
+            field: field(explanation),
+            ..Self::new(found, explanation)
+        })
     }
 
-    fn new(found: &Localisation) -> Self {
-        let axes = axis_shares(found);
+    fn new(found: &Localisation, explanation: &Explanation) -> Self {
+        // torques whose commands are too far apart tell averages alone
+        let compares =
+            |axis: &str| explanation.search.after.rows.compares_torques || !axis.starts_with("torque");
+        let mut axes = axis_shares(found);
+        axes.retain(|of| compares(of.axis));
         let worst = axes.first().and_then(|first| channel_of(first.axis));
         let mut time_s: Vec<[f64; 2]> = found
             .spans
@@ -95,7 +102,12 @@ impl Located {
             band_hz: worst.and_then(|worst| found.bands[worst]).map(|band| [band.low_hz, band.high_hz]),
             axes,
             time_s,
-            state: found.follows.iter().filter(|follow| follow.entered.is_some()).map(state).collect(),
+            state: found
+                .follows
+                .iter()
+                .filter(|follow| follow.entered.is_some() && compares(CHANNEL_NAMES[follow.channel]))
+                .map(state)
+                .collect(),
             field: None,
         }
     }

@@ -62,9 +62,19 @@ pub(in crate::study) fn explain_prepared(
     let is_short = matches!(shown_on, ValidationData::Nothing { .. });
     let usable_s = flights.signals.iter().map(|signals| signals.quality.usable.usable_s).sum();
     let short = is_short.then_some(Short { usable_s, unsure: Vec::new() });
-    let task = Task { asked, winds_m_s: &winds_m_s, alone: &alone, short, progress };
+    let mut task = Task { asked, winds_m_s: &winds_m_s, alone: &alone, short, own_load: false, progress };
     progress.stage(Stage::Explaining);
-    let study = task.explained(flights, (held, back.as_ref(), shown_on))?;
+    let study = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
+    // payload and wind of another day make no other vehicle
+    if study.other_vehicle().is_some() && matches!(shown_on, ValidationData::Flights(_)) {
+        task.own_load = true;
+        if !several && !names_wind(&study) {
+            with_own_winds(held, asked.vehicle);
+        }
+        progress.stage(Stage::Predicting);
+        let own = task.explained(flights, (held, None, shown_on))?;
+        return Ok(if own.other_vehicle().is_none() { own } else { study });
+    }
     // what changed in the part held back, or shortly before it, is nowhere in the part explained
     match whole.filter(|_| back.is_some() && changes_late(&study)) {
         Some(whole) => task.explained_again(study, flights, whole),
@@ -88,6 +98,8 @@ struct Task<'a> {
     alone: &'a [Vec<Named>],
     /// where one flight is given, and no part of it can be held back
     short: Option<Short>,
+    /// hold-outs with a mass of their own
+    own_load: bool,
     progress: &'a dyn Progress,
 }
 
@@ -166,6 +178,7 @@ impl Task<'_> {
             contradicting,
             settings,
             transient_s: self.asked.transient_s,
+            own_load: self.own_load,
         }
     }
 
@@ -229,6 +242,12 @@ fn changes_late(study: &ExplainStudy) -> bool {
     let drifts =
         study.located.state.iter().any(|state| ["time", "voltage"].contains(&state.variable.as_str()));
     study.other_vehicle().is_some() || (study.verdict() == Verdict::Unexplained && drifts)
+}
+
+/// The wind of the flight that was explained is in the model.
+fn names_wind(study: &ExplainStudy) -> bool {
+    let mut terms = study.explanation.search.after.base.effects.iter();
+    terms.any(|term| term.signature.role.of_the_day)
 }
 
 /// An effect that begins at an instant is among the names.

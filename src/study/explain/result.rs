@@ -48,6 +48,8 @@ pub struct Given {
     pub settings: ExplainSettings,
     /// s left out at the beginning of each flight
     pub transient_s: f64,
+    /// the hold-outs have a mass of their own, by their beginning
+    pub own_load: bool,
 }
 
 /// The whole answer.

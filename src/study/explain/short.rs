@@ -13,8 +13,8 @@ impl Short {
     /// A clause.
     pub(super) fn doubt(&self) -> String {
         format!(
-            "the flight is short ({:.1} s can be used), so no part of it is left to test this on and no name is certain; fly longer, or give \
-             another flight with --holdout",
+            "the flight is short ({:.1} s can be used), so no part of it is left to test the answer on; fly longer, or give another flight \
+             with --holdout",
             self.usable_s
         )
     }

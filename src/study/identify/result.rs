@@ -4,8 +4,8 @@ use super::joint_estimate::{Found, joint_estimate, without_inertia};
 use crate::diagnose::joint::JointEstimate;
 use crate::diagnose::{CHANNEL_NAMES, GyroscopicShare, TorqueLaw};
 use crate::estimate::{
-    Contradiction, EstimateError, Identification, IdentifySettings, Method, MethodResult, ThrustScale,
-    apply_anchor, contradictions, identify, rests_on_guessed_curve,
+    Contradiction, EstimateError, Identification, IdentifySettings, Method, MethodResult, Nominal,
+    ThrustScale, apply_anchor, contradictions, identify, rests_on_guessed_curve,
 };
 use crate::note::{About, Note};
 use crate::signals::{Quality, Signals};
@@ -116,6 +116,7 @@ impl IdentifyStudy {
                 identification.notes.extend(gyroscopic.iter().map(GyroscopicShare::note));
             }
             Err(why) => {
+                identification.best.widen(&Nominal::of(&vehicle));
                 let text = format!(
                     "mass and inertia of a rigid body alone, without a search of effects beside them: {why}"
                 );
