@@ -65,14 +65,16 @@ pub(in crate::study) fn explain_prepared(
     let mut task = Task { asked, winds_m_s: &winds_m_s, alone: &alone, short, own_load: false, progress };
     progress.stage(Stage::Explaining);
     let study = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
-    // payload and wind of another day make no other vehicle
+    // payload and wind of another day make no other vehicle. The names stay: what refutes them would be of the same flights
     if study.other_vehicle().is_some() && matches!(shown_on, ValidationData::Flights(_)) {
         task.own_load = true;
         if !several && !names_wind(&study) {
             with_own_winds(held, asked.vehicle);
         }
         progress.stage(Stage::Predicting);
-        let own = task.explained(flights, (held, None, shown_on))?;
+        let ExplainStudy { given, explanation, .. } = &study;
+        let given = task.given(flights, given.settings.clone());
+        let own = task.evaluated(given, explanation.clone(), flights, (held, None, shown_on));
         return Ok(if own.other_vehicle().is_none() { own } else { study });
     }
     // what changed in the part held back, or shortly before it, is nowhere in the part explained
