@@ -41,6 +41,11 @@ pub(super) fn follows_force(unit: &str) -> bool {
     unit.starts_with('N') || unit.starts_with("kg")
 }
 
+/// Whether a value of an effect is known as a ratio to the rotors' torque per thrust: a moment about z, or the inertia of rotors that spin up.
+pub(super) fn turns_about_z(name: &str, unit: &str) -> bool {
+    unit == "kg m^2" || unit.starts_with("N m") && name.ends_with('z')
+}
+
 impl Base {
     /// A rigid body alone.
     #[must_use]

@@ -80,10 +80,14 @@ impl Explanation {
         match self.verdict {
             Verdict::NothingMissing | Verdict::Explained => {}
             Verdict::PartlyExplained => self.verdict = Verdict::Explained,
-            Verdict::Unexplained => {
+            Verdict::Unexplained if self.closest.is_empty() => {
                 self = self.refuted();
                 self.verdict = Verdict::NothingMissing;
-                self.closest.clear();
+            }
+            // the others are shown as well as before
+            Verdict::Unexplained => {
+                self.named = std::mem::take(&mut self.closest);
+                self.verdict = Verdict::Explained;
             }
         }
         self

@@ -1,9 +1,10 @@
 //! Lower bounds of the standard errors: the accuracy of the laws themselves, which the statistics of one flight do not contain.
 
-use super::base::{Base, follows_force};
+use super::base::{Base, follows_force, turns_about_z};
 use super::channels::Nuisance;
 use super::fit::Fitted;
 use super::signature::EffectTerm;
+use crate::estimate::INERTIA_ENTRIES;
 use crate::physics::Parameter;
 use crate::vehicle::{Guessed, Vehicle};
 
@@ -39,21 +40,38 @@ fn of_scale(base: &Base) -> f64 {
 }
 
 /// Relative standard error of a size by what the vehicle's description guesses of the torques: moments about z go with the torque per thrust,
-/// the others with the arms.
+/// the others and places with the arms.
 fn guessed(vehicle: &Vehicle, parameter: &Parameter) -> f64 {
-    if !parameter.unit.starts_with("N m") {
+    let of = if turns_about_z(parameter.name, parameter.unit) {
+        Guessed::TorqueRatio
+    } else if parameter.unit.starts_with("N m") || parameter.unit == "m" {
+        Guessed::Arms
+    } else {
         return 0.0;
-    }
-    let of = if parameter.name.ends_with('z') { Guessed::TorqueRatio } else { Guessed::Arms };
+    };
     let guesses = vehicle.guesses.iter().filter(|guess| guess.of == of);
     guesses.map(|guess| guess.relative).fold(0.0, f64::max)
 }
 
+/// Adds the error of a bent thrust law's slope to those of a fit's moments of inertia.
+pub(super) fn add_slope(fitted: &mut Fitted) {
+    let share = SLOPE * bend_of(&fitted.base);
+    for (index, column) in fitted.rows.nuisances.iter().enumerate() {
+        let Nuisance::Inertia(entry @ (0 | 3 | 5)) = column.nuisance else { continue };
+        let (row, of) = INERTIA_ENTRIES[entry];
+        // what no row bears on stays undetermined
+        if fitted.covariance[(index, index)] > 0.0 {
+            let moment = fitted.base.vehicle.body.inertia_kg_m2[(row, of)];
+            fitted.covariance[(index, index)] += (share * moment).powi(2);
+        }
+    }
+}
+
 /// Adds the errors of the laws to those of a fit's mass, moments of inertia and sizes of effects.
 pub(super) fn add_floors(fitted: &mut Fitted) {
+    add_slope(fitted);
     let body = &fitted.base.vehicle.body;
     let scale = of_scale(&fitted.base);
-    let of_torque = LAW_OF_TORQUE.hypot(scale).hypot(SLOPE * bend_of(&fitted.base));
     let mut index = fitted.rows.nuisances.len();
     for term in &fitted.base.effects {
         for &slot in &term.free {
@@ -69,9 +87,9 @@ pub(super) fn add_floors(fitted: &mut Fitted) {
     for (index, column) in fitted.rows.nuisances.iter().enumerate() {
         let floor = match column.nuisance {
             Nuisance::Mass => LAW_OF_THRUST.hypot(scale) * body.mass_kg,
-            Nuisance::Inertia(0) => of_torque * body.inertia_kg_m2[(0, 0)],
-            Nuisance::Inertia(3) => of_torque * body.inertia_kg_m2[(1, 1)],
-            Nuisance::Inertia(5) => of_torque * body.inertia_kg_m2[(2, 2)],
+            Nuisance::Inertia(0) => LAW_OF_TORQUE.hypot(scale) * body.inertia_kg_m2[(0, 0)],
+            Nuisance::Inertia(3) => LAW_OF_TORQUE.hypot(scale) * body.inertia_kg_m2[(1, 1)],
+            Nuisance::Inertia(5) => LAW_OF_TORQUE.hypot(scale) * body.inertia_kg_m2[(2, 2)],
             _ => continue,
         };
         // what no row bears on stays undetermined

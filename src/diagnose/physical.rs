@@ -1,5 +1,6 @@
 //! An inertia that a body can have, for every model that is written or simulated.
 
+use super::base::{Base, turns_about_z};
 use super::channels::Nuisance;
 use super::fit::Fitted;
 use super::trace::Trace;
@@ -50,9 +51,13 @@ pub(super) fn make_physical(
     let moved = near(fitted, &theta, &Nominal::of(stated));
     let mut base = fitted.base.clone();
     base.vehicle.body.inertia_kg_m2 = inertia_of(&moved.unwrap_or(nominal));
+    if moved.is_none() {
+        let back = stated.propulsion.torque_per_thrust_m / base.vehicle.propulsion.torque_per_thrust_m;
+        turn_with(&mut base, back);
+    }
     if let Some(moved) = moved.filter(|_| guesses_torque(stated)) {
         // the motion tells the ratio of izz and of this torque
-        base.vehicle.propulsion.torque_per_thrust_m *= moved[ABOUT_Z] / theta[ABOUT_Z];
+        turn_with(&mut base, moved[ABOUT_Z] / theta[ABOUT_Z]);
     }
     let mut after = fitted.moved_to(flights, base)?;
     if moved.is_none() {
@@ -73,6 +78,18 @@ pub(super) fn make_physical(
 
 /// Place of izz in mass and inertia.
 const ABOUT_Z: usize = 6;
+
+/// Another torque per thrust by a factor, with the sizes that the motion tells as ratios to it.
+fn turn_with(base: &mut Base, factor: f64) {
+    base.vehicle.propulsion.torque_per_thrust_m *= factor;
+    for term in &mut base.effects {
+        for slot in 0..term.values.len() {
+            if term.parameter(slot).is_some_and(|of| turns_about_z(of.name, of.unit)) {
+                term.values[slot] *= factor;
+            }
+        }
+    }
+}
 
 fn guesses_torque(vehicle: &Vehicle) -> bool {
     vehicle.guesses.iter().any(|guess| guess.of == Guessed::TorqueRatio)
@@ -131,7 +148,7 @@ fn stay_at_prior(
     base.vehicle.body.inertia_kg_m2 = inertia_of(&kept);
     if guesses_torque(stated) && theta[ABOUT_Z] > 0.0 && kept[ABOUT_Z] > 0.0 {
         // the motion tells the ratio of izz and of this torque
-        base.vehicle.propulsion.torque_per_thrust_m *= kept[ABOUT_Z] / theta[ABOUT_Z];
+        turn_with(&mut base, kept[ABOUT_Z] / theta[ABOUT_Z]);
     }
     // its standard error is still the flight's own: what it does not determine is said
     *fitted = fitted.moved_to(flights, base)?;

@@ -10,6 +10,7 @@ use super::{choose, latency, swing};
 use crate::diagnose::base::Base;
 use crate::diagnose::evidence::{LEAST_FLIGHT_S, LEAST_ROWS, ROW_S};
 use crate::diagnose::fit::{Fitted, Newton, fit};
+use crate::diagnose::floors::add_slope;
 use crate::diagnose::latency::{LatencyFinding, finding_of};
 use crate::diagnose::left_over::add_left_over;
 use crate::diagnose::physical::WITHIN_ERROR;
@@ -62,6 +63,7 @@ pub fn identify_jointly(
     let mut before = before;
     add_left_over(&mut before, &[]);
     add_left_over(&mut after, &[]);
+    add_slope(&mut after);
     let laws = [&before, &after].map(|fitted| torque_law(&traces, fitted));
     let fits = Fits { before, after, settled, split, first, laws };
     let by_curve = moved_by_guessed_curve(flights, vehicle);

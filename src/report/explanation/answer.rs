@@ -60,11 +60,12 @@ fn found(study: &ExplainStudy) -> String {
             format!("{}{}.{}{}", left_out(study), gain(study), not_told_apart(study), unsure(study))
         }
         Verdict::PartlyExplained => format!(
-            "{}{}. There is another deviation that no known effect explains: {}.{}",
+            "{}{}. There is another deviation that no known effect explains: {}.{}{}",
             left_out(study),
             gain(study),
             whereabouts(&study.left_over()),
-            not_told_apart(study)
+            not_told_apart(study),
+            unsure(study)
         ),
         Verdict::Unexplained => unexplained(study),
     }
@@ -196,6 +197,13 @@ fn nothing(study: &ExplainStudy) -> String {
     let other = study
         .other_vehicle()
         .map_or_else(String::new, |by| format!(" But {} ({by}), so nothing is shown on it.", whose(study)));
+    let unsure = unsure_names(study);
+    if !unsure.is_empty() {
+        return format!(
+            "No name is certain: this flight shows {}, but not surely enough, so the model stays the rigid body.{other}",
+            list(unsure)
+        );
+    }
     if study.explanation.too_little_excitation {
         let could =
             if seen.is_empty() { String::new() } else { format!("; it could show {}", list_or(&seen)) };
@@ -204,13 +212,6 @@ fn nothing(study: &ExplainStudy) -> String {
              similar effects could not be detected at any usual size{could}, and none of this was found. Fly a \
              trajectory that moves all axes (mavid plan).{other}",
             study.these_flights()
-        );
-    }
-    let unsure = unsure_names(study);
-    if !unsure.is_empty() {
-        return format!(
-            "No name is certain: this flight shows {}, but not surely enough, so the model stays the rigid body.{other}",
-            list(unsure)
         );
     }
     if let Some(refuted) = &study.refuted {
@@ -278,9 +279,10 @@ fn unexplained(study: &ExplainStudy) -> String {
         )
     });
     format!(
-        "There is a deviation that no known effect explains: {}{closest}{term}.{}",
+        "There is a deviation that no known effect explains: {}{closest}{term}.{}{}",
         whereabouts(&study.located),
-        each_alone(study)
+        each_alone(study),
+        unsure(study)
     )
 }
 

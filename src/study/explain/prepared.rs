@@ -64,9 +64,12 @@ pub(in crate::study) fn explain_prepared(
     let short = is_short.then_some(Short { usable_s, unsure: Vec::new() });
     let mut task = Task { asked, winds_m_s: &winds_m_s, alone: &alone, short, own_load: false, progress };
     progress.stage(Stage::Explaining);
-    let study = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
+    let (mut study, refused) = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
     // payload and wind of another day make no other vehicle. The names stay: what refutes them would be of the same flights
-    if study.other_vehicle().is_some() && matches!(shown_on, ValidationData::Flights(_)) {
+    if study.refuted.is_none()
+        && study.other_vehicle().is_some()
+        && matches!(shown_on, ValidationData::Flights(_))
+    {
         task.own_load = true;
         if !several && !names_wind(&study) {
             with_own_winds(held, asked.vehicle);
@@ -75,8 +78,11 @@ pub(in crate::study) fn explain_prepared(
         let ExplainStudy { given, explanation, .. } = &study;
         let given = task.given(flights, given.settings.clone());
         let own = task.evaluated(given, explanation.clone(), flights, (held, None, shown_on));
-        return Ok(if own.other_vehicle().is_none() { own } else { study });
+        if own.holdout.is_some() && own.other_vehicle().is_none() {
+            study = own;
+        }
     }
+    study.notes.extend(refused);
     // what changed in the part held back, or shortly before it, is nowhere in the part explained
     match whole.filter(|_| back.is_some() && changes_late(&study)) {
         Some(whole) => task.explained_again(study, flights, whole),
@@ -112,12 +118,16 @@ impl Task<'_> {
         &self,
         flights: &Prepared,
         (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
-    ) -> Result<ExplainStudy, StudyError> {
+    ) -> Result<(ExplainStudy, Vec<Note>), StudyError> {
         let mut settings = ExplainSettings::default();
-        let (mut refused, mut unsure) = (Vec::new(), Vec::new());
+        let (mut notes, mut unsure) = (Vec::new(), Vec::new());
         let mut all_was_explained = false;
         loop {
             let mut explanation = self.explanation(flights, &settings)?;
+            if self.short.is_some() {
+                // what is irregular does not come again in a short flight
+                explanation = explanation.without_gust();
+            }
             match unsure.is_empty() {
                 true => all_was_explained = explanation.verdict == Verdict::Explained,
                 false if all_was_explained => explanation = explanation.of_unsure_cause(),
@@ -131,7 +141,7 @@ impl Task<'_> {
                 study = self.evaluated(given, explanation.refuted(), flights, (held, back, shown_on));
                 study.notes.push(refuted.note());
                 study.refuted = Some(refuted);
-                return Ok(study);
+                return Ok((study, notes));
             }
             let unshown = study.unshown(&traces_of(flights, self.asked.vehicle, &settings));
             let worthless = study.worthless().filter(|of| !settings.refused.contains(&of.id));
@@ -143,9 +153,8 @@ impl Task<'_> {
                 }
                 (None, Some(of)) => (of.id, of.note()),
                 (None, None) => {
-                    study.notes.extend(refused);
                     study.short.iter_mut().for_each(|short| short.unsure = std::mem::take(&mut unsure));
-                    return Ok(study);
+                    return Ok((study, notes));
                 }
             };
             // what would take its place has no more to stand on
@@ -154,7 +163,7 @@ impl Task<'_> {
             let ids = settings.signatures.iter().map(|signature| signature.id());
             let gone: Vec<&str> = ids.filter(|id| !stays(id)).collect();
             settings.refused.extend(gone);
-            refused.push(note);
+            notes.push(note);
             self.progress.stage(Stage::ExplainingAgain);
         }
     }
@@ -228,7 +237,8 @@ impl Task<'_> {
         let part = std::mem::replace(last, whole);
         self.progress.stage(Stage::ExplainingAgain);
         let shown_on = ValidationData::Nothing { reason: CHANGES_LATE.to_owned() };
-        let of_whole = self.explained(flights, (&Prepared::default(), None, shown_on))?;
+        let (mut of_whole, refused) = self.explained(flights, (&Prepared::default(), None, shown_on))?;
+        of_whole.notes.extend(refused);
         if names_a_change(&of_whole) && !names_a_change(&of_part) {
             return Ok(of_whole);
         }

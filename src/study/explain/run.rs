@@ -64,7 +64,12 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let (mut flights, corrected) =
         prepare_by_motion(logs, (&vehicle, &origin), &settings).map_err(or_unflown)?;
     let mut vehicle = vehicle;
+    let mut draft = draft;
     if let Some((corrected, why)) = corrected {
+        if let Some(draft) = &mut draft {
+            draft.vehicle = corrected.clone();
+            draft.origins.push(why.text.clone());
+        }
         vehicle = corrected;
         notes.push(why);
     }

@@ -24,7 +24,6 @@ impl ExplainStudy {
         };
         let of = |named: &Named| {
             let of: Vec<&ByPart> = parts.iter().filter(|part| part.id == named.id).collect();
-            // what irregular wind does has no halves that could show it
             let halves = !of.is_empty() && of.iter().all(|part| part.is_in_each() && part.are_alike());
             let better_without = self.worth.as_ref().and_then(|worth| worth.better_without_percent(named.id));
             // of one that predicts together with another one nothing is known

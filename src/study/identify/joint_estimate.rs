@@ -22,12 +22,26 @@ pub(super) struct EstimateWithEffects {
     pub(super) gyroscopic: Option<GyroscopicShare>,
     /// where the rotors' torque certainly does not go with their thrust
     pub(super) torque_law: Option<TorqueLaw>,
+    /// places in mass and inertia of what the model has from the vehicle file
+    pub(super) undetermined: Vec<usize>,
+    /// m, of the model: a guessed one follows izz
+    pub(super) torque_per_thrust_m: f64,
 }
 
 /// Takes the moments of inertia out of a result that rests on the controller's answer to noise.
 pub(super) fn without_inertia(result: &mut MethodResult) {
     for index in 1..THETA {
         result.parameters[index].finding = Finding::NotDetermined { reason: BY_CONTROL.to_owned() };
+    }
+}
+
+/// Takes out of a result what the model has from the vehicle file.
+pub(super) fn without_undetermined(result: &mut MethodResult, undetermined: &[usize]) {
+    for &index in undetermined {
+        let finding = &mut result.parameters[index].finding;
+        if matches!(finding, Finding::Determined { .. }) {
+            *finding = Finding::NotDetermined { reason: KEPT.to_owned() };
+        }
     }
 }
 
@@ -104,15 +118,17 @@ pub(super) fn joint_estimate(
         estimated = law.in_errors_of(estimated);
     }
     let effects: Vec<&'static str> = found.named.iter().map(|named| named.id).collect();
-    let mut best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(found, vehicle));
-    for &index in &fitted.undetermined {
-        let finding = &mut best.result.parameters[index].finding;
-        if matches!(finding, Finding::Determined { .. }) {
-            *finding = Finding::NotDetermined { reason: KEPT.to_owned() };
-        }
-    }
+    let best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(found, vehicle));
     let (turned_by_control, torque_law) = (found.turned_by_control, found.torque_law);
-    EstimateWithEffects { best, effects, turned_by_control, gyroscopic: fitted.gyroscopic(), torque_law }
+    EstimateWithEffects {
+        best,
+        effects,
+        turned_by_control,
+        gyroscopic: fitted.gyroscopic(),
+        torque_law,
+        undetermined: fitted.undetermined.clone(),
+        torque_per_thrust_m: fitted.base.vehicle.propulsion.torque_per_thrust_m,
+    }
 }
 
 /// The reason for the user.

@@ -1,6 +1,6 @@
 //! The result of identifying: what went in, the estimates, and what is to be known of them.
 
-use super::joint_estimate::{Found, joint_estimate, without_inertia};
+use super::joint_estimate::{Found, joint_estimate, without_inertia, without_undetermined};
 use crate::diagnose::joint::JointEstimate;
 use crate::diagnose::{CHANNEL_NAMES, GyroscopicShare, TorqueLaw};
 use crate::estimate::{
@@ -97,7 +97,7 @@ impl IdentifyStudy {
     pub(super) fn of_found(
         flights: Vec<Signals>,
         inputs: Vec<InputFile>,
-        vehicle: Vehicle,
+        mut vehicle: Vehicle,
         settings: &IdentifySettings,
         found: &Result<Found, String>,
     ) -> Result<Self, EstimateError> {
@@ -105,18 +105,24 @@ impl IdentifyStudy {
         // flights apart are all that it warns of
         let disagree = identification.notes.iter().any(Note::is_warning);
         let (mut effects, mut turned_by_control) = (Vec::new(), false);
-        let (mut gyroscopic, mut torque_law) = (None, None);
+        let (mut gyroscopic, mut torque_law, mut undetermined) = (None, None, Vec::new());
         match found.as_ref().map(|found| joint_estimate(found, &vehicle)) {
             Ok(found) => {
                 identification.methods.push(found.best.result.clone());
                 identification.best = found.best;
                 (effects, turned_by_control) = (found.effects, found.turned_by_control);
                 (gyroscopic, torque_law) = (found.gyroscopic, found.torque_law);
+                undetermined = found.undetermined;
+                vehicle.propulsion.torque_per_thrust_m = found.torque_per_thrust_m;
                 identification.notes.extend(torque_law.iter().map(TorqueLaw::note));
                 identification.notes.extend(gyroscopic.iter().map(GyroscopicShare::note));
             }
             Err(why) => {
                 identification.best.widen(&Nominal::of(&vehicle));
+                let of_best = identification.methods.iter_mut();
+                of_best
+                    .filter(|result| result.method == identification.best.method)
+                    .for_each(|result| result.clone_from(&identification.best.result));
                 let text = format!(
                     "mass and inertia of a rigid body alone, without a search of effects beside them: {why}"
                 );
@@ -125,8 +131,11 @@ impl IdentifyStudy {
         }
         identification.best.result.emit();
         let scale = apply_anchor(&mut identification, &vehicle);
+        let joint = |result: &&mut MethodResult| result.method == Method::Joint;
+        let of_joint = identification.methods.iter_mut().filter(joint);
+        of_joint.for_each(|result| without_undetermined(result, &undetermined));
+        without_undetermined(&mut identification.best.result, &undetermined);
         if turned_by_control {
-            let joint = |result: &&mut MethodResult| result.method == Method::Joint;
             identification.methods.iter_mut().filter(joint).for_each(without_inertia);
             without_inertia(&mut identification.best.result);
         }
