@@ -145,6 +145,7 @@ impl Task<'_> {
             }
             let unshown = study.unshown(&traces_of(flights, self.asked.vehicle, &settings));
             let worthless = study.worthless().filter(|of| !settings.refused.contains(&of.id));
+            let is_unshown = unshown.is_some();
             let (id, note) = match (unshown, worthless) {
                 (Some(of), _) => {
                     let more = (of.id, of.note());
@@ -159,7 +160,12 @@ impl Task<'_> {
             };
             // what would take its place has no more to stand on
             let terms = &study.explanation.search.after.base.effects;
-            let stays = |of: &str| of != id && terms.iter().any(|term| term.id() == of);
+            // drag along z is a part of the drag that was taken back
+            let is_part = |of: &str| {
+                let whole = signature_of(of).and_then(|of| of.role.axial_part_of);
+                is_unshown && whole.is_some_and(|whole| whole.id() == id)
+            };
+            let stays = |of: &str| of != id && !is_part(of) && terms.iter().any(|term| term.id() == of);
             let ids = settings.signatures.iter().map(|signature| signature.id());
             let gone: Vec<&str> = ids.filter(|id| !stays(id)).collect();
             settings.refused.extend(gone);
