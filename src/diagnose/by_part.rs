@@ -41,7 +41,20 @@ impl ByPart {
     /// each part shows it by itself, in the same direction.
     #[must_use]
     pub fn is_certain(&self) -> bool {
-        self.away(&self.whole).abs() >= SHOWN_BY_ALL && (self.are_alike() || self.is_in_each())
+        // the error of the whole has guesses of the vehicle's description, which are no question of whether it is there
+        let by_all = self.away(&self.whole).abs().max(self.away(&self.mean()).abs());
+        by_all >= SHOWN_BY_ALL && (self.are_alike() || self.is_in_each())
+    }
+
+    /// Mean of the parts, weighted by their information, with its standard error; NaN where one has no error.
+    fn mean(&self) -> (f64, f64) {
+        let (mut weights, mut sum) = (0.0, 0.0);
+        for (value, std) in &self.parts {
+            // one without an error says nothing
+            let weight = if *std > 0.0 { std.powi(-2) } else { f64::NAN };
+            (weights, sum) = (weights + weight, sum + weight * value);
+        }
+        (sum / weights, weights.sqrt().recip())
     }
 
     /// Standard errors from nothing; 0 where there is no error.
@@ -59,13 +72,7 @@ impl ByPart {
     /// Whether the parts' sizes scatter no more than their errors let them.
     #[must_use]
     pub fn are_alike(&self) -> bool {
-        let (mut weights, mut sum) = (0.0, 0.0);
-        for (value, std) in &self.parts {
-            // one without an error says nothing
-            let weight = if *std > 0.0 { std.powi(-2) } else { f64::NAN };
-            (weights, sum) = (weights + weight, sum + weight * value);
-        }
-        let mean = sum / weights;
+        let (mean, _) = self.mean();
         let statistic: f64 = self.parts.iter().map(|(value, std)| ((value - mean) / std).powi(2)).sum();
         let free = self.parts.len().saturating_sub(1) as f64;
         ChiSquared::new(free).is_ok_and(|law| law.sf(statistic) >= ALIKE_P)
