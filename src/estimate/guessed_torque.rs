@@ -5,7 +5,6 @@
 
 use super::nominal::Nominal;
 use super::result::{Estimated, Finding, finding};
-use super::theta::MOMENTS;
 use super::weak::solve_weak;
 use super::weak_flights::WeakFlights;
 use crate::note::{About, Note};
@@ -16,6 +15,8 @@ use crate::vehicle::{Guessed, Vehicle};
 const USUAL_SHARE: f64 = 0.85;
 /// Its scatter, relative standard error: it becomes that of the torque per thrust.
 const RELATIVE: f64 = 0.2;
+/// Largest relative standard error of izz with which the motion tells anything of the torque.
+const LARGEST_STD: f64 = 0.15;
 /// Standard errors from which on the motion excludes a guess. The usual three.
 const CERTAIN: f64 = 3.0;
 /// The vehicle with another torque per thrust, and a note on it, where that is guessed and no body could have the izz which the flights
@@ -39,11 +40,21 @@ pub fn torque_by_motion(flights: &[Signals], vehicle: &Vehicle) -> Option<(Vehic
     let estimated = Estimated::of(&found).with_wider_window(by_wider_window);
     let is_determined =
         |index: usize| matches!(finding(&estimated, &nominal, index), Finding::Determined { .. });
-    if !MOMENTS.into_iter().all(is_determined) {
-        return None;
-    }
     let Estimated { theta, covariance, .. } = &estimated;
     let (across, about) = (theta[1] + theta[4], theta[6]);
+    let relative_about = covariance[(6, 6)].max(0.0).sqrt() / about;
+    let (is_x, is_y) = (is_determined(1), is_determined(4));
+    tracing::debug!(
+        share = about / across,
+        relative_about,
+        is_x,
+        is_y,
+        "guessed torque held against the motion"
+    );
+    // a torque that does not quite go with the thrust leaves much of itself unexplained, and its size is told all the same
+    if !(is_x && is_y && relative_about > 0.0 && relative_about < LARGEST_STD) {
+        return None;
+    }
     // of the logarithm of izz / (ixx + iyy)
     let variance = (covariance[(1, 1)] + covariance[(4, 4)] + 2.0 * covariance[(1, 4)]) / across.powi(2)
         + covariance[(6, 6)] / about.powi(2)
