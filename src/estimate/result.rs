@@ -255,7 +255,8 @@ fn of_open_moment(estimated: &Estimated, nominal: &Nominal, index: usize) -> Opt
         let std = estimated.covariance[(moment, moment)].max(0.0).sqrt();
         std / size_of(&estimated.theta, nominal, moment)
     };
-    let mut open = moments.filter(|moment| !(relative(*moment) <= LARGEST_RELATIVE_STD));
+    let is_open = |moment: &usize| relative(*moment).is_nan() || relative(*moment) > LARGEST_RELATIVE_STD;
+    let mut open = moments.filter(is_open);
     open.next().map(|moment| {
         format!(
             "it couples an axis whose moment, {}, has a standard error of {} of its size",

@@ -177,7 +177,7 @@ impl Task<'_> {
     fn explanation(&self, flights: &Prepared, settings: &ExplainSettings) -> Result<Explanation, StudyError> {
         let tell = |done, of| self.progress.about(done, of);
         let found = crate::diagnose::explain_watched(&flights.signals, self.asked.vehicle, settings, &tell)
-            .map_err(|source| StudyError::Explain { logs: names(&self.asked.logs), source })?;
+            .map_err(|source| StudyError::Explain { logs: names(self.asked.logs), source })?;
         Ok(without_gust_of_none(found, &flights.signals, self.alone, (self.asked.vehicle, settings)))
     }
 
