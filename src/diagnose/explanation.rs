@@ -4,7 +4,7 @@ use super::harmonics::LackOfFit;
 use super::latency::{LatencyFinding, finding_of};
 use super::locate::{Aperiodic, FieldTest, Localisation};
 use super::named::{DetectionLimit, Named};
-use super::signatures::signature_of;
+use super::signatures::is_irregular;
 use super::slight::Slight;
 use super::tested::Search;
 use super::torque_law::TorqueLaw;
@@ -60,8 +60,7 @@ impl Explanation {
     /// Without the name of a wind that changes irregularly: it is in no model, and nothing else changes.
     #[must_use]
     pub fn without_gust(mut self) -> Self {
-        let is_gust = |named: &Named| signature_of(named.id).is_some_and(|of| of.joint.irregular.is_some());
-        self.named.retain(|named| !is_gust(named));
+        self.named.retain(|named| !is_irregular(named.id));
         self.aperiodic.gust = None;
         if self.named.is_empty() {
             self.verdict = match self.verdict {

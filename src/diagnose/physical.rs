@@ -21,9 +21,8 @@ pub(super) const WITHIN_ERROR: f64 = 3.0;
 /// the width (`by_wider_window`: Ixx, Iyy, Izz as shares), or because the rigid body explains too little of the torque. What the
 /// description only guesses is no matter here: the motion tells ratios to it.
 fn undetermined(fitted: &Fitted, stated: &Vehicle, by_wider_window: [f64; 3]) -> Vec<usize> {
-    let certain = Vehicle { guesses: Vec::new(), ..stated.clone() };
     let (estimated, nominal) =
-        (fitted.rigid_body().with_wider_window(by_wider_window), Nominal::of(&certain));
+        (fitted.rigid_body().with_wider_window(by_wider_window), Nominal::without_guesses(stated));
     let is_open =
         |entry: &usize| matches!(finding(&estimated, &nominal, *entry), Finding::NotDetermined { .. });
     (1..THETA).filter(is_open).collect()
@@ -92,7 +91,7 @@ fn turn_with(base: &mut Base, factor: f64) {
 }
 
 fn guesses_torque(vehicle: &Vehicle) -> bool {
-    vehicle.guesses.iter().any(|guess| guess.of == Guessed::TorqueRatio)
+    vehicle.guessed(Guessed::TorqueRatio) > 0.0
 }
 
 /// Where a part of the inertia is not determined (`open`, as places in mass and inertia), or no body can have the inertia, it stays at what

@@ -88,8 +88,7 @@ fn ordinary_apart(mixer: &Mixer, rotor: usize, axis: usize, information: &[f64; 
 /// Whether the torque about x or y causes the motion about it: the flights determine the moment of inertia.
 fn causes_motion(flights: &[Signals], stated: &Vehicle, fitted: &Fitted) -> bool {
     let estimated = fitted.rigid_body().with_wider_window(inertia_by_wider_window(flights, stated));
-    // what is only guessed of the vehicle is no question of its motion
-    let nominal = Nominal::of(&Vehicle { guesses: Vec::new(), ..stated.clone() });
+    let nominal = Nominal::without_guesses(stated);
     let determined = |index| matches!(finding(&estimated, &nominal, index), Finding::Determined { .. });
     determined(ACROSS[0]) || determined(ACROSS[1])
 }

@@ -27,8 +27,7 @@ impl GuessedCurve {
     #[must_use]
     pub fn of(vehicle: &Vehicle) -> Option<Self> {
         let ThrustLaw::Curve { thrust_max_n, expo } = vehicle.propulsion.law else { return None };
-        let guesses = vehicle.guesses.iter().filter(|guess| guess.of == Guessed::Expo);
-        let std = guesses.map(|guess| guess.relative).fold(0.0, f64::max);
+        let std = vehicle.guessed(Guessed::Expo);
         let (low, high) = ((expo - std).max(expo.min(0.0)), (expo + std).min(expo.max(1.0)));
         let of = |expo| Propulsion { law: ThrustLaw::Curve { thrust_max_n, expo }, ..vehicle.propulsion };
         (high > low).then(|| Self { ends: [of(low), of(high)], share: std / (high - low) })

@@ -19,20 +19,11 @@ const RELATIVE: f64 = 0.2;
 const LARGEST_STD: f64 = 0.15;
 /// Standard errors from which on the motion excludes a guess. The usual three.
 const CERTAIN: f64 = 3.0;
-/// The vehicle with another torque per thrust, and a note on it, where that is guessed and no body could have the izz which the flights
-/// show with it. `None` where it is no guess, where the flights do not determine the moments, and where they do not exclude it.
-#[must_use]
-pub fn torque_by_motion(flights: &[Signals], vehicle: &Vehicle) -> Option<(Vehicle, Note)> {
-    let relative = |of: Guessed| {
-        let of = vehicle.guesses.iter().filter(|guess| guess.of == of).map(|guess| guess.relative);
-        of.fold(0.0, f64::max)
-    };
-    let (guess, arms) = (relative(Guessed::TorqueRatio), relative(Guessed::Arms));
-    if guess <= 0.0 {
-        return None;
-    }
-    // what is only guessed is no question of the motion
-    let nominal = Nominal::of(&Vehicle { guesses: Vec::new(), ..vehicle.clone() });
+
+/// izz over ixx + iyy as the rigid body alone shows it with the stated torque per thrust (-), and the standard error of its logarithm. `None`
+/// where the flights do not determine ixx, iyy, or leave izz open.
+fn share_about_z(flights: &[Signals], vehicle: &Vehicle) -> Option<(f64, f64)> {
+    let nominal = Nominal::without_guesses(vehicle);
     let mut weak = WeakFlights::from(flights, vehicle, WEAK_HALF_WIDTH_S);
     weak.compensate(&nominal.theta, vehicle);
     let found = solve_weak(&weak.rows, &nominal.theta)?;
@@ -43,24 +34,33 @@ pub fn torque_by_motion(flights: &[Signals], vehicle: &Vehicle) -> Option<(Vehic
     let Estimated { theta, covariance, .. } = &estimated;
     let (across, about) = (theta[1] + theta[4], theta[6]);
     let relative_about = covariance[(6, 6)].max(0.0).sqrt() / about;
-    let (is_x, is_y) = (is_determined(1), is_determined(4));
+    let across_is_determined = is_determined(1) && is_determined(4);
     tracing::debug!(
         share = about / across,
         relative_about,
-        is_x,
-        is_y,
-        "guessed torque held against the motion"
+        across_is_determined,
+        "guessed torque against the motion"
     );
     // a torque that does not quite go with the thrust leaves much of itself unexplained, and its size is told all the same
-    if !(is_x && is_y && relative_about > 0.0 && relative_about < LARGEST_STD) {
+    if !(across_is_determined && relative_about > 0.0 && relative_about < LARGEST_STD) {
         return None;
     }
-    // of the logarithm of izz / (ixx + iyy)
     let variance = (covariance[(1, 1)] + covariance[(4, 4)] + 2.0 * covariance[(1, 4)]) / across.powi(2)
         + covariance[(6, 6)] / about.powi(2)
         - 2.0 * (covariance[(1, 6)] + covariance[(4, 6)]) / (across * about);
-    let std = variance.max(0.0).sqrt().hypot(arms);
-    let share = about / across;
+    Some((about / across, variance.max(0.0).sqrt()))
+}
+
+/// The vehicle with another torque per thrust, and a note on it, where that is guessed and no body could have the izz which the flights
+/// show with it. `None` where it is no guess, where the flights do not determine the moments, and where they do not exclude it.
+#[must_use]
+pub fn torque_by_motion(flights: &[Signals], vehicle: &Vehicle) -> Option<(Vehicle, Note)> {
+    let guess = vehicle.guessed(Guessed::TorqueRatio);
+    if guess <= 0.0 {
+        return None;
+    }
+    let (share, std) = share_about_z(flights, vehicle)?;
+    let std = std.hypot(vehicle.guessed(Guessed::Arms));
     let is_excluded = share.ln() > CERTAIN * std;
     if !is_excluded {
         return None;

@@ -28,6 +28,12 @@ impl Nominal {
         Self { theta: theta_of(&vehicle.body), scaled_by: std::array::from_fn(of_index) }
     }
 
+    /// The same as if nothing were guessed: of what the motion tells, guesses are no question.
+    #[must_use]
+    pub fn without_guesses(vehicle: &Vehicle) -> Self {
+        Self { theta: theta_of(&vehicle.body), scaled_by: Default::default() }
+    }
+
     /// Relative standard error that a parameter has from guesses alone.
     #[must_use]
     pub fn guessed(&self, index: usize) -> f64 {

@@ -108,16 +108,11 @@ pub fn contradicts_file(all: &[Contradiction]) -> Option<String> {
     (!clauses.is_empty()).then(|| clauses.join(", and "))
 }
 
-/// Relative standard error of what the vehicle's description only guesses of a parameter.
-fn guess(vehicle: &Vehicle, of: Guessed) -> f64 {
-    vehicle.guesses.iter().filter(|guess| guess.of == of).map(|guess| guess.relative).fold(0.0, f64::max)
-}
-
 /// The stated mass (index 0) or moment of inertia (1, 4, 6) with the relative error of a guess.
 #[must_use]
 pub fn stated(vehicle: &Vehicle, index: usize) -> (f64, f64) {
     let of = if index == 0 { Guessed::ThrustMax } else { Guessed::Inertia };
-    (theta_of(&vehicle.body)[index], guess(vehicle, of))
+    (theta_of(&vehicle.body)[index], vehicle.guessed(of))
 }
 
 /// Estimates that are far from what the vehicle file states: mass, thrust and moments of inertia.
@@ -129,7 +124,7 @@ pub fn contradictions(
 ) -> Vec<Contradiction> {
     let of_thrust = scale.and_then(|scale| match scale.factor {
         Finding::Determined { value, std } => {
-            Contradiction::of(scale.name, (value, std), (1.0, guess(vehicle, Guessed::ThrustMax)))
+            Contradiction::of(scale.name, (value, std), (1.0, vehicle.guessed(Guessed::ThrustMax)))
         }
         _ => None,
     });

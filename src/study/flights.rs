@@ -254,8 +254,7 @@ pub(super) fn prepare_by_motion(
     (vehicle, file): (&Vehicle, &Path),
     settings: &ConditionSettings,
 ) -> Result<(Prepared, Option<(Vehicle, Note)>), StudyError> {
-    let guesses = vehicle.guesses.iter().any(|guess| guess.of == Guessed::TorqueRatio);
-    let again = guesses.then(|| logs.clone());
+    let again = (vehicle.guessed(Guessed::TorqueRatio) > 0.0).then(|| logs.clone());
     let prepared = prepare(logs, (vehicle, file), settings)?;
     match again.zip(torque_by_motion(&prepared.signals, vehicle)) {
         None => Ok((prepared, None)),

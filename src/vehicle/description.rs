@@ -2,7 +2,7 @@
 
 use super::anchor::Anchor;
 use super::body::RigidBody;
-use super::guess::Guess;
+use super::guess::{Guess, Guessed};
 use super::limits::Limits;
 use super::propulsion::Propulsion;
 use super::rotor::{Mixer, Rotor};
@@ -33,6 +33,12 @@ impl Vehicle {
     #[must_use]
     pub fn mixer(&self) -> Mixer {
         Mixer::new(&self.rotors, self.body.center_of_mass_m, self.propulsion.torque_per_thrust_m)
+    }
+
+    /// Relative standard error of a value that nobody measured, as in [`Guess::relative`]; 0 where it is no guess.
+    #[must_use]
+    pub fn guessed(&self, of: Guessed) -> f64 {
+        self.guesses.iter().filter(|guess| guess.of == of).map(|guess| guess.relative).fold(0.0, f64::max)
     }
 
     /// The rotor that an effect's number means, from 0; `None` where there is none.

@@ -297,3 +297,36 @@ fn a_hover_beside_a_flight_that_moves_raises_no_doubt() {
         assert!((dx["value"].as_f64().unwrap() / 0.297 - 1.0).abs() < 0.05, "{kind}: {dx}");
     }
 }
+
+/// The beginning of a log, up to so many seconds after its first frame.
+fn beginning(log: &Path, seconds: f64) -> Vec<u8> {
+    let bytes = std::fs::read(log).unwrap();
+    let stamp = |at: usize| u64::from_be_bytes(bytes[at..at + 8].try_into().unwrap()) as f64 / 1e6;
+    let (first, mut at) = (stamp(0), 0);
+    while at + 10 < bytes.len() && stamp(at) - first <= seconds {
+        let (length, signed) = (usize::from(bytes[at + 9]), bytes[at + 10] & 1 == 1);
+        at += 8 + match bytes[at + 8] {
+            0xFD => 12 + length + if signed { 13 } else { 0 },
+            _ => 8 + length,
+        };
+    }
+    bytes[..at.min(bytes.len())].to_vec()
+}
+
+#[test]
+fn a_short_flight_is_said_to_be_short_first_and_the_whole_one_is_not() {
+    let whole = PathBuf::from(fixture("p01_identify_0_25s.tlog"));
+    let explained = |log: &Path| -> Value {
+        let arguments =
+            ["explain", log.to_str().unwrap(), "--vehicle", &fixture("p01_vehicle.toml"), "--json"];
+        serde_json::from_slice(&mavid(&arguments).stdout).unwrap()
+    };
+    let all = explained(&whole);
+    assert!(!all["answer"].as_str().unwrap().contains("short"), "{}", all["answer"]);
+    let part = temporary("short.tlog");
+    std::fs::write(&part, beginning(&whole, 15.0)).unwrap();
+    let short = explained(&part);
+    let answer = short["answer"].as_str().unwrap();
+    assert!(answer.starts_with("Doubtful: the flight is short ("), "{answer}");
+    assert_eq!(short["effects"].as_array().unwrap().len(), 0, "{answer}");
+}

@@ -23,7 +23,6 @@ mod identify_with;
 mod paper_twin;
 mod prove_command;
 mod reconstruction;
-mod short_flights;
 mod validate_command;
 mod velocity_error;
 mod weighed_vehicle;

@@ -128,18 +128,17 @@ fn a_guessed_thrust_curve_is_in_the_errors_until_the_flight_tells_it() {
         assert!((value - 0.02).abs() < 2.0 * std, "{name} {value} +- {std}");
         let told = &with["with"]["parameters"][name];
         let (value, std) = (told["value"].as_f64().unwrap(), told["std"].as_f64().unwrap());
-        // a linear thrust is at the bounds of the commands no law with a curvature and a bow: that is in the error
-        assert!((value - 0.02).abs() < 2.0 * std && std < 0.0015, "{name} {value} +- {std}");
+        assert!((value / 0.02 - 1.0).abs() < 0.08 && std < 0.002, "{name} {value} +- {std}");
     }
     let verdict = identified["verdict"].as_str().unwrap();
-    // the flight shows its curve, and with it the moments; Izz rests on a torque per thrust that the motion has corrected
+    // the flight shows its curve, and with it the moments; Izz still rests on the guessed torque per thrust
     assert_eq!(identified["best"]["beside"], serde_json::json!(["thrust_curve"]));
     for name in ["ixx", "iyy"] {
         let best = &identified["best"]["parameters"][name];
         let (value, std) = (best["value"].as_f64().unwrap(), best["std"].as_f64().unwrap());
         assert!((value - 0.02).abs() < 2.0 * std && std < 0.002, "{name} {value} +- {std}");
     }
-    assert!(verdict.contains("good for thrust, ixx") && verdict.contains("poor for izz"), "{verdict}");
+    assert!(verdict.contains("good for thrust, ixx") && verdict.contains("not for izz"), "{verdict}");
     let verdict = inspected["verdict"].as_str().unwrap();
     assert!(verdict.contains("poor for") && !verdict.contains("good for Ixx"), "{verdict}");
     assert!(inspected["advice"].to_string().contains("--with thrust_curve"), "{}", inspected["advice"]);

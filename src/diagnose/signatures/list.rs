@@ -37,6 +37,12 @@ pub fn signature_of(id: &str) -> Option<&'static Signature> {
     ALL.iter().copied().find(|signature| signature.id() == id)
 }
 
+/// Whether an identifier is that of wind that changes irregularly: it is found in the residual, and no model has it.
+#[must_use]
+pub fn is_irregular(id: &str) -> bool {
+    signature_of(id).is_some_and(|signature| signature.joint.irregular.is_some())
+}
+
 /// The first signature whose role meets a condition.
 #[must_use]
 pub fn with_role(meets: impl Fn(&Role) -> bool) -> Option<&'static Signature> {

@@ -52,6 +52,10 @@ fn no_model(study: &ExplainStudy) -> String {
 
 fn found(study: &ExplainStudy) -> String {
     match study.verdict() {
+        Verdict::NothingMissing if !unsure_names(study).is_empty() => format!(
+            "No name is certain: this flight shows {}, but not surely enough, so the model stays the rigid body.",
+            list(unsure_names(study))
+        ),
         Verdict::NothingMissing => match of_one_flight(study).trim_start_matches("; ") {
             "" => nothing(study),
             alone => format!("{} But {alone}.", nothing(study)),
@@ -197,13 +201,6 @@ fn nothing(study: &ExplainStudy) -> String {
     let other = study
         .other_vehicle()
         .map_or_else(String::new, |by| format!(" But {} ({by}), so nothing is shown on it.", whose(study)));
-    let unsure = unsure_names(study);
-    if !unsure.is_empty() {
-        return format!(
-            "No name is certain: this flight shows {}, but not surely enough, so the model stays the rigid body.{other}",
-            list(unsure)
-        );
-    }
     if study.explanation.too_little_excitation {
         let could =
             if seen.is_empty() { String::new() } else { format!("; it could show {}", list_or(&seen)) };

@@ -5,7 +5,7 @@ use super::readers::for_readers;
 use super::result::ExplainStudy;
 use crate::diagnose::Need;
 use crate::diagnose::signature::Signature;
-use crate::diagnose::signatures::signature_of;
+use crate::diagnose::signatures::{is_irregular, signature_of};
 use crate::diagnose::{
     Apart, ExplainSettings, Explanation, Named, Owner, Verdict, apart, each_with_model_of_all, explain,
     own_wind, relative_to_air,
@@ -51,18 +51,18 @@ pub(super) fn without_gust_of_none(
     alone: &[Vec<Named>],
     (vehicle, settings): (&Vehicle, &ExplainSettings),
 ) -> Explanation {
-    let is_irregular = |named: &Named| signature_of(named.id).is_some_and(|of| of.joint.irregular.is_some());
-    if flights.len() < 2 || !found.named.iter().any(is_irregular) {
+    let has_gust = |named: &[Named]| named.iter().any(|named| is_irregular(named.id));
+    if flights.len() < 2 || !has_gust(&found.named) {
         return found;
     }
     let shows = |signals: &Signals| {
         let alone = explain(std::slice::from_ref(signals), vehicle, settings);
-        alone.is_ok_and(|alone| alone.named.iter().any(is_irregular))
+        alone.is_ok_and(|alone| has_gust(&alone.named))
     };
     let is_shown = if alone.is_empty() {
         flights.par_iter().any(shows)
     } else {
-        alone.iter().flatten().any(is_irregular)
+        alone.iter().any(|names| has_gust(names))
     };
     if is_shown { found } else { found.without_gust() }
 }

@@ -20,8 +20,7 @@ impl ExplainStudy {
     /// Mass, thrust and moments of inertia that are far from what the vehicle file states.
     pub(super) fn contradictions(&self) -> Vec<Contradiction> {
         let vehicle = &self.given.vehicle;
-        let guesses = vehicle.guesses.iter().filter(|guess| guess.of == Guessed::ThrustMax);
-        let guess = guesses.map(|guess| guess.relative).fold(0.0, f64::max);
+        let guess = vehicle.guessed(Guessed::ThrustMax);
         let of_thrust = |ThrustScale { name, factor, .. }: ThrustScale| match factor {
             Finding::Determined { value, std } => Contradiction::of(name, (value, std), (1.0, guess)),
             _ => None,

@@ -125,28 +125,28 @@ pub const QUANTITIES: [(&str, &str); 4] =
 mod tests {
     use super::*;
 
+    /// Errors of a state that does not change, of the rigid body alone and of the better model.
+    fn compared(unchanged: f64, before: f64, after: f64) -> Option<Compared> {
+        let interval = |value| Interval { value, range: None };
+        Some(Compared {
+            before: interval(before),
+            after: interval(after),
+            unchanged: Some(interval(unchanged)),
+            floor: None,
+            improvement_percent: interval(-900.0),
+            at_end: None,
+        })
+    }
+
+    fn window(window_s: f64, position_m: Option<Compared>, attitude_rad: Option<Compared>) -> OpenLoop {
+        OpenLoop { window_s, windows: 10, position_m, velocity_m_s: None, attitude_rad, rates_rad_s: None }
+    }
+
     #[test]
     fn the_work_of_effects_is_against_the_rigid_body_whatever_no_change_would_predict() {
-        let alone = |value| Interval { value, range: None };
-        let of = |before, after| {
-            Some(Compared {
-                before: alone(before),
-                after: alone(after),
-                unchanged: Some(alone(0.1)),
-                floor: None,
-                improvement_percent: alone(-900.0),
-                at_end: None,
-            })
-        };
+        let of = |before, after| compared(0.1, before, after);
         let predicted = |position_m, velocity_m_s| Predicted {
-            open_loop: vec![OpenLoop {
-                window_s: 0.5,
-                windows: 10,
-                position_m,
-                velocity_m_s,
-                attitude_rad: None,
-                rates_rad_s: None,
-            }],
+            open_loop: vec![OpenLoop { velocity_m_s, ..window(0.5, position_m, None) }],
             improvement_percent: None,
         };
         // 50 % less and 25 % more
@@ -157,25 +157,7 @@ mod tests {
 
     #[test]
     fn a_model_is_none_over_each_window_in_which_no_change_is_better() {
-        let value = |value| Interval { value, range: None };
-        let of = |unchanged, after| {
-            Some(Compared {
-                before: value(after),
-                after: value(after),
-                unchanged: Some(value(unchanged)),
-                floor: None,
-                improvement_percent: value(0.0),
-                at_end: None,
-            })
-        };
-        let window = |window_s, position_m, attitude_rad| OpenLoop {
-            window_s,
-            windows: 10,
-            position_m,
-            velocity_m_s: None,
-            attitude_rad,
-            rates_rad_s: None,
-        };
+        let of = |unchanged, after| compared(unchanged, after, after);
         let open_loop = vec![
             window(0.1, of(1.0, 2.0), None),
             window(0.5, of(2.0, 1.0), of(2.0, 1.0)),

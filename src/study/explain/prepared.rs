@@ -128,10 +128,10 @@ impl Task<'_> {
                 // what is irregular does not come again in a short flight
                 explanation = explanation.without_gust();
             }
-            match unsure.is_empty() {
-                true => all_was_explained = explanation.verdict == Verdict::Explained,
-                false if all_was_explained => explanation = explanation.of_unsure_cause(),
-                false => {}
+            if unsure.is_empty() {
+                all_was_explained = explanation.verdict == Verdict::Explained;
+            } else if all_was_explained {
+                explanation = explanation.of_unsure_cause();
             }
             self.progress.stage(Stage::Predicting);
             let given = self.given(flights, settings.clone());

@@ -45,7 +45,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
     let known = request.vehicle.of_flights(known, &logs).map_err(or_unflown)?;
     let mut notes = of_vehicle(&known)?;
-    let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft, .. } = known;
+    let Known { loaded: LoadedVehicle { mut vehicle, .. }, origin, mut draft, .. } = known;
     let name = vehicle.name.clone();
     let of_holdout =
         |why| StudyError::Setting { name: "holdout", why: format!("expected a flight of {name}: {why}") };
@@ -63,8 +63,6 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     };
     let (mut flights, corrected) =
         prepare_by_motion(logs, (&vehicle, &origin), &settings).map_err(or_unflown)?;
-    let mut vehicle = vehicle;
-    let mut draft = draft;
     if let Some((corrected, why)) = corrected {
         if let Some(draft) = &mut draft {
             draft.vehicle = corrected.clone();

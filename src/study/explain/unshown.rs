@@ -2,6 +2,7 @@
 
 use super::refuted::Unshown;
 use super::result::ExplainStudy;
+use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{ByPart, Named, Trace, brief, by_part};
 
@@ -17,10 +18,9 @@ impl ExplainStudy {
         self.short.as_ref()?;
         let parts = by_part(traces, &self.explanation).unwrap_or_default();
         let is_judged = |named: &&Named| {
-            let judged =
-                |role: &crate::diagnose::signature::Role| role.latency.is_none() && role.moment.is_none();
             let refused = self.given.settings.refused.contains(&named.id);
-            !refused && signature_of(named.id).is_some_and(|of| judged(&of.role))
+            let lasts = |of: &Signature| of.role.latency.is_none() && of.role.moment.is_none();
+            !refused && signature_of(named.id).is_some_and(lasts)
         };
         let of = |named: &Named| {
             let of: Vec<&ByPart> = parts.iter().filter(|part| part.id == named.id).collect();

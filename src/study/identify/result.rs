@@ -76,6 +76,17 @@ impl WithEffects {
     }
 }
 
+/// Widens the errors of a rigid body alone, where no effects could be searched beside it, and says why.
+fn rigid_body_alone(identification: &mut Identification, vehicle: &Vehicle, why: &str) {
+    let Identification { methods, best, notes, .. } = identification;
+    best.widen(&Nominal::of(vehicle));
+    let of_best = methods.iter_mut().filter(|result| result.method == best.method);
+    of_best.for_each(|result| result.clone_from(&best.result));
+    let text =
+        format!("mass and inertia of a rigid body alone, without a search of effects beside them: {why}");
+    notes.push(Note::remark(About::Estimate, text));
+}
+
 impl IdentifyStudy {
     /// Mass and inertia from signals and the files that they came from. `explained` are the same flights as `explain` conditions them:
     /// no part of them is held back.
@@ -117,24 +128,14 @@ impl IdentifyStudy {
                 identification.notes.extend(torque_law.iter().map(TorqueLaw::note));
                 identification.notes.extend(gyroscopic.iter().map(GyroscopicShare::note));
             }
-            Err(why) => {
-                identification.best.widen(&Nominal::of(&vehicle));
-                let of_best = identification.methods.iter_mut();
-                of_best
-                    .filter(|result| result.method == identification.best.method)
-                    .for_each(|result| result.clone_from(&identification.best.result));
-                let text = format!(
-                    "mass and inertia of a rigid body alone, without a search of effects beside them: {why}"
-                );
-                identification.notes.push(Note::remark(About::Estimate, text));
-            }
+            Err(why) => rigid_body_alone(&mut identification, &vehicle, why),
         }
         identification.best.result.emit();
         let scale = apply_anchor(&mut identification, &vehicle);
         let joint = |result: &&mut MethodResult| result.method == Method::Joint;
-        let of_joint = identification.methods.iter_mut().filter(joint);
-        of_joint.for_each(|result| without_undetermined(result, &undetermined));
-        without_undetermined(&mut identification.best.result, &undetermined);
+        let kept = |result: &mut MethodResult| without_undetermined(result, &undetermined);
+        identification.methods.iter_mut().filter(joint).for_each(kept);
+        kept(&mut identification.best.result);
         if turned_by_control {
             identification.methods.iter_mut().filter(joint).for_each(without_inertia);
             without_inertia(&mut identification.best.result);

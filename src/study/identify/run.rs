@@ -9,9 +9,7 @@ use crate::diagnose::joint::{RequestedEffects, identify_jointly};
 use crate::signals::{ConditionSettings, Signals, other_settings};
 use crate::study::explain::{Asked, ExplainRequest};
 use crate::study::flight::Flight;
-use crate::study::flights::{
-    IDENTIFIED, Prepared, load_all, names, prepare, prepare_by_motion, refuse_twins,
-};
+use crate::study::flights::{IDENTIFIED, Prepared, load_all, names, prepare, refuse_twins};
 use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
@@ -35,29 +33,20 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     refuse_other_builds(logs.iter().flatten())?;
     let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
     let known = request.vehicle.of_flights(known, &logs).map_err(or_unflown)?;
-    let mut known = known;
     let mut notes = known.notes();
-    progress.stage(Stage::Identifying);
-    let beside = request.conditioning_beside();
-    let prepared = prepare_by_motion(logs.clone(), (&known.loaded.vehicle, &known.origin), &beside);
-    let prepared = prepared.map(|(flights, corrected)| {
-        if let Some((corrected, why)) = corrected {
-            known.loaded.vehicle = corrected;
-            notes.push(why);
-        }
-        flights
-    });
     notes.iter().for_each(|note| progress.note(note));
+    progress.stage(Stage::Identifying);
     let with = wanted.map(|wanted| with_effects(request, (&logs, &known), &wanted));
     let with = with.transpose().map_err(or_unflown)?;
     let vehicle = (&known.loaded.vehicle, known.origin.as_path());
+    let beside = request.conditioning_beside();
     let asked = Asked {
         vehicle: &known.loaded.vehicle,
         notes: &[],
         logs: &request.logs,
         transient_s: beside.transient_s.unwrap_or(ExplainRequest::TRANSIENT_S),
     };
-    let found = prepared
+    let found = prepare(logs.clone(), vehicle, &beside)
         .map_err(|error| error.to_string())
         .and_then(|flights| found_beside(flights, asked, progress));
     let Prepared { recordings, signals, inputs, .. } =
