@@ -1,7 +1,7 @@
 //! `explain` on damaged recordings: from the file to the page.
 
 use mavid::diagnose::{ExplainSettings, explain};
-use mavid::estimate::{contradicting_flights, inertia_by_wider_window, moved_by_guessed_curve};
+use mavid::estimate::{contradicting_flights, moved_by_guessed_curve};
 use mavid::report::{
     ExplanationDocument, explained_model, explanation_answer, explanation_html, explanation_text,
 };
@@ -38,7 +38,6 @@ pub fn run(data: &[u8], seeded: bool) {
         vehicle: flight.vehicle.clone(),
         inputs: Vec::new(),
         quality: flights.iter().map(|signals| signals.quality.clone()).collect(),
-        inertia_by_wider_window: inertia_by_wider_window(&flights, &flight.vehicle),
         by_guessed_curve: moved_by_guessed_curve(&flights, &flight.vehicle),
         contradicting: contradicting_flights(&flights, &flight.vehicle),
         settings,

@@ -74,9 +74,9 @@ pub(super) fn refine(
     add_left_over(&mut found.before, &[]);
     add_floors(&mut found.before);
     found.latency.std_s = found.latency.std_s.hypot(FORM * found.latency.total_s);
-    let by_wider_window = inertia_by_wider_window(flights, vehicle);
-    make_physical(traces, (vehicle, by_wider_window), &mut found.before)?;
-    make_physical(traces, (vehicle, by_wider_window), &mut found.after)
+    found.by_wider_window = inertia_by_wider_window(flights, vehicle);
+    make_physical(traces, (vehicle, found.by_wider_window), &mut found.before)?;
+    make_physical(traces, (vehicle, found.by_wider_window), &mut found.after)
 }
 
 /// Removes effects without a name from the model: those of ordinary size, those that are not certain, those that the accelerometer

@@ -86,7 +86,7 @@ pub fn search(
         std_s: found.std_s.max(beside.std_s),
         ..found
     };
-    Ok(Search { before, after, latency, steps, last })
+    Ok(Search { before, after, latency, steps, last, by_wider_window: [f64::NAN; 3] })
 }
 
 /// Takes the best of the candidates into the model, or what stands for it and others of its kind; `None` where it is refused.

@@ -55,4 +55,7 @@ pub struct Search {
     pub steps: Vec<Step>,
     /// every candidate at the final base
     pub last: Vec<Tested>,
+    /// Ixx, Iyy, Izz of the rigid body alone by a window of twice the width, as shares of those by the usual one; NaN before the model is
+    /// refined, and where either has none
+    pub by_wider_window: [f64; 3],
 }

@@ -8,9 +8,7 @@ use super::validation_data::ValidationData;
 use crate::diagnose::holdout::HoldoutSettings;
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, Named, TorqueLaw, Trace, Verdict};
-use crate::estimate::{
-    Contradiction, contradicting_flights, inertia_by_wider_window, moved_by_guessed_curve,
-};
+use crate::estimate::{Contradiction, contradicting_flights, moved_by_guessed_curve};
 use crate::note::Note;
 use crate::signals::Signals;
 use crate::study::flights::{Prepared, names};
@@ -65,7 +63,7 @@ pub(in crate::study) fn explain_prepared(
     let mut task = Task { asked, winds_m_s: &winds_m_s, alone: &alone, short, own_load: false, progress };
     progress.stage(Stage::Explaining);
     let (mut study, refused) = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
-    // payload and wind of another day make no other vehicle. The names stay: what refutes them would be of the same flights
+    // payload and wind of another day make no other vehicle; the names stay as they were found
     if study.refuted.is_none()
         && study.other_vehicle().is_some()
         && matches!(shown_on, ValidationData::Flights(_))
@@ -125,7 +123,7 @@ impl Task<'_> {
         loop {
             let mut explanation = self.explanation(flights, &settings)?;
             if self.short.is_some() {
-                // what is irregular does not come again in a short flight
+                // a short flight does not tell wind that is irregular from anything else
                 explanation = explanation.without_gust();
             }
             if unsure.is_empty() {
@@ -190,7 +188,6 @@ impl Task<'_> {
             vehicle: self.asked.vehicle.clone(),
             inputs: flights.inputs.clone(),
             quality: flights.signals.iter().map(|signals| signals.quality.clone()).collect(),
-            inertia_by_wider_window: inertia_by_wider_window(&flights.signals, self.asked.vehicle),
             by_guessed_curve: moved_by_guessed_curve(&flights.signals, self.asked.vehicle),
             contradicting,
             settings,

@@ -38,8 +38,6 @@ pub struct Given {
     pub inputs: Vec<InputFile>,
     /// where their signals come from
     pub quality: Vec<Quality>,
-    /// Ixx, Iyy, Izz of the rigid body by a window of twice the width, as shares of those by the usual one
-    pub inertia_by_wider_window: [f64; 3],
     /// how far mass and inertia move with one standard error of a guessed thrust curve
     pub by_guessed_curve: Option<MovedByCurve>,
     /// flights whose masses or moments of inertia, by the rigid body alone, contradict those of the first one
@@ -194,7 +192,8 @@ impl ExplainStudy {
         let before = self.estimates(&self.explanation.search.before);
         let after = self.estimates(self.fitted());
         let nominal = Nominal::of(&self.given.vehicle);
-        let estimated = self.on_scale(self.fitted()).with_wider_window(self.given.inertia_by_wider_window);
+        let estimated =
+            self.on_scale(self.fitted()).with_wider_window(self.explanation.search.by_wider_window);
         let is_weighed = |index| index == 0 && self.fitted().base.weighed_kg.is_some();
         let fitted = self.fitted();
         let by_control = |index: usize| index > 0 && self.explanation.turned_by_control;

@@ -1,9 +1,7 @@
 //! Mass and inertia by the estimator of `explain`, together with the effects that the flights show.
 
 use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, TorqueLaw, Verdict, brief, explain};
-use crate::estimate::{
-    Finding, MethodResult, Nominal, Recommendation, THETA, inertia_by_wider_window, moved_by_guessed_curve,
-};
+use crate::estimate::{Finding, MethodResult, Nominal, Recommendation, THETA, moved_by_guessed_curve};
 use crate::signals::Signals;
 use crate::study::explain::{Asked, BY_CONTROL, KEPT, explain_prepared};
 use crate::study::flights::Prepared;
@@ -108,8 +106,7 @@ pub(super) fn joint_estimate(
     // what serves as no explanation is not in the model
     let fitted = if unexplained { &found.search.before } else { &found.search.after };
     let mut estimated = fitted.with_stated_thrust(&vehicle.propulsion);
-    // of the same signals as the fit
-    estimated.by_wider_window = Some(inertia_by_wider_window(flights, vehicle));
+    estimated.by_wider_window = Some(found.search.by_wider_window);
     if !fitted.base.estimates_bend() {
         let moved = moved_by_guessed_curve(flights, vehicle).map(|by| by.on(&estimated.theta));
         estimated = estimated.with_guessed_curve(moved);
