@@ -3,7 +3,7 @@
 use super::bootstrap::{AtEnd, Blocks, Compared, Interval, Squares};
 use super::error::HoldoutError;
 use super::floor::{command_noise, state_noise};
-use super::rate_law::{EmpiricalRates, Path, RateLaw};
+use super::rate_law::{Path, RateLaw};
 use super::ready::{Ready, model_of};
 use super::settings::HoldoutSettings;
 use crate::compare::{
@@ -12,7 +12,7 @@ use crate::compare::{
 };
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
-use crate::physics::{ActiveEffect, Model, PhysicsError};
+use crate::physics::{Model, PhysicsError};
 use rayon::prelude::*;
 
 /// Time from one window's start to the next one's, s. Motions that repeat must not always be met at the same place.
@@ -103,8 +103,7 @@ fn models_of(ready: &Ready) -> Result<Models, PhysicsError> {
 /// A base's model with its latency as effects, and with a law of its rates.
 pub(super) fn predicting(base: &Base, rate_law: Option<RateLaw>) -> Result<Model, PhysicsError> {
     let model = model_of(base)?;
-    let Some(law) = rate_law else { return Ok(model) };
-    model.with(ActiveEffect::new(&EmpiricalRates, &law.values(&model.body.inertia_kg_m2))?)
+    rate_law.map_or(Ok(model.clone()), |law| law.acting_in(&model))
 }
 
 fn path_of<'a>(ready: &'a Ready) -> Result<Path<'a>, HoldoutError> {

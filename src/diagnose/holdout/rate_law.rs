@@ -4,7 +4,10 @@
 //! torque is seen in the rates. What is left then predicts best with a share of that torque only, and with rates that decay as the
 //! controller lets them. The law describes the vehicle under its controller as it was flown and is no mechanism.
 
-use crate::physics::{Bounds, Condition, Effect, Hook, Own, Parameter, RigidBodyModel, Rotors, Wrench};
+use crate::physics::{
+    ActiveEffect, Bounds, Condition, Effect, Hook, Model, Own, Parameter, PhysicsError, RigidBodyModel,
+    Rotors, Wrench,
+};
 use crate::signals::{Grid, Signals};
 use crate::vehicle::gyroscopic_torque_nm;
 use nalgebra::{Matrix3, Vector3};
@@ -51,8 +54,16 @@ impl RateLaw {
         })
     }
 
+    /// The model with rates that follow the law, for open-loop predictions; kg m^2 come from its body.
+    ///
+    /// # Errors
+    /// [`PhysicsError`] where a value is outside its bounds.
+    pub fn acting_in(&self, model: &Model) -> Result<Model, PhysicsError> {
+        model.with(ActiveEffect::new(&EmpiricalRates, &self.values(&model.body.inertia_kg_m2))?)
+    }
+
     /// Values of [`EmpiricalRates`] for a body with this inertia, kg m^2.
-    pub(super) fn values(&self, inertia_kg_m2: &Matrix3<f64>) -> [f64; 9] {
+    fn values(&self, inertia_kg_m2: &Matrix3<f64>) -> [f64; 9] {
         let moments = inertia_kg_m2.diagonal();
         let (damping, offset) =
             (self.decay_1_s.component_mul(&moments), self.offset_rad_s2.component_mul(&moments));
@@ -182,7 +193,7 @@ fn bounded_step(
 
 /// The law as what acts in a simulation, after all effects.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct EmpiricalRates;
+struct EmpiricalRates;
 
 const SHARE: Bounds = Bounds::of(0.0, 1.0);
 const ANY: Bounds = Bounds::of(f64::NEG_INFINITY, f64::INFINITY);

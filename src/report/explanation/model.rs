@@ -3,11 +3,12 @@
 use super::answer::answer;
 use crate::config::{ConfigError, vehicle_to_toml};
 use crate::diagnose::NO_LATENCY;
-use crate::diagnose::holdout::{WINDOWS_S, Without};
+use crate::diagnose::holdout::{RateLaw, WINDOWS_S, Without};
 use crate::estimate::{Finding, ThrustScale};
 use crate::report::model_parts::{self, correlation_lines, effect_tables, files};
 use crate::study::{ExplainStudy, ValidationData, Worth};
 use crate::text::{significant, toml_string};
+use nalgebra::Vector3;
 use std::fmt::Write;
 
 /// The model file: every command that takes a vehicle takes it.
@@ -58,9 +59,26 @@ fn identified(text: &mut String, study: &ExplainStudy) {
         let others: Vec<&str> = effect.confusable_with.iter().map(|other| other.id).collect();
         let _ = writeln!(text, "confusable_with = {others:?}");
     }
+    if let Some(law) = &study.rate_law {
+        rate_law(text, law);
+    }
     if let Some(worth) = &study.worth {
         prediction(text, worth);
     }
+}
+
+/// How the rates move in open-loop predictions: no effect, and nothing that a simulation in closed loop may use.
+fn rate_law(text: &mut String, law: &RateLaw) {
+    let vector = |of: Vector3<f64>| format!("[{:e}, {:e}, {:e}]", of.x, of.y, of.z);
+    let _ = writeln!(
+        text,
+        "\n# open-loop predictions: of the torques this share acts, and the rates decay. It holds for the vehicle under its controller as \
+         it was\n# flown, about body x, y and z; units 1, 1/s and rad/s^2\n[identified.rate_law]\nshare = {}\ndecay_1_s = {}\n\
+         offset_rad_s2 = {}",
+        vector(law.share),
+        vector(law.decay_1_s),
+        vector(law.offset_rad_s2)
+    );
 }
 
 /// Errors of prediction with the whole model, and without each effect: what `mavid export` tells of those that it leaves out.

@@ -19,9 +19,9 @@ use crate::study::{Predicted, StudyError};
 const BY_RATE_LAW: &str = "over 0.5 s, a constant state predicts body rates or attitude better than the model: calm \
                            flight under a controller says little about torques. Open-loop \
                            predictions use an empirical law of the rates instead (\"rate_law\"). It is valid for this \
-                           vehicle under this controller and is no property of the vehicle. model.toml does not contain \
-                           it, so a simulation of the model alone predicts them worse than a constant state does. With a \
-                           trajectory that turns the vehicle more (`mavid plan`), the torques can be compared";
+                           vehicle under this controller and is no property of the vehicle. model.toml has \
+                           it below [identified.rate_law], and `mavid validate` predicts with it. A simulator does not, and \
+                           its rates are worse than a constant state. With a trajectory that turns the vehicle more (`mavid plan`), the torques can be compared";
 
 /// Mean over the quantities of how much smaller errors over 0.5 s have to be without an effect. The model without it has the other
 /// parameters of the model with it, which speaks for the effect; predictions are repeated to a tenth of this.

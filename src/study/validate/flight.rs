@@ -68,7 +68,7 @@ fn played_back(models: &[Contender], signals: &[Signals], window_s: f64) -> Erro
         .iter()
         .zip(signals)
         .map(|(model, signals)| {
-            let played = playback((&model.model, &model.vehicle), signals, &settings);
+            let played = playback((&model.predicting, &model.vehicle), signals, &settings);
             (model.of.name.clone(), played.map_err(|error| error.to_string()))
         })
         .collect();

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::result::ValidatedModel;
 use crate::config::{LoadedVehicle, effects_of, read_vehicle};
+use crate::diagnose::holdout::RateLaw;
 use crate::draft::Given;
 use crate::note::Note;
 use crate::physics::Model;
@@ -12,12 +13,16 @@ use crate::study::flights::file_notes;
 use crate::study::{InputFile, Progress, StudyError, VehicleGiven, with_stated_lag};
 use crate::text;
 use crate::vehicle::Vehicle;
+use nalgebra::Vector3;
+use serde::Deserialize;
 
 /// A model, ready to fly.
 pub(super) struct Contender {
     pub(super) of: ValidatedModel,
     pub(super) vehicle: Vehicle,
     pub(super) model: Model,
+    /// for predictions in open loop: the same, or with the law of the rates that its file has for them
+    pub(super) predicting: Model,
 }
 
 /// All models by name, and what is doubtful about their files.
@@ -48,9 +53,29 @@ fn flying(loaded: LoadedVehicle, of: ValidatedModel) -> Result<Contender, StudyE
     let file = || of.input.path.clone();
     let effects = effects_of(&loaded.model.effects, &file(), &loaded.vehicle)?;
     let effects = with_stated_lag(effects, &loaded.vehicle);
-    let model = Model::new(&loaded.vehicle, effects)
-        .map_err(|error| StudyError::File { file: file(), why: error.to_string() })?;
-    Ok(Contender { of, vehicle: loaded.vehicle, model })
+    let refused = |why: String| StudyError::File { file: file(), why };
+    let model = Model::new(&loaded.vehicle, effects).map_err(|error| refused(error.to_string()))?;
+    let law = rate_law(loaded.model.identified.as_ref()).map_err(refused)?;
+    let predicting = law.map_or(Ok(model.clone()), |law| law.acting_in(&model));
+    let predicting = predicting.map_err(|error| refused(format!("identified.rate_law: {error}")))?;
+    Ok(Contender { of, vehicle: loaded.vehicle, model, predicting })
+}
+
+/// The law of the body rates that a model file has for predictions in open loop.
+fn rate_law(identified: Option<&toml::Table>) -> Result<Option<RateLaw>, String> {
+    /// As `explain` writes it.
+    #[derive(Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Law {
+        share: [f64; 3],
+        decay_1_s: [f64; 3],
+        offset_rad_s2: [f64; 3],
+    }
+    let Some(table) = identified.and_then(|table| table.get("rate_law")) else { return Ok(None) };
+    let Law { share, decay_1_s, offset_rad_s2 } =
+        table.clone().try_into().map_err(|error| format!("identified.rate_law: {error}"))?;
+    let [share, decay_1_s, offset_rad_s2] = [share, decay_1_s, offset_rad_s2].map(Vector3::from);
+    Ok(Some(RateLaw { share, decay_1_s, offset_rad_s2 }))
 }
 
 /// The vehicle that is drafted from the first flight of the logs, which is named as its source, and what is to be known of it.
