@@ -34,10 +34,16 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Whether a state that does not change predicts better than the final model.
+    /// Whether a state that does not change predicts better than the final model, over the windows.
     #[must_use]
     pub fn is_worse_than_unchanged(&self) -> bool {
         self.unchanged.is_some_and(|unchanged| unchanged.value < self.after.value)
+    }
+
+    /// The same at the end of the windows.
+    #[must_use]
+    pub fn ends_worse_than_unchanged(&self) -> bool {
+        self.at_end.is_some_and(|at_end| at_end.unchanged < at_end.after)
     }
 }
 

@@ -77,12 +77,16 @@ impl Predicted {
         QUANTITIES.into_iter().zip(worse).filter(|(_, worse)| *worse).map(|((name, _), _)| name).collect()
     }
 
-    /// The same over each window from 0.5 s on: its length (s) with the quantities, if there are any.
+    /// The same over each window from 0.5 s on, or at its end: its length (s) with the quantities, if there are any.
     #[must_use]
     pub fn no_model_over(&self) -> Vec<(f64, Vec<&'static str>)> {
         let long = self.open_loop.iter().filter(|of| of.window_s >= HALF_S);
         let of_window = |of: &OpenLoop| {
-            let worse = QUANTITIES.into_iter().zip(of.worse_than_unchanged()).filter(|(_, worse)| *worse);
+            let is_worse = |of: Compared| of.is_worse_than_unchanged() || of.ends_worse_than_unchanged();
+            let worse = QUANTITIES
+                .into_iter()
+                .zip(of.quantities())
+                .filter(|(_, compared)| compared.is_some_and(is_worse));
             (of.window_s, worse.map(|((name, _), _)| name).collect::<Vec<_>>())
         };
         long.map(of_window).filter(|(_, worse)| !worse.is_empty()).collect()
@@ -124,6 +128,7 @@ pub const QUANTITIES: [(&str, &str); 4] =
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::holdout::AtEnd;
 
     /// Errors of a state that does not change, of the rigid body alone and of the better model.
     fn compared(unchanged: f64, before: f64, after: f64) -> Option<Compared> {
@@ -167,5 +172,16 @@ mod tests {
         // a tenth of a second is no prediction that anyone needs
         assert_eq!(predicted.no_model_over(), [(1.0, vec!["attitude"])]);
         assert!(predicted.worse_than_unchanged().is_empty());
+    }
+
+    #[test]
+    fn a_model_whose_errors_end_larger_than_those_of_no_change_is_none() {
+        let ends = |unchanged, after| {
+            let at_end = Some(AtEnd { unchanged, before: after, after });
+            compared(2.0, 1.0, 1.0).map(|of| Compared { at_end, ..of })
+        };
+        let open_loop = vec![window(0.5, ends(2.0, 1.9), None), window(1.0, None, ends(0.4, 0.9))];
+        let predicted = Predicted { open_loop, improvement_percent: None };
+        assert_eq!(predicted.no_model_over(), [(1.0, vec!["attitude"])]);
     }
 }
