@@ -4,6 +4,7 @@ use super::loading::{Loaded, loaded};
 use super::rate_law::RateLaw;
 use super::settings::{Explained, HeldOut, HoldoutSettings};
 use crate::diagnose::base::Base;
+use crate::diagnose::empirical::Empirical;
 use crate::diagnose::explanation::Verdict;
 use crate::diagnose::latency::{stated_lag_s, stated_uneven};
 use crate::diagnose::recorded::Need;
@@ -40,6 +41,13 @@ impl Pair {
     /// The models for predictions, before and after.
     pub(super) fn predicting(&self) -> (&Base, &Base) {
         self.loaded.as_ref().map_or((&self.before, &self.after), |loaded| (&loaded.before, &loaded.after))
+    }
+
+    /// Takes back what no model file has: what the beginning of the flight shows of its own load, and the mass of an empirical term.
+    /// Returns whether there was any of the first.
+    pub(super) fn unload(&mut self, empirical: Option<&Empirical>) -> bool {
+        self.after.vehicle.body.mass_kg -= empirical.map_or(0.0, |term| term.mass_change_kg);
+        self.loaded.take_if(|loaded| loaded.until_s.is_finite()).is_some()
     }
 
     /// Predicts with what a flight has its own.
@@ -125,7 +133,7 @@ pub(super) fn carried_over(
     }
     pair.own(trace, f64::NEG_INFINITY);
     if let Some(after) = loaded(&pair.after, trace, settings)? {
-        pair.notes.push(Note::remark(about(), of_load(&after)));
+        pair.notes.push(Note::warning(about(), of_load(&after)));
         let before = loaded(&pair.before, trace, settings)?
             .map_or_else(|| pair.before.on(&trace.own).into_owned(), |of| of.base);
         pair.loaded = Some(LoadedPair { before, after: after.base, until_s: after.until_s });

@@ -9,7 +9,9 @@ use super::rate_law::RateLaw;
 use super::ready::{Ready, trace_of};
 use super::settings::{Explained, HeldOut, HoldoutSettings};
 use super::{closed_loop, open_loop, other_vehicle, weak};
+use crate::diagnose::empirical::Empirical;
 use crate::note::{About, Note};
+use crate::text::significant;
 use crate::vehicle::Vehicle;
 
 /// Compares the explained model with the rigid body alone on hold-out flights. `empirical` acts in addition to the
@@ -62,6 +64,7 @@ pub fn on_left_out(
     let closed_loop = closed_loop::flown_again(&ready, empirical, vehicle, settings);
     let improvement = improvement_percent.map(|improvement| improvement.value);
     let another = other_vehicle.is_some();
+    notes.extend(as_written(&mut ready, empirical, settings)?);
     tracing::info!(improvement_percent = improvement, blocks, other_vehicle = another, "hold-out predicted");
     notes.push(Note::remark(
         About::HoldOut,
@@ -78,6 +81,35 @@ pub fn on_left_out(
         other_vehicle,
         notes,
     })
+}
+
+/// The errors over 0.5 s by the model as it is written, where a flight was predicted with more: a load of its own, or an empirical term.
+fn as_written(
+    ready: &mut [Ready],
+    empirical: Option<&Empirical>,
+    settings: &HoldoutSettings,
+) -> Result<Option<Note>, HoldoutError> {
+    let unloaded: Vec<bool> = ready.iter_mut().map(|ready| ready.pair.unload(empirical)).collect();
+    let with = match (unloaded.contains(&true), empirical) {
+        (false, None) => return Ok(None),
+        (true, None) => "the load of each flight",
+        (false, Some(_)) => "the empirical force",
+        (true, Some(_)) => "the load of each flight and the empirical force",
+    };
+    let errors = match open_loop::open_loop(ready, None, settings) {
+        Ok((open_loop, ..)) => OpenLoop::half_second(&open_loop).map(OpenLoop::quantities),
+        Err(HoldoutError::Compare { .. }) => None,
+        Err(other) => return Err(other),
+    };
+    let named = errors.into_iter().flatten().zip(["m", "m/s", "rad", "rad/s"]);
+    let each: Vec<String> = named
+        .filter_map(|(compared, unit)| Some(format!("{} {unit}", significant(compared?.after.value, 3))))
+        .collect();
+    let text = format!(
+        "the errors on the hold-out are with {with}, which no model file has: by the model as it is written they are {} over 0.5 s",
+        each.join(", ")
+    );
+    Ok((!each.is_empty()).then(|| Note::warning(About::HoldOut, text)))
 }
 
 /// Open-loop prediction on the flights that were used.

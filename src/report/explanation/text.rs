@@ -30,7 +30,8 @@ pub fn explanation_text(study: &ExplainStudy) -> String {
         None => {}
     }
     quality_lines(&mut page, study);
-    for note in &study.notes {
+    let of_holdout = study.shown.iter().flat_map(|shown| &shown.notes);
+    for note in study.notes.iter().chain(of_holdout.filter(|note| note.is_warning())) {
         let _ = writeln!(page, "  {note}");
     }
     page.truncate(page.trim_end().len());
