@@ -32,6 +32,8 @@ use nalgebra::{DMatrix, DVector};
 /// reconstruction and instruments tell them, leaves the model. Set by judgement; measured only together with all
 /// conditions of a name (see `Gates`).
 const STAYS: f64 = 3.0;
+/// The same with all that its errors hold: what other laws, other windows and the form of the model may bring. The usual two.
+const CERTAIN: f64 = 2.0;
 /// How often the model is estimated again after effects left it. A number of steps: only the time of a search and its
 /// last digits depend on it.
 const ROUNDS: usize = 6;
@@ -45,8 +47,37 @@ pub(super) fn refine(
 ) -> Result<(), PhysicsError> {
     let trim = Trim::of(flights, vehicle);
     leave_out_unnamed((traces, (flights, vehicle)), &trim, found)?;
-    let by_search = found.after.clone();
     let mut start = tracing::info_span!("laws").in_scope(|| settle_laws(flights, traces, found))?;
+    loop {
+        estimate_sizes((flights, traces), (vehicle, &trim), (found, pace), start.take())?;
+        let Some(place) = uncertain(&found.after) else { break };
+        tracing::info!(
+            effect = found.after.base.effects[place].id(),
+            "effect is not certain with all its errors"
+        );
+        let mut base = found.after.base.clone();
+        base.effects.remove(place);
+        found.after = fit(traces, base, Newton::Held)?;
+        pace.again();
+    }
+    // the model where nothing serves
+    add_left_over(&mut found.before, &[]);
+    add_floors(&mut found.before);
+    found.latency.std_s = found.latency.std_s.hypot(FORM * found.latency.total_s);
+    found.by_wider_window = inertia_by_wider_window(flights, vehicle);
+    make_physical(traces, (vehicle, found.by_wider_window), &mut found.before)?;
+    make_physical(traces, (vehicle, found.by_wider_window), &mut found.after)
+}
+
+/// The sizes of the effects with all their errors; those that then have no name leave. `start` is a model with values that the
+/// reconstructed flight path tells.
+fn estimate_sizes(
+    (flights, traces): (&[Signals], &[Trace]),
+    (vehicle, trim): (&Vehicle, &Trim),
+    (found, pace): (&mut Search, &mut Pace<'_>),
+    mut start: Option<Base>,
+) -> Result<(), PhysicsError> {
+    let by_search = found.after.clone();
     let mut by_instruments = Vec::new();
     for left in (0..ROUNDS).rev() {
         let start = start.take();
@@ -62,7 +93,7 @@ pub(super) fn refine(
                 .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
         }
         pace.reconstructed();
-        if left == 0 || !leave_out_unnamed((traces, (flights, vehicle)), &trim, found)? {
+        if left == 0 || !leave_out_unnamed((traces, (flights, vehicle)), trim, found)? {
             break;
         }
         pace.again();
@@ -70,13 +101,23 @@ pub(super) fn refine(
     add_left_over(&mut found.after, &by_instruments);
     add_other_laws(traces, &found.last, &mut found.after);
     add_floors(&mut found.after);
-    // the model where nothing serves
-    add_left_over(&mut found.before, &[]);
-    add_floors(&mut found.before);
-    found.latency.std_s = found.latency.std_s.hypot(FORM * found.latency.total_s);
-    found.by_wider_window = inertia_by_wider_window(flights, vehicle);
-    make_physical(traces, (vehicle, found.by_wider_window), &mut found.before)?;
-    make_physical(traces, (vehicle, found.by_wider_window), &mut found.after)
+    Ok(())
+}
+
+/// The place of an effect that with all its errors is nearer to nothing than the usual two of them, the nearest first. A lag or delay has
+/// its latency, which may be certain while its kind is not.
+fn uncertain(fitted: &Fitted) -> Option<usize> {
+    let mut first = fitted.rows.nuisances.len();
+    let mut nearest: Option<(f64, usize)> = None;
+    for (place, present) in fitted.base.effects.iter().enumerate() {
+        let Strength { z, count, .. } = fitted_strength(fitted, present, first);
+        first += present.free.len();
+        let judged = count > 0 && present.signature.role.latency.is_none();
+        if judged && z < CERTAIN && nearest.is_none_or(|(least, _)| z < least) {
+            nearest = Some((z, place));
+        }
+    }
+    nearest.map(|(_, place)| place)
 }
 
 /// Removes effects without a name from the model: those of ordinary size, those that are not certain, those that the accelerometer
@@ -89,12 +130,15 @@ fn leave_out_unnamed(
     let all = found.after.base.clone();
     let felt = Felt::of(&found.after);
     let mut first = found.after.rows.nuisances.len();
+    // what is beyond its bounds takes from the others: they are judged without it
+    let any_beyond = is_any_beyond(&found.after);
     let mut weakest: Option<(f64, usize)> = None;
     let mut kept: Vec<bool> = Vec::new();
     for (place, present) in all.effects.iter().enumerate() {
         let beyond = is_beyond_showing(&found.after, present, first);
         let strength = fitted_strength(&found.after, present, first);
-        let refuted = felt.as_ref().is_some_and(|felt| felt.refutes(&found.after, present, first));
+        let refuted =
+            !any_beyond && felt.as_ref().is_some_and(|felt| felt.refutes(&found.after, present, first));
         // a bend acts on the commands' own noise, and that is in the torques
         let bent = present.signature.role.bends_thrust.is_some() && is_fed_back(traces);
         let unseen = bent
@@ -136,6 +180,16 @@ fn leave_out_unnamed(
     base.effects.retain(|_| each.next().unwrap_or(true));
     found.after = fit(traces, base, Newton::Held)?;
     Ok(true)
+}
+
+/// Whether any effect of a fit is beyond what the flights can show.
+fn is_any_beyond(fitted: &Fitted) -> bool {
+    let mut first = fitted.rows.nuisances.len();
+    fitted.base.effects.iter().any(|present| {
+        let own = first;
+        first += present.free.len();
+        is_beyond_showing(fitted, present, own)
+    })
 }
 
 /// Whether noise alone may have bent a thrust curve: it lowers the slope, and never raises it.
