@@ -5,7 +5,7 @@ use super::signature::{EffectTerm, LatencyKind};
 use super::signatures::latency_signature;
 use crate::physics::{ActiveEffect, ActuationLatency, Model, PhysicsError, RotorLag};
 use crate::vehicle::{Anchor, Guessed, Vehicle, VehicleSize};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 /// Largest share of the total mass that a slung load may have at the start of a fit. Beyond it the load flies the
 /// vehicle.
@@ -47,6 +47,12 @@ pub(super) fn turns_about_z(name: &str, unit: &str) -> bool {
 }
 
 impl Base {
+    /// Steady wind of the model in the world frame (NWU), m/s; zero where it has none.
+    pub(super) fn wind_m_s(&self) -> Vector3<f64> {
+        let wind = self.effects.iter().find(|term| term.signature.role.wind.is_some());
+        wind.map_or(Vector3::zeros(), |wind| Vector3::from_row_slice(&wind.values[..3]))
+    }
+
     /// A rigid body alone.
     #[must_use]
     pub fn rigid(vehicle: &Vehicle) -> Self {

@@ -1,5 +1,6 @@
 //! The whole method: search, lack of fit, verdict.
 
+use super::base::Base;
 use super::channels::{AXES, CHANNELS};
 use super::confusable::confusable_with;
 use super::evidence::{LEAST_FLIGHT_S, LEAST_ROWS, ROW_S};
@@ -262,10 +263,19 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
         located_after,
         field,
         aperiodic,
+        airspeed_m_s: mean_airspeed_m_s(traces, &found.after.base),
         torque_law,
         torque_law_alone,
         search: found,
     }
+}
+
+/// Mean airspeed over the rows of all flights, m/s.
+fn mean_airspeed_m_s(traces: &[Trace], base: &Base) -> f64 {
+    let wind_m_s = base.wind_m_s();
+    let rows =
+        || traces.iter().flat_map(|trace| trace.centers.iter().map(move |&center| &trace.states[center]));
+    rows().map(|state| (state.velocity_m_s - wind_m_s).norm()).sum::<f64>() / rows().count().max(1) as f64
 }
 
 /// The name of a gust. The search does not test gusts; their size and correlation time come from the residual.

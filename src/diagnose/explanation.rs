@@ -136,6 +136,8 @@ pub struct Explanation {
     pub field: Option<FieldTest>,
     /// tests of causes that do not repeat
     pub aperiodic: Aperiodic,
+    /// mean airspeed of the flights by the final model, m/s; zero where no velocity was recorded
+    pub airspeed_m_s: f64,
     /// where the rotors' torque certainly does not go with their thrust, by the model that serves: of an unexplained flight the rigid body
     /// alone
     pub torque_law: Option<TorqueLaw>,

@@ -121,14 +121,7 @@ impl View {
         let known = |what: fn(&Trace) -> bool| traces.iter().all(what);
         let (position, attitude) = (known(|t| t.known.position), known(|t| t.known.attitude));
         let air = attitude && known(|t| t.known.velocity);
-        let wind_m_s = fitted
-            .base
-            .effects
-            .iter()
-            .find(|term| term.signature.role.wind.is_some())
-            .map_or(Vector3::zeros(), |present| {
-                Vector3::new(present.values[0], present.values[1], present.values[2])
-            });
+        let wind_m_s = fitted.base.wind_m_s();
         let mut add = |state: Followed, value: &dyn Fn(&Trace, usize) -> f64| {
             let values: Vec<f64> = traces
                 .iter()

@@ -144,8 +144,8 @@ impl ExplainStudy {
     #[must_use]
     pub fn new(given: Given, explanation: Explanation) -> Self {
         Self {
-            effects: for_readers(&explanation.named),
-            closest: for_readers(&explanation.closest),
+            effects: for_readers(&explanation.named, explanation.airspeed_m_s),
+            closest: for_readers(&explanation.closest, explanation.airspeed_m_s),
             located: Located::of(&explanation),
             next_flight: None,
             identify: None,
