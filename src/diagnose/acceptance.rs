@@ -80,11 +80,7 @@ fn at_bound(fitted: &Fitted, taken: &Tested) -> bool {
     let just_taken = &fitted.base.effects[fitted.base.effects.len() - taken.candidate.parts.len()..];
     just_taken.iter().any(|present| {
         let mut common = 0..present.effect().parameters().len();
-        common.any(|slot| {
-            present.free.contains(&slot)
-                && present.is_at_bound(slot, &fitted.base.size)
-                && present.values[slot] != present.nothing_at(slot)
-        })
+        common.any(|slot| present.free.contains(&slot) && present.ends_at_bound(slot, &fitted.base.size))
     })
 }
 

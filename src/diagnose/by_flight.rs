@@ -12,6 +12,7 @@ use super::floors::add_floors;
 use super::latency::LatencyFinding;
 use super::latency_name::{FlightLatency, flight_latency, latency_of};
 use super::left_over::add_left_over;
+use super::limits::is_beyond_showing;
 use super::other_law::of_other_laws;
 use super::own_wind::moves;
 use super::reconstructed::{self, Forms, reconstruct};
@@ -202,13 +203,8 @@ pub fn rigid_by_flight(
 ) -> Vec<Vec<FlightParameter>> {
     let one = |signals: &Signals| {
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
-        let base = explanation.search.before.base.clone();
-        let fit = flight_fit(
-            (signals, std::slice::from_ref(&trace)),
-            base,
-            (explanation.search.latency, Forms::Known),
-        )
-        .ok()?;
+        let (base, own) = (explanation.search.before.base.clone(), std::slice::from_ref(&trace));
+        let fit = flight_fit((signals, own), base, (explanation.search.latency, Forms::Known)).ok()?;
         let mut out = parameters(&fit, explanation.turned_by_control, &[], None);
         add_payload(&mut out, &trace);
         Some(out)
@@ -364,8 +360,11 @@ fn parameters(
     }
     let mut column = fitted.rows.nuisances.len();
     for present in &fitted.base.effects {
+        // a size that no vehicle has is that of something else in this flight
+        let possible = !is_beyond_showing(fitted, present, column);
         for &slot in &present.free {
             let is_known = terms.iter().any(|term| is_same(term, present)) || owner(present) == Owner::Flight;
+            let is_known = is_known && possible && !present.ends_at_bound(slot, &fitted.base.size);
             if let Some(parameter) = present.parameter(slot).filter(|_| present.is_amount(slot) && is_known) {
                 let value = present.values[slot];
                 let std = fitted.std_of(column, (value, parameter.unit));

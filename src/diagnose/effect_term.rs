@@ -46,6 +46,11 @@ impl EffectTerm {
         })
     }
 
+    /// The same of a value that is not that of no effect: what ends there is something else.
+    pub(super) fn ends_at_bound(&self, slot: usize, size: &VehicleSize) -> bool {
+        self.is_at_bound(slot, size) && self.values[slot] != self.nothing_at(slot)
+    }
+
     /// Whether a parameter is an amount of the effect; the others describe its form.
     #[must_use]
     pub fn is_amount(&self, slot: usize) -> bool {

@@ -14,6 +14,9 @@ use super::tested::Tested;
 use super::trace::Trace;
 use nalgebra::{DMatrix, DVector};
 
+/// Most that one unit of a law, SI, is of another one: the ratio of their forces at the speeds from 0.02 to 50 m/s.
+const MOST_OF_OTHER: f64 = 50.0;
+
 /// Adds to the covariance of a fit's effects what the drag laws among the candidates that were not taken may bring into them.
 pub(super) fn add_other_laws(flights: &[Trace], last: &[Tested], fitted: &mut Fitted) {
     fitted.covariance += of_other_laws(flights, last, fitted);
@@ -76,6 +79,10 @@ pub(super) fn of_other_laws(flights: &[Trace], last: &[Tested], fitted: &Fitted)
     let with_air = |term: &EffectTerm| drags(term) || term.signature.role.wind.is_some();
     let present = &fitted.base.effects;
     let go_along: Vec<bool> = present.iter().flat_map(|term| vec![with_air(term); term.free.len()]).collect();
+    // where a drag acts is told by torques: held, a force cannot hide in it
+    let forms = present.iter().flat_map(|term| term.free.iter().map(|&slot| !term.is_amount(slot)));
+    let first = fitted.weighted.nuisances.len().saturating_sub(go_along.len());
+    let forms: Vec<usize> = forms.enumerate().filter(|(_, is)| *is).map(|(place, _)| first + place).collect();
     let mut widest = 0.0;
     for law in other_laws(flights, last, fitted) {
         let part = &law.part;
@@ -86,11 +93,16 @@ pub(super) fn of_other_laws(flights: &[Trace], last: &[Tested], fitted: &Fitted)
             let usual = (part.signature.naming.usual)(parameter.name, &fitted.base.vehicle);
             let Some(usual) = usual else { continue };
             let (told, std) = law.told(index);
-            let mut brings: DVector<f64> = fitted.weighted.part_in(&weighted(column, &fitted.weighted.sigma));
+            let column = weighted(column, &fitted.weighted.sigma);
+            let mut brings: DVector<f64> = fitted.weighted.part_in_with_held(&column, &forms);
             let effects = brings.len() - go_along.len();
             for (place, brings) in brings.iter_mut().enumerate() {
                 let goes_along = place.checked_sub(effects).is_some_and(|place| go_along[place]);
                 *brings *= if goes_along { 1.0 } else { 0.0 };
+            }
+            // in the flights' speeds no law is so much of another one: the coefficients are not told apart from those of the flights' own
+            if brings.amax() > MOST_OF_OTHER {
+                continue;
             }
             added += &brings * brings.transpose() * second_moment(told, std, usual);
         }
