@@ -55,6 +55,9 @@ const LEAST_S: f64 = 0.010;
 /// Delay of the mean command, as a share of the log's period. A command is held until the next one, and the control
 /// loop runs faster than the log.
 const HELD: f64 = 0.25;
+/// No flyable vehicle has a longer one, s: the slowest motors of large multirotors follow within 0.15 s, and an attitude loop with more does
+/// not hold the vehicle. Where a fit goes beyond, the torques of the commands are not seen in the motion.
+const LONGEST_S: f64 = 0.2;
 /// Latency of sampling and a fast motor, s. A lag or delay is named if it is beyond it. With less every log would
 /// have a lag.
 pub(super) const FAST_MOTOR_S: f64 = 0.004;
@@ -141,6 +144,9 @@ pub(super) fn with_latency(
     newton: Newton,
 ) -> Result<(Fitted, LatencyFinding), PhysicsError> {
     let plain = fit(flights, base, newton)?;
+    if plain.base.latency.total_s() > LONGEST_S {
+        return without_latency(flights, plain);
+    }
     let finding = finding_of(&plain);
     // where the noise is fed back, least squares may be wrong by what it differs from instruments, or by more than they tell
     let unsure = |by_s: Option<f64>| {
@@ -151,7 +157,9 @@ pub(super) fn with_latency(
     let told = of_covariance(&by);
     // without such noise least squares has nothing against it but a contradiction
     let refutes = if is_fed_back(flights) { differ } else { contradict };
-    if !refutes(told.total_s - finding.total_s, finding.std_s.powi(2), told.std_s.powi(2)) {
+    if told.total_s > LONGEST_S
+        || !refutes(told.total_s - finding.total_s, finding.std_s.powi(2), told.std_s.powi(2))
+    {
         let apart_s = Some((finding.total_s - told.total_s).abs()).filter(|_| told.std_s < UNCONFIRMED_S);
         return Ok((plain, unsure(apart_s)));
     }
@@ -159,6 +167,19 @@ pub(super) fn with_latency(
     // several of a long flight at a time take much memory
     drop((plain, by));
     Ok((fit(flights, base, Newton::Held)?, told))
+}
+
+/// The fit with the lag that is stated, and a latency that may be any: the flight does not show it.
+fn without_latency(flights: &[Trace], lost: Fitted) -> Result<(Fitted, LatencyFinding), PhysicsError> {
+    let vehicle = &lost.base.vehicle;
+    let lag_s = stated_lag_s(vehicle).min(LONGEST_S);
+    let latency = ActuationLatency { delay_s: 0.0, lag_s, uneven: stated_uneven(vehicle) };
+    tracing::debug!(lost_s = lost.base.latency.total_s(), "no latency that a vehicle can have fits");
+    let base = Base { latency, ..lost.base.clone() };
+    drop(lost);
+    let held = fit(flights, base, Newton::Held)?;
+    let finding = LatencyFinding { std_s: LONGEST_S, ..finding_of(&held) };
+    Ok((held, finding))
 }
 
 /// The rigid body with the latency that it is found to have, whatever its kind, and the latency's standard error, s: what
