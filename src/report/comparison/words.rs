@@ -1,6 +1,7 @@
 //! A comparison in words.
 
-use crate::change::{NAMED_SIGMAS, Step, Undecided, What};
+use crate::change::{Groups, NAMED_SIGMAS, Step, Undecided, What};
+use crate::estimate::NAMES;
 use crate::report::number::{significant, with_error};
 use crate::study::{Change, Changed, CompareStudy, Compared, LeastChange, Track};
 use crate::text::capital;
@@ -41,9 +42,10 @@ pub(super) fn answer(study: &CompareStudy) -> String {
             }
             if compared.changes.is_empty() {
                 return format!(
-                    "Nothing changed {between} that these flights could show. {}{}",
+                    "Nothing changed {between} that these flights could show. {}{}{}",
                     unseen(compared),
-                    all_open(study, compared)
+                    all_open(study, compared),
+                    mass(study, groups)
                 );
             }
             let all: Vec<String> = compared.changes.iter().map(|change| sentence(study, change)).collect();
@@ -70,6 +72,26 @@ pub(super) fn answer(study: &CompareStudy) -> String {
             )
         }
     }
+}
+
+/// A mass that differs by less is that of another battery, as a share. Only words depend on it.
+const BATTERY: f64 = 0.05;
+
+/// That the mass differs, which is each flight's own and may hide what is the vehicle's; empty where it does not.
+fn mass(study: &CompareStudy, groups: &Groups) -> String {
+    let own = study.tracks.iter().find(|track| track.effect.is_none() && track.name == NAMES[0]);
+    let of = |flights: &[usize]| own.and_then(|track| track.only(flights).pooled());
+    let Some((before, after)) = of(&groups.before).zip(of(&groups.after)) else { return String::new() };
+    let (apart, std) = ((after.0 - before.0).abs(), before.1.hypot(after.1));
+    if apart < NAMED_SIGMAS * std || apart < BATTERY * before.0 {
+        return String::new();
+    }
+    format!(
+        " But the mass by the thrust went from {} to {} kg, which is each flight's own: a payload, or rotors that give another thrust for \
+         a command. Weigh the vehicle to tell them apart.",
+        with_error(before.0, before.1),
+        with_error(after.0, after.1)
+    )
 }
 
 /// Flights that are hardly those of one vehicle.

@@ -2,7 +2,7 @@
 
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{
-    ExplainSettings, Explanation, FlightParameter, LATENCY, Named, brief, by_flight, explain,
+    ExplainSettings, Explanation, FlightParameter, LATENCY, Named, Owner, brief, by_flight, explain,
 };
 use crate::note::{About, Note};
 use crate::signals::Signals;
@@ -46,7 +46,10 @@ pub(super) fn motion(
     let compared = |parameters: Vec<FlightParameter>| parameters.into_iter().filter(is_compared).collect();
     let each = places.into_iter().zip(each.into_iter().map(compared)).collect();
     let mut tracks: Vec<Track> = Track::all(each, signals.len(), vehicle);
-    for track in tracks.iter_mut().filter(|track| track.name == LATENCY) {
+    // what a flight does not determine did not change in it
+    let is_of_torques =
+        |track: &&mut Track| track.name == LATENCY || track.effect.is_none() && track.owner == Owner::Vehicle;
+    for track in tracks.iter_mut().filter(is_of_torques) {
         let all = track.clone();
         track.values.iter_mut().for_each(|of| *of = of.filter(|value| all.is_determined(*value)));
     }
