@@ -59,7 +59,8 @@ struct EstimateValue {
 }
 
 impl AlongValue {
-    pub(super) fn new(along: &AlongFlights) -> Self {
+    pub(super) fn new(study: &ExplainStudy, along: &AlongFlights) -> Self {
+        let untold = untold(study);
         let estimate = |track: &Track, estimate: Option<(f64, f64)>| {
             let told = estimate.filter(|estimate| track.is_determined(*estimate));
             told.map(|(value, std)| EstimateValue { value, std })
@@ -68,7 +69,7 @@ impl AlongValue {
             name: track.name.clone(),
             unit: track.unit,
             owner: whose(track),
-            together: estimate(track, along.together(track)),
+            together: estimate(track, told_together(along, track, &untold)),
             values: (0..track.values.len())
                 .map(|flight| estimate(track, along.alone(track, flight)))
                 .collect(),
@@ -99,8 +100,9 @@ fn winds(along: &AlongFlights) -> Vec<String> {
 pub(super) fn along_lines(page: &mut String, study: &ExplainStudy) {
     let Some(along) = &study.along else { return };
     page.push_str("\n  together, and each flight alone\n");
+    let untold = untold(study);
     for track in &along.tracks {
-        let together = together(along, track);
+        let together = together(along, track, &untold);
         let each: Vec<String> =
             (0..track.values.len()).map(|flight| value_of(track, along.alone(track, flight))).collect();
         let _ = writeln!(page, "    {:<22} {together:<22} {}  {}", track.name, each.join(", "), track.unit);
@@ -137,7 +139,8 @@ pub(super) fn along_section(study: &ExplainStudy) -> Markup {
     let mut heads = vec!["parameter".to_owned(), "unit".to_owned(), "together|".to_owned()];
     heads.extend((0..study.given.inputs.len()).map(|flight| format!("flight {}|", flight + 1)));
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    let mut rows: Vec<Vec<Cell>> = along.tracks.iter().map(|track| row(along, track)).collect();
+    let untold = untold(study);
+    let mut rows: Vec<Vec<Cell>> = along.tracks.iter().map(|track| row(along, track, &untold)).collect();
     if along.winds_m_s.iter().any(Option::is_some) {
         let mut wind = vec![text("wind to north, west"), text("m/s"), number("each flight's own")];
         wind.extend(winds(along).into_iter().map(number));
@@ -164,17 +167,29 @@ pub(super) fn along_section(study: &ExplainStudy) -> Markup {
     )
 }
 
-/// A parameter by all flights, in words.
-fn together(along: &AlongFlights, track: &Track) -> String {
+/// Entries of the rigid body that all flights together do not determine.
+fn untold(study: &ExplainStudy) -> Vec<&'static str> {
+    let body = study.body().into_iter();
+    body.filter(|of| of.not_determined.is_some()).map(|of| of.name).collect()
+}
+
+/// A parameter by all flights; `None` where the answer does not have it.
+fn told_together(along: &AlongFlights, track: &Track, untold: &[&str]) -> Option<(f64, f64)> {
+    let is_told = track.effect.is_some() || !untold.contains(&track.name.as_str());
+    along.together(track).filter(|_| is_told)
+}
+
+/// The same in words.
+fn together(along: &AlongFlights, track: &Track, untold: &[&str]) -> String {
     if track.owner == Owner::Flight {
         "each flight's own".to_owned()
     } else {
-        value_of(track, along.together(track))
+        value_of(track, told_together(along, track, untold))
     }
 }
 
-fn row(along: &AlongFlights, track: &Track) -> Vec<Cell> {
-    let mut cells = vec![text(track.name.as_str()), text(track.unit), number(together(along, track))];
+fn row(along: &AlongFlights, track: &Track, untold: &[&str]) -> Vec<Cell> {
+    let mut cells = vec![text(track.name.as_str()), text(track.unit), number(together(along, track, untold))];
     cells.extend((0..track.values.len()).map(|flight| number(value_of(track, along.alone(track, flight)))));
     cells
 }

@@ -180,7 +180,7 @@ impl ExplanationDocument {
             too_little_excitation: study.explanation.too_little_excitation,
             data_quality: data_quality(study),
             next_flight: next_value(study),
-            flights_together: study.along.as_ref().map(AlongValue::new),
+            flights_together: study.along.as_ref().map(|along| AlongValue::new(study, along)),
             warnings: study.notes.iter().map(Note::sentence).collect(),
         }
     }

@@ -119,7 +119,7 @@ impl ExplainStudy {
         let common: Vec<(&str, (f64, f64))> =
             each.filter_map(|track| Some((track.name.as_str(), along.together(track)?))).collect();
         self.explanation = self.explanation.with_common(&common);
-        self.effects = for_readers(&self.explanation.named);
+        self.effects = for_readers(&self.explanation.named, self.explanation.airspeed_m_s);
         self.tell_payloads(flights);
         along.of_one_flight = self.names_of_one_flight(flights, alone, !along.sized_by.is_empty());
         self.along = Some(along);
@@ -141,14 +141,16 @@ impl ExplainStudy {
     }
 
     /// What flights have alone where something tells that they are not alike: a part of them only carries a name, or a force is left that
-    /// wanders.
+    /// wanders. Where all of them together show nothing, each is asked: what one has is diluted by the others.
     fn names_of_one_flight(
         &self,
         flights: &[Signals],
         alone: &[Vec<Named>],
         differ: bool,
     ) -> Vec<(usize, Named)> {
-        if alone.is_empty() && !differ && self.explanation.aperiodic.wandering().next().is_none() {
+        let wanders = || self.explanation.aperiodic.wandering().next().is_some();
+        let shows_nothing = self.explanation.verdict == Verdict::NothingMissing;
+        if alone.is_empty() && !differ && !shows_nothing && !wanders() {
             return Vec::new();
         }
         let (vehicle, settings) = (&self.given.vehicle, &self.given.settings);
