@@ -161,11 +161,13 @@ fn airborne(signals: &Signals) -> Option<(f64, f64)> {
     Some((grid.time_s(longest.start), grid.time_s(longest.end.checked_sub(1)?)))
 }
 
-/// Height from which on a vehicle that took off at the beginning of a span is off the ground, m.
+/// Height from which on a vehicle that took off before or at the beginning of a span is off the ground, m.
 fn lifted_m(signals: &Signals, (from_s, to_s): (f64, f64)) -> Option<f64> {
     let position = signals.position.as_ref()?;
     let (first, last) = (Place::of(&signals.grid, from_s).before(), Place::of(&signals.grid, to_s).after());
-    let ground_m = position[first].z;
+    // where the autopilot's words begin the span, the vehicle may be at its height already
+    let before_m = position[..first].iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+    let ground_m = position[first].z.min(before_m);
     let most_m = position[first..=last].iter().map(|p| p.z - ground_m).fold(0.0, f64::max);
     Some(ground_m + AIRBORNE_M.min(AIRBORNE_SHARE * most_m))
 }
