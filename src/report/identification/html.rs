@@ -241,7 +241,7 @@ fn residual(study: &IdentifyStudy) -> Markup {
         ))
         @if let Some(latency) = of.latency.filter(|latency| latency.total_s.is_finite()) {
             (note(&format!(
-                "From command to rotor {} ms.",
+                "From command to rotor, by the rigid body alone, {} ms.",
                 with_error(1e3 * latency.total_s, 1e3 * latency.std_s)
             )))
         }

@@ -107,7 +107,7 @@ fn quality_lines(study: &IdentifyStudy) -> String {
         };
         let _ = writeln!(
             page,
-            "  actuation latency by WEAK {:.1} +- {:.1} ms ({kind}), {taken}",
+            "  latency of the rigid body alone, by WEAK: {:.1} +- {:.1} ms ({kind}), {taken}",
             1e3 * latency.total_s,
             1e3 * latency.std_s
         );
