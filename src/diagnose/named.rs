@@ -1,5 +1,6 @@
 //! An effect that was named, with its values and the evidence for it.
 
+use super::confusable::APART;
 use crate::text::with_error;
 use std::fmt;
 
@@ -64,6 +65,14 @@ pub struct Confusable {
     pub id: &'static str,
     /// distance in standard deviations in this flight, if it could be computed
     pub distinguishability: Option<f64>,
+}
+
+impl Confusable {
+    /// Whether the flight tells it from the named effect, although it explains nearly as much.
+    #[must_use]
+    pub fn is_told_apart(&self) -> bool {
+        self.distinguishability.is_some_and(|distance| distance >= APART)
+    }
 }
 
 /// The smallest size at which an effect would have been named in this flight.

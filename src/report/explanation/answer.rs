@@ -142,13 +142,14 @@ fn paths(study: &ExplainStudy, flights: &[usize]) -> String {
 
 /// A sentence on the effects that the flight does not distinguish from a named one.
 fn not_told_apart(study: &ExplainStudy) -> String {
+    // what is told apart and explains nearly as much stands in the list of rivals
     let pairs: Vec<String> = study
         .effects
         .iter()
-        .filter(|effect| !effect.confusable_with.is_empty())
-        .map(|effect| {
-            let others: Vec<&str> = effect.confusable_with.iter().map(|other| called(other.id)).collect();
-            format!("{} from {}", called(effect.id), others.join(" or "))
+        .filter_map(|effect| {
+            let rivals = effect.confusable_with.iter().filter(|other| !other.is_told_apart());
+            let others: Vec<&str> = rivals.map(|other| called(other.id)).collect();
+            (!others.is_empty()).then(|| format!("{} from {}", called(effect.id), others.join(" or ")))
         })
         .collect();
     if pairs.is_empty() {

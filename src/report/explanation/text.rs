@@ -71,7 +71,12 @@ fn effect_lines(page: &mut String, study: &ExplainStudy, effect: &Named) {
         let apart = other.distinguishability.map_or(String::new(), |apart| {
             format!(": {apart:.1} standard deviations apart in {}", study.these_flights())
         });
-        let _ = writeln!(page, "    confusable with {} ({}){apart}", called(other.id), other.id);
+        let rival = format!("{} ({}){apart}", called(other.id), other.id);
+        let _ = if other.is_told_apart() {
+            writeln!(page, "    explained nearly as much, and is told apart: {rival}")
+        } else {
+            writeln!(page, "    confusable with {rival}")
+        };
     }
 }
 
