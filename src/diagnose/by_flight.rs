@@ -360,7 +360,7 @@ fn parameters(
     }
     let mut column = fitted.rows.nuisances.len();
     for present in &fitted.base.effects {
-        // a size that no vehicle has is that of something else in this flight
+        // a flight that could not show the effect tells nothing of it, and a size at its bound is that of something else
         let possible = !is_beyond_showing(fitted, present, column);
         for &slot in &present.free {
             let is_known = terms.iter().any(|term| is_same(term, present)) || owner(present) == Owner::Flight;

@@ -40,15 +40,15 @@ pub struct LatencyFinding {
 }
 
 impl LatencyFinding {
-    /// Whether a flight determined it: commands and body rates were fast enough to compare torques.
+    /// Whether a flight determined it: commands and body rates were fast enough to compare torques, and the motion follows them.
     #[must_use]
     pub fn is_determined(&self) -> bool {
-        self.std_s.is_finite()
+        self.std_s < LONGEST_S
     }
 }
 
 /// Why a latency is not determined.
-pub const NO_LATENCY: &str = "commands or body rates are logged at too low a rate to compare torques, and forces alone do not determine it";
+pub const NO_LATENCY: &str = "commands or body rates are logged at too low a rate to compare torques, or the motion does not follow them, and forces alone do not determine it";
 
 /// The kind of a shorter latency is not determined, s: sampling and a fast motor together are as long.
 const LEAST_S: f64 = 0.010;
@@ -169,7 +169,7 @@ pub(super) fn with_latency(
     Ok((fit(flights, base, Newton::Held)?, told))
 }
 
-/// The fit with the lag that is stated, and a latency that may be any: the flight does not show it.
+/// The fit about the lag that is stated. The flight does not determine the latency: its error is as large as any that a vehicle has.
 fn without_latency(flights: &[Trace], lost: Fitted) -> Result<(Fitted, LatencyFinding), PhysicsError> {
     let vehicle = &lost.base.vehicle;
     let lag_s = stated_lag_s(vehicle).min(LONGEST_S);

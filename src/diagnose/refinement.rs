@@ -32,7 +32,7 @@ use nalgebra::{DMatrix, DVector};
 /// reconstruction and instruments tell them, leaves the model. Set by judgement; measured only together with all
 /// conditions of a name (see `Gates`).
 const STAYS: f64 = 3.0;
-/// The same with all that its errors hold: what other laws, other windows and the form of the model may bring. The usual two.
+/// The same where its errors hold what is left over as well. The usual two.
 const CERTAIN: f64 = 2.0;
 /// How often the model is estimated again after effects left it. A number of steps: only the time of a search and its
 /// last digits depend on it.
@@ -53,13 +53,16 @@ pub(super) fn refine(
         let Some(place) = uncertain(&found.after) else { break };
         tracing::info!(
             effect = found.after.base.effects[place].id(),
-            "effect is not certain with all its errors"
+            "effect is not certain with what is left over"
         );
         let mut base = found.after.base.clone();
         base.effects.remove(place);
         found.after = fit(traces, base, Newton::Held)?;
         pace.again();
     }
+    // which law a drag follows says nothing of whether it is there
+    add_other_laws(traces, &found.last, &mut found.after);
+    add_floors(&mut found.after);
     // the model where nothing serves
     add_left_over(&mut found.before, &[]);
     add_floors(&mut found.before);
@@ -69,7 +72,7 @@ pub(super) fn refine(
     make_physical(traces, (vehicle, found.by_wider_window), &mut found.after)
 }
 
-/// The sizes of the effects with all their errors; those that then have no name leave. `start` is a model with values that the
+/// The sizes of the effects, with what is left over in their errors; those that then have no name leave. `start` is a model with values that the
 /// reconstructed flight path tells.
 fn estimate_sizes(
     (flights, traces): (&[Signals], &[Trace]),
@@ -99,12 +102,10 @@ fn estimate_sizes(
         pace.again();
     }
     add_left_over(&mut found.after, &by_instruments);
-    add_other_laws(traces, &found.last, &mut found.after);
-    add_floors(&mut found.after);
     Ok(())
 }
 
-/// The place of an effect that with all its errors is nearer to nothing than the usual two of them, the nearest first. A lag or delay has
+/// The place of an effect that is nearer to nothing than the usual two errors, with what is left over in them; the nearest one. A lag or delay has
 /// its latency, which may be certain while its kind is not.
 fn uncertain(fitted: &Fitted) -> Option<usize> {
     let mut first = fitted.rows.nuisances.len();
@@ -137,8 +138,7 @@ fn leave_out_unnamed(
     for (place, present) in all.effects.iter().enumerate() {
         let beyond = is_beyond_showing(&found.after, present, first);
         let strength = fitted_strength(&found.after, present, first);
-        let refuted =
-            !any_beyond && felt.as_ref().is_some_and(|felt| felt.refutes(&found.after, present, first));
+        let refuted = felt.as_ref().is_some_and(|felt| felt.refutes(&found.after, present, first));
         // a bend acts on the commands' own noise, and that is in the torques
         let bent = present.signature.role.bends_thrust.is_some() && is_fed_back(traces);
         let unseen = bent
@@ -146,7 +146,7 @@ fn leave_out_unnamed(
         let unbalanced = is_refuted(given, &found.after, present, first);
         first += present.free.len();
         let ordinary = is_ordinary(present, &all);
-        let keeps = !(beyond || refuted || unseen || unbalanced || ordinary);
+        let keeps = if any_beyond { !beyond } else { !(refuted || unseen || unbalanced || ordinary) };
         if !keeps {
             tracing::info!(
                 effect = present.id(),
@@ -159,11 +159,15 @@ fn leave_out_unnamed(
             );
         }
         kept.push(keeps);
-        if strength.count > 0 && strength.z < STAYS && weakest.is_none_or(|(least, _)| strength.z < least) {
+        if !any_beyond
+            && strength.count > 0
+            && strength.z < STAYS
+            && weakest.is_none_or(|(least, _)| strength.z < least)
+        {
             weakest = Some((strength.z, place));
         }
     }
-    if let Some(place) = trim.refuted(&all)? {
+    if let Some(place) = trim.refuted(&all)?.filter(|_| !any_beyond) {
         tracing::info!(effect = all.effects[place].id(), "hover shows no such balance");
         kept[place] = false;
     }

@@ -19,6 +19,9 @@ const AIRBORNE_SHARE: f64 = 0.5;
 /// Left out at both ends of the part in the air, s: it still rises, or is about to land. Longer would waste flight,
 /// shorter would take the jerk of lift-off for a force.
 const RISING_S: f64 = 0.5;
+/// Time before a span in which the vehicle stood where it took off, s: a climb to the height of a flight takes 5 to 15. Longer would reach an
+/// earlier landing.
+const CLIMB_S: f64 = 20.0;
 /// Fewer cells than this teach nothing. They are 8 s; the noise levels of nine sensors would rest on too little.
 const LEAST_CELLS: usize = 200;
 /// Accelerometers read no less than this, m/s^2: the resolution of the messages. MAVLink's RAW_IMU counts in milli-g,
@@ -166,7 +169,8 @@ fn lifted_m(signals: &Signals, (from_s, to_s): (f64, f64)) -> Option<f64> {
     let position = signals.position.as_ref()?;
     let (first, last) = (Place::of(&signals.grid, from_s).before(), Place::of(&signals.grid, to_s).after());
     // where the autopilot's words begin the span, the vehicle may be at its height already
-    let before_m = position[..first].iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+    let climb = Place::of(&signals.grid, from_s - CLIMB_S).before();
+    let before_m = position[climb.min(first)..first].iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
     let ground_m = position[first].z.min(before_m);
     let most_m = position[first..=last].iter().map(|p| p.z - ground_m).fold(0.0, f64::max);
     Some(ground_m + AIRBORNE_M.min(AIRBORNE_SHARE * most_m))

@@ -43,16 +43,18 @@ impl Pair {
         self.loaded.as_ref().map_or((&self.before, &self.after), |loaded| (&loaded.before, &loaded.after))
     }
 
-    /// Takes back what no model file has: what the beginning of the flight shows of its own load, and the mass of an empirical term.
-    /// Returns whether there was any of the first.
-    pub(super) fn unload(&mut self, empirical: Option<&Empirical>) -> bool {
+    /// Takes back what no model file has: what the beginning of the flight shows of its own load, and the mass of an empirical term. The
+    /// same part of the flight is predicted. Returns whether there was any of the first.
+    pub(super) fn unload(&mut self, trace: &Trace, empirical: Option<&Empirical>) -> bool {
         self.after.vehicle.body.mass_kg -= empirical.map_or(0.0, |term| term.mass_change_kg);
-        self.loaded.take_if(|loaded| loaded.until_s.is_finite()).is_some()
+        let until_s = self.predicted_from_s();
+        self.own(trace, until_s);
+        until_s.is_finite()
     }
 
     /// Predicts with what a flight has its own.
     fn own(&mut self, trace: &Trace, until_s: f64) {
-        if !trace.own.is_none() {
+        if until_s.is_finite() || !trace.own.is_none() {
             let [before, after] = [&self.before, &self.after].map(|base| base.on(&trace.own).into_owned());
             self.loaded = Some(LoadedPair { before, after, until_s });
         }

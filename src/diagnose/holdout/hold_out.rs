@@ -64,7 +64,7 @@ pub fn on_left_out(
     let closed_loop = closed_loop::flown_again(&ready, empirical, vehicle, settings);
     let improvement = improvement_percent.map(|improvement| improvement.value);
     let another = other_vehicle.is_some();
-    notes.extend(as_written(&mut ready, empirical, settings)?);
+    notes.extend(as_written(&mut ready, empirical, settings));
     tracing::info!(improvement_percent = improvement, blocks, other_vehicle = another, "hold-out predicted");
     notes.push(Note::remark(
         About::HoldOut,
@@ -88,19 +88,18 @@ fn as_written(
     ready: &mut [Ready],
     empirical: Option<&Empirical>,
     settings: &HoldoutSettings,
-) -> Result<Option<Note>, HoldoutError> {
-    let unloaded: Vec<bool> = ready.iter_mut().map(|ready| ready.pair.unload(empirical)).collect();
+) -> Option<Note> {
+    let unload = |ready: &mut Ready| ready.pair.unload(&ready.trace, empirical);
+    let unloaded: Vec<bool> = ready.iter_mut().map(unload).collect();
     let with = match (unloaded.contains(&true), empirical) {
-        (false, None) => return Ok(None),
+        (false, None) => return None,
         (true, None) => "the load of each flight",
         (false, Some(_)) => "the empirical force",
         (true, Some(_)) => "the load of each flight and the empirical force",
     };
-    let errors = match open_loop::open_loop(ready, None, settings) {
-        Ok((open_loop, ..)) => OpenLoop::half_second(&open_loop).map(OpenLoop::quantities),
-        Err(HoldoutError::Compare { .. }) => None,
-        Err(other) => return Err(other),
-    };
+    // what was shown above stands without this, too
+    let (open_loop, ..) = open_loop::open_loop(ready, None, settings).ok()?;
+    let errors = OpenLoop::half_second(&open_loop).map(OpenLoop::quantities);
     let named = errors.into_iter().flatten().zip(["m", "m/s", "rad", "rad/s"]);
     let each: Vec<String> = named
         .filter_map(|(compared, unit)| Some(format!("{} {unit}", significant(compared?.after.value, 3))))
@@ -109,7 +108,7 @@ fn as_written(
         "the errors on the hold-out are with {with}, which no model file has: by the model as it is written they are {} over 0.5 s",
         each.join(", ")
     );
-    Ok((!each.is_empty()).then(|| Note::warning(About::HoldOut, text)))
+    (!each.is_empty()).then(|| Note::warning(About::HoldOut, text))
 }
 
 /// Open-loop prediction on the flights that were used.

@@ -31,7 +31,7 @@ pub fn for_readers(named: &[Named], airspeed_m_s: f64) -> Vec<Named> {
 fn most_of_others(named: &[Named], airspeed_m_s: f64) -> Vec<f64> {
     let of = |drag: &Named| {
         let others = named.iter().filter(|other| other.id != drag.id);
-        others.filter_map(|other| slope_across(other, airspeed_m_s)).sum()
+        others.filter_map(|other| slope_along(other, airspeed_m_s)).sum()
     };
     named.iter().map(of).collect()
 }
@@ -94,10 +94,14 @@ fn added(named: &[Named], (drag, part): (&Named, &Named), airspeed_m_s: f64) -> 
     (!other).then_some(NamedParameter { name: whole.name(whole.0.role.axial?)?, ..kz })
 }
 
-/// What a drag that has no part of its own along the rotor axis has across it at this airspeed, N/(m/s).
-fn slope_across(drag: &Named, airspeed_m_s: f64) -> Option<f64> {
+/// Slope of a force with the square of the airspeed across the motion, over the mean of that across and along it.
+const ACROSS_MOTION: f64 = 2.0 / 3.0;
+
+/// What a drag that has no part of its own along the rotor axis may have there at this airspeed, N/(m/s): vehicles move across that axis.
+fn slope_along(drag: &Named, airspeed_m_s: f64) -> Option<f64> {
     let law = Slots(signature_of(drag.id)?);
-    let slope = law.0.role.lateral_slope?(airspeed_m_s);
+    let by_face = drag.get("by_face").map_or(0.0, |share| share.value);
+    let slope = ACROSS_MOTION * (1.0 - by_face) * law.0.role.lateral_slope?(airspeed_m_s);
     let (x, y) = (law.of(drag, 0)?, law.of(drag, 1)?);
     let along = law.0.role.vertical.and_then(|slot| law.of(drag, slot));
     along.is_none().then_some(0.5 * slope * (x.value + y.value))
@@ -168,20 +172,20 @@ mod tests {
             let drag = named("linear_drag", &[("dx", 0.4), ("dy", 0.5)]);
             [named("inflow", &[("kz", 0.9)]), drag, named("quadratic_drag", square)]
         };
-        // 0.45 + 1.5 * 0.15 * 2 = 0.9 N/(m/s) across at 2 m/s
+        // 0.45 + 0.15 * 3 = 0.9 N/(m/s) along the axis at 3 m/s across it
         let across = [("cx", 0.15), ("cy", 0.15)];
         let ids =
             |named: &[Named], speed| for_readers(named, speed).iter().map(|of| of.id).collect::<Vec<_>>();
-        assert_eq!(ids(&with(&across), 2.0), ["linear_drag", "quadratic_drag"]);
+        assert_eq!(ids(&with(&across), 3.0), ["linear_drag", "quadratic_drag"]);
         let [_, drag, square] = with(&across);
         let mut drag = drag;
         drag.parameters.push(NamedParameter { name: "dz", value: 0.9, std: 0.01, unit: "N/(m/s)" });
         let whole = [drag, square];
-        assert_eq!(ids(&whole, 2.0), ["linear_drag", "quadratic_drag"]);
+        assert_eq!(ids(&whole, 3.0), ["linear_drag", "quadratic_drag"]);
         assert_eq!(ids(&whole, 0.2), ["linear_drag", "quadratic_drag", "inflow"]);
         // at a slow pace it has no such part, and one with its own part along the axis has none in this term
         assert_eq!(ids(&with(&across), 0.2), ["inflow", "linear_drag", "quadratic_drag"]);
         let all = [("cx", 0.15), ("cy", 0.15), ("cz", 0.15)];
-        assert_eq!(ids(&with(&all), 2.0), ["inflow", "linear_drag", "quadratic_drag"]);
+        assert_eq!(ids(&with(&all), 3.0), ["inflow", "linear_drag", "quadratic_drag"]);
     }
 }

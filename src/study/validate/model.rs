@@ -6,7 +6,7 @@ use super::result::ValidatedModel;
 use crate::config::{LoadedVehicle, effects_of, read_vehicle};
 use crate::diagnose::holdout::RateLaw;
 use crate::draft::Given;
-use crate::note::Note;
+use crate::note::{About, Note};
 use crate::physics::Model;
 use crate::study::flight::Flight;
 use crate::study::flights::file_notes;
@@ -37,16 +37,24 @@ pub(super) fn contenders(
         let doubts = file_notes(file, &loaded.warnings);
         doubts.iter().for_each(|note| progress.note(note));
         notes.extend(doubts);
-        models.push(contender(file, loaded)?);
+        let (model, by_law) = contender(file, loaded)?;
+        notes.extend(by_law.then(|| Note::remark(About::File(text::path(&file)), BY_LAW)));
+        models.push(model);
     }
     tell_apart(&mut models, files);
     Ok((models, notes))
 }
 
-fn contender(file: &Path, loaded: LoadedVehicle) -> Result<Contender, StudyError> {
+/// Said of a model with a law of the rates.
+const BY_LAW: &str = "attitude and rates in open loop are predicted with the empirical law of the rates that this file has \
+                      ([identified.rate_law]); closed loops and output predictions are without it";
+
+/// A model by its file, and whether it has a law of the rates.
+fn contender(file: &Path, loaded: LoadedVehicle) -> Result<(Contender, bool), StudyError> {
+    let by_law = loaded.model.identified.as_ref().is_some_and(|table| table.contains_key("rate_law"));
     let name = file.file_stem().map_or_else(|| loaded.vehicle.name.clone(), |stem| text::path(&stem));
     let input = InputFile::of(file)?;
-    flying(loaded, ValidatedModel { name, input })
+    Ok((flying(loaded, ValidatedModel { name, input })?, by_law))
 }
 
 fn flying(loaded: LoadedVehicle, of: ValidatedModel) -> Result<Contender, StudyError> {
@@ -74,6 +82,15 @@ fn rate_law(identified: Option<&toml::Table>) -> Result<Option<RateLaw>, String>
     let Some(table) = identified.and_then(|table| table.get("rate_law")) else { return Ok(None) };
     let Law { share, decay_1_s, offset_rad_s2 } =
         table.clone().try_into().map_err(|error| format!("identified.rate_law: {error}"))?;
+    let within = share.iter().all(|of| (0.0..=1.0).contains(of))
+        && decay_1_s.iter().all(|of| (0.0..f64::INFINITY).contains(of))
+        && offset_rad_s2.iter().all(|of| of.is_finite());
+    if !within {
+        return Err(format!(
+            "identified.rate_law: expected shares from 0 to 1, decays from 0 on and finite offsets, got {share:?}, {decay_1_s:?}, \
+             {offset_rad_s2:?}"
+        ));
+    }
     let [share, decay_1_s, offset_rad_s2] = [share, decay_1_s, offset_rad_s2].map(Vector3::from);
     Ok(Some(RateLaw { share, decay_1_s, offset_rad_s2 }))
 }
