@@ -118,6 +118,7 @@ struct FlownFlights {
 /// Flies until a further flight would bring nothing that is needed, or nobody wants one.
 fn all_flights(context: &Context<'_>) -> Result<FlownFlights, CommandError> {
     context.stage("Vehicle");
+    vehicle::same_vehicle(&context.folder, context.args)?;
     room::same_room(&context.folder, context.args.room.as_deref())?;
     taken_up::take_up(context)?;
     let flights = context.folder.flights();
