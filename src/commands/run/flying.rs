@@ -65,6 +65,7 @@ pub fn fly(context: &Context<'_>, target: &Target, step: &Step) -> Result<Flight
         own: target.embedded.as_ref().map(|embedded| embedded.nonce),
         watches: watched
             .map(|bar| -> Box<dyn FnOnce(&_) + Send> { Box::new(move |pictures| bar.follow(pictures)) }),
+        is_twin: target.is_twin,
         decided: true,
     };
     let flown = fly::one_flight((context.stderr, context.work), &args, manner);

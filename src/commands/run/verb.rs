@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use mavid::config::{parse_vehicle, read_vehicle};
 use mavid::fly::Record;
+use mavid::fly::view::TWIN;
 use mavid::link::Address;
 use mavid::study::{ExplainStudy, check_given};
 use mavid::vehicle::Vehicle;
@@ -153,7 +154,7 @@ fn fly_all(
         let trajectory = planned::first(context, vehicle)?;
         let Some(target) = target.as_deref_mut() else { return Err(nothing_flown()) };
         if context.args.rehearse {
-            context.stage("Rehearsal on the embedded twin");
+            context.stage(&format!("Rehearsal with {TWIN}"));
             rehearsal::prepare(context, target, vehicle.body.mass_kg)?;
             rehearsal::rehearse(context, vehicle, &trajectory)?;
         }

@@ -2,7 +2,7 @@
 
 use super::instruments::{bar, horizon, path_map};
 use super::keys::{ARM_WORD, KILL_WORD};
-use super::model::{ParameterRow, Phase, ViewModel};
+use super::model::{ParameterRow, Phase, TWIN, ViewModel};
 use super::plain::with_error;
 use super::spark::spark;
 use crate::fly::finding::Level;
@@ -82,6 +82,8 @@ fn before_flight(frame: &mut Frame<'_>, model: &ViewModel, page: &Page) {
     let typed = model.typed.as_deref().unwrap_or_default();
     let asked = if more {
         format!("line {end} of {all}: Space for more, Ctrl-C leaves")
+    } else if model.is_twin {
+        format!("{ARM_WORD}> {typed}_  type {ARM_WORD} to fly {TWIN}; Ctrl-C leaves")
     } else {
         format!("{ARM_WORD}> {typed}_   type {ARM_WORD} and Enter to arm and fly; Ctrl-C leaves, Up for more")
     };
@@ -252,7 +254,8 @@ fn event_list(frame: &mut Frame<'_>, model: &ViewModel, area: Rect) {
         })
         .collect();
     // the newest is at the end
-    boxed(frame, "Events", lines.split_off(lines.len().saturating_sub(room)), area);
+    let title = if model.is_twin { format!("Events of {TWIN}") } else { "Events".to_owned() };
+    boxed(frame, &title, lines.split_off(lines.len().saturating_sub(room)), area);
 }
 
 fn help(model: &ViewModel) -> Line<'_> {
