@@ -416,6 +416,19 @@ fn an_aircraft_gets_what_was_identified_and_nothing_else() {
         assert!((ratios[at] - ratio).abs() < 5e-4, "{name}: {}", ratios[at]);
         assert!(high[at].why.contains("1.158 kg/m^3"), "{}", high[at].why);
     }
+    // what cannot be held is named with all that goes with it
+    let strong = [effect("linear_drag", &[9.0, 9.0, 0.2]), effects[1].clone()];
+    let strong = aircraft_parameters(&vehicle, &strong, Some(&identified), (Autopilot::Px4, None)).unwrap();
+    assert!(!strong.parameters.iter().any(|parameter| parameter.name.starts_with("EKF2")));
+    for id in ["linear_drag", "quadratic_drag"] {
+        let named = format!("{id} cannot be represented here: ");
+        assert!(strong.left_out.iter().any(|note| note.starts_with(&named)), "{id}: {:?}", strong.left_out);
+        assert!(
+            !written.left_out.iter().any(|note| note.starts_with(&named)),
+            "{id}: {:?}",
+            written.left_out
+        );
+    }
     // without standard errors nothing follows
     let none = aircraft_parameters(&vehicle, &effects, None, (Autopilot::ArduPilot, None));
     assert!(none.unwrap_err().to_string().contains("standard errors"));

@@ -82,6 +82,7 @@ fn curve(
     let value = at(curvature);
     let (least, most) = names.curve_bounds;
     if !(least..=most).contains(&value) {
+        source.refuse("thrust_curve");
         source.note(format!(
             "{} is left out: the curve that was identified would need {value:.3}, and the autopilot documents {least} to {most}",
             names.curve
