@@ -403,6 +403,7 @@ fn an_aircraft_gets_what_was_identified_and_nothing_else() {
     assert!((elasticity(&bent) - elasticity(&curve)).abs() < 1e-6, "{factor}");
     let hover = of("MPC_THR_HOVER");
     assert!((hover.value - curve(command)).abs() < 1e-9 && hover.std.unwrap() > 0.01 * hover.value);
+    assert!(hover.why.contains("the model file does not hold the voltage"), "{}", hover.why);
     // thinner air: the same drag at sea level is more, and ArduPilot scales the throttle by the density itself
     let of_ardupilot = |altitude_m| {
         let autopilot = (Autopilot::ArduPilot, altitude_m);
