@@ -351,6 +351,21 @@ fn the_table_says_of_every_effect_which_simulators_can_hold_it() {
 }
 
 #[test]
+fn each_rotor_beside_a_weak_one_says_what_its_coefficient_rests_on() {
+    let effects = [effect("weak_rotor", &[2.0, 0.9])];
+    let identified =
+        "[effects.weak_rotor]\nrotor = { value = 2.0, std = 0.0 }\nfactor = { value = 0.9, std = 0.01 }\n";
+    let identified = toml::from_str(identified).unwrap();
+    let written =
+        aircraft_parameters(&vehicle(), &effects, Some(&identified), (Autopilot::Px4, None)).unwrap();
+    let of = |name: &str| written.parameters.iter().find(|parameter| parameter.name == name).unwrap();
+    let (weak, sound) = (of("CA_ROTOR2_CT"), of("CA_ROTOR0_CT"));
+    assert!((weak.value - 0.9 * 6.5).abs() < 1e-9 && (weak.std.unwrap() - 0.065).abs() < 1e-9);
+    assert!(weak.why.contains("0.900 +- 0.010 of the others' thrust"), "{}", weak.why);
+    assert!(sound.value == 6.5 && sound.why.contains("whose error is the weak one's"), "{}", sound.why);
+}
+
+#[test]
 fn an_aircraft_gets_what_was_identified_and_nothing_else() {
     let vehicle = vehicle();
     let effects = [
