@@ -49,13 +49,7 @@ fn link(args: &InitArgs) -> Option<VehicleLinkArgs> {
 fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
     let inputs: Vec<_> = [&args.from].into_iter().chain(&args.thrust_stand).collect();
     output::refuse_overwriting(&inputs, &[&args.out])?;
-    if args.out.exists() && !args.force {
-        let what = format!(
-            "--out: expected a new file, got {}, which exists; --force replaces it",
-            text::path(&args.out)
-        );
-        return Err(CommandError::Input(what));
-    }
+    output::refuse_replacing(&args.out, args.force)?;
     let given = args.shape.given(args.mass);
     check_given(&given)?;
     let mut draft = match link(args) {
