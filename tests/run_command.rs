@@ -101,6 +101,13 @@ fn a_doubt_ends_a_run_without_a_person_and_says_what_to_do() {
     let other = run(&out, &["--sitl", "--yes", "--mass", "3", "--room", "4,4,3"]);
     assert_eq!(other.status.code(), Some(2), "{}", stderr(&other));
     assert!(stderr(&other).contains("--mass: expected the 2.0643 kg of"), "{}", stderr(&other));
+    // and so is a room
+    std::fs::write(out.join("limits.toml"), "[limits]\nx_max_m = 2.0\ny_max_m = 2.0\nz_max_m = 3.0\n")
+        .unwrap();
+    let narrow = run(&out, &["--sitl", "--yes", "--room", "2,2,2"]);
+    assert_eq!(narrow.status.code(), Some(2), "{}", stderr(&narrow));
+    assert!(stderr(&narrow).contains("--room: expected the 4,4,3 m of"), "{}", stderr(&narrow));
+    assert!(!out.join("plan.toml").exists());
     // by the vehicle's own parameters it is a vehicle of this size: no such mass flies with it
     let out = folder("contradiction");
     let light = run(&out, &["--sitl", "--yes", "--mass", "0.006", "--room", "4,4,3"]);

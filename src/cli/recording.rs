@@ -88,6 +88,9 @@ pub struct RedactArgs {
     /// write the redacted log here
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
+    /// replace --out if it exists
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// How an answer is printed.

@@ -37,7 +37,7 @@ pub struct Cli {
     pub verb: Verb,
 }
 
-const AFTER_HELP: &str = "Exit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss, 4 done and something changed (compare, fleet report).";
+const AFTER_HELP: &str = "Examples:\n  mavid demo\n  mavid explain flight.ulg --mass 2.0\n  mavid run --connect udpin:0.0.0.0:14540 --mass 2.0 --room 4,4,3\n\nExit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss, 4 done and something changed (compare, fleet report).";
 
 /// The verbs.
 #[derive(Debug, Subcommand)]
@@ -199,7 +199,7 @@ mod tests {
     #[test]
     fn every_verb_has_an_example_that_can_be_typed() {
         let (mut verbs, mut wrong) = (0, Vec::new());
-        walk(&Cli::command(), "mavid", &mut |verb, path| {
+        let mut check = |verb: &clap::Command, path: &str| {
             verbs += 1;
             let help = verb.get_after_help().map(ToString::to_string).unwrap_or_default();
             let examples: Vec<&str> = help.lines().filter_map(|line| line.strip_prefix("  ")).collect();
@@ -218,7 +218,9 @@ mod tests {
                     Ok(_) => {}
                 }
             }
-        });
+        };
+        check(&Cli::command(), "mavid");
+        walk(&Cli::command(), "mavid", &mut check);
         assert!(verbs > 25 && wrong.is_empty(), "{verbs} verbs\n{}", wrong.join("\n"));
     }
 

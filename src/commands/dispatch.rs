@@ -12,7 +12,7 @@ pub fn run(cli: &Cli, stderr: &StandardError) -> Result<Outcome, CommandError> {
     match &cli.verb {
         Verb::Run(args) => super::run::run(cli.json, stderr, args),
         Verb::Demo(args) => demo::run(cli.json, stderr, args),
-        Verb::Vehicle(args) => vehicle::run(cli.json, args),
+        Verb::Vehicle(args) => vehicle::run(cli.json, stderr, args),
         Verb::Plan(args) => plan::run(cli.json, stderr, args),
         Verb::Identify(args) => identify::run(cli.json, stderr, args),
         Verb::Simulate(args) => simulate::run(cli.json, args),

@@ -11,6 +11,8 @@ use mavid::text;
 use serde::Serialize;
 
 use super::log::{agreed, all_put_back, link_options, notes_of_loaded, open, put_back_page};
+use super::progress::Spinner;
+use super::standard_error::StandardError;
 use super::{CommandError, Outcome, network, output};
 use crate::cli::LoadArgs;
 
@@ -54,27 +56,29 @@ impl Line {
 }
 
 /// Runs the verb.
-pub fn run(json: bool, args: &LoadArgs) -> Result<Outcome, CommandError> {
+pub fn run(json: bool, stderr: &StandardError, args: &LoadArgs) -> Result<Outcome, CommandError> {
     let file = args.file.as_deref().map(read_parameter_file).transpose();
     let file = file.map_err(|error: ParameterFileError| CommandError::Input(error.to_string()))?;
     network::block_on(async {
         let mut session = open(&args.link).await?;
         match &file {
-            Some(file) => load(json, args, &mut session, file).await,
-            None => undo(json, args, &mut session).await,
+            Some(file) => load((json, stderr), args, &mut session, file).await,
+            None => undo((json, stderr), args, &mut session).await,
         }
     })
 }
 
 async fn load(
-    json: bool,
+    (json, stderr): (bool, &StandardError),
     args: &LoadArgs,
     session: &mut Session,
     file: &[(String, f64)],
 ) -> Result<Outcome, CommandError> {
+    let shown = Spinner::of(stderr, format!("the vehicle is asked for {}", counted(file.len())));
     let offer = session.offer().await?;
     let notes = notes_of_loaded(&session.known_as(&offer))?;
     let loading = onboard::compare(session, file).await?;
+    drop(shown);
     refuse_unknown(args, session, &loading)?;
     if !json {
         output::text(&table(session, &loading))?;
@@ -82,7 +86,12 @@ async fn load(
     let differing = loading.parameters.iter().filter(|parameter| parameter.differs()).count();
     let set = differing > 0 && (args.yes || !json && agreed(SET, "set these")?);
     let nobody_said = differing > 0 && !args.yes && (json || !is_attended());
-    let loaded = if set { onboard::load(session, &loading, &notes).await? } else { Loaded::default() };
+    let loaded = if set {
+        let _shown = Spinner::of(stderr, format!("setting {} and reading back", counted(differing)));
+        onboard::load(session, &loading, &notes).await?
+    } else {
+        Loaded::default()
+    };
     let place = text::path(&notes.path());
     if json {
         output::json(&Document {
@@ -118,6 +127,11 @@ async fn load(
 
 fn undo_command(args: &LoadArgs) -> String {
     format!("mavid vehicle load {} --undo", link_options(&args.link))
+}
+
+/// So many parameters, in words.
+fn counted(count: usize) -> String {
+    if count == 1 { "1 parameter".to_owned() } else { format!("{count} parameters") }
 }
 
 /// A value as people write it.
@@ -181,11 +195,17 @@ fn table(session: &Session, loading: &Loading) -> String {
     lines.join("\n")
 }
 
-async fn undo(json: bool, args: &LoadArgs, session: &mut Session) -> Result<Outcome, CommandError> {
+async fn undo(
+    (json, stderr): (bool, &StandardError),
+    args: &LoadArgs,
+    session: &mut Session,
+) -> Result<Outcome, CommandError> {
+    let shown = Spinner::of(stderr, "putting parameters back and reading them");
     let offer = session.offer().await?;
     let notes = notes_of_loaded(&session.known_as(&offer))?;
     let since = if args.overwrite { ChangedSince::Overwritten } else { ChangedSince::Kept };
     let put_back = onboard::put_back(session, &notes, since).await?;
+    drop(shown);
     let place = text::path(&notes.path());
     let is_whole = put_back.failed.is_empty() && put_back.left.is_empty();
     if json {
@@ -252,6 +272,11 @@ mod tests {
         let words = ["mavid", "vehicle", "load", "--connect", "udpin:0.0.0.0:14550", "--undo", "--yes"];
         assert!(crate::cli::Cli::try_parse_from(words).is_ok());
         assert!(crate::cli::Cli::try_parse_from(&words[..5]).is_err());
+    }
+
+    #[test]
+    fn one_parameter_is_one() {
+        assert_eq!([1, 2].map(counted), ["1 parameter", "2 parameters"]);
     }
 
     #[test]

@@ -137,6 +137,16 @@ pub fn signing_warnings(signing: Option<&Signing>) {
     signing.iter().flat_map(|signing| signing.warnings()).for_each(note);
 }
 
+/// Refuses a file that is there already, unless it may be replaced.
+pub fn refuse_replacing(out: &Path, force: bool) -> Result<(), CommandError> {
+    if force || !out.exists() {
+        return Ok(());
+    }
+    let what =
+        format!("--out: expected a new file, got {}, which exists; --force replaces it", text::path(&out));
+    Err(CommandError::Input(what))
+}
+
 /// A file of the user's choice; where it cannot be written whole, what was there before stays.
 pub fn file(path: &Path, text: &str) -> Result<(), CommandError> {
     bytes(path, text.as_bytes())

@@ -83,6 +83,13 @@ impl Spinner {
 }
 
 impl Spinner {
+    /// Of one piece of work, in words.
+    pub fn of(stderr: &StandardError, words: impl Into<String>) -> Self {
+        let spinner = Self::new(stderr);
+        spinner.0.set_message(words.into());
+        spinner
+    }
+
     fn restyle(&self, template: &str) {
         if let Ok(style) = ProgressStyle::with_template(template) {
             self.0.set_style(style);

@@ -21,6 +21,7 @@ struct RedactedDocument {
 /// Runs the verb.
 pub fn run(json: bool, args: &RedactArgs) -> Result<Outcome, CommandError> {
     output::refuse_overwriting(&[&args.log], &[&args.out])?;
+    output::refuse_replacing(&args.out, args.force)?;
     let name = text::path(&args.log);
     let log = std::fs::read(&args.log).map_err(|error| CommandError::Input(format!("{name}: {error}")))?;
     let redacted = redact(&log).map_err(|error| CommandError::Input(format!("{name}: {error}")))?;

@@ -13,14 +13,15 @@ use mavid::text;
 use mavid::vehicle::{Guess, Guessed};
 
 use super::log::{Answered, parameters_of_vehicle};
+use super::standard_error::StandardError;
 use super::{CommandError, Outcome, output};
 use crate::cli::{InitArgs, VehicleArgs, VehicleLinkArgs, VehicleVerb};
 
 /// Runs the verb.
-pub fn run(json: bool, args: &VehicleArgs) -> Result<Outcome, CommandError> {
+pub fn run(json: bool, stderr: &StandardError, args: &VehicleArgs) -> Result<Outcome, CommandError> {
     match (&args.verb, &args.file) {
         (Some(VehicleVerb::Init(init)), _) => draft(json, init),
-        (Some(VehicleVerb::Load(load)), _) => super::load::run(json, load),
+        (Some(VehicleVerb::Load(load)), _) => super::load::run(json, stderr, load),
         (None, Some(file)) => check(json, file),
         (None, None) => Ok(Outcome::Done),
     }
@@ -49,13 +50,7 @@ fn link(args: &InitArgs) -> Option<VehicleLinkArgs> {
 fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
     let inputs: Vec<_> = [&args.from].into_iter().chain(&args.thrust_stand).collect();
     output::refuse_overwriting(&inputs, &[&args.out])?;
-    if args.out.exists() && !args.force {
-        let what = format!(
-            "--out: expected a new file, got {}, which exists; --force replaces it",
-            text::path(&args.out)
-        );
-        return Err(CommandError::Input(what));
-    }
+    output::refuse_replacing(&args.out, args.force)?;
     let given = args.shape.given(args.mass);
     check_given(&given)?;
     let mut draft = match link(args) {

@@ -86,6 +86,19 @@ pub fn arm() -> Rule {
     Rule { relative: 0.4, ..Rule::over(PUBLISHED.iter().map(|one| one.arm_m / one.mass_kg.cbrt())) }
 }
 
+/// Mass over the square of the distance of the rotors from the centre, kg/m^2: of the published vehicles the least and the most, which are
+/// 13 and 48. It goes with the load of the rotors' discs, which differs less between small and large vehicles than mass over the cube
+/// does: a whoop of 65 mm has 26, a racer of 5 inches 60, a carrier of 100 kg with arms of 1.1 m 85.
+#[must_use]
+pub fn mass_over_arm_squared() -> (f64, f64) {
+    let all = PUBLISHED.iter().map(|one| one.mass_kg / one.arm_m.powi(2));
+    all.fold((f64::INFINITY, 0.0), |(least, most), one| (least.min(one), most.max(one)))
+}
+
+/// A mass that is so many times beyond [`mass_over_arm_squared`] does not go with the arms. Set by judgement: vehicles that fly are within
+/// a factor of two, and grams for kilograms, or the mass of another vehicle, are beyond three.
+pub const BEYOND_PUBLISHED: f64 = 3.0;
+
 /// Thrust of all rotors over weight. Set by judgement: a multirotor flies with 1.3 to 4 times its weight, and racing
 /// machines with 10.
 pub const THRUST_TO_WEIGHT: Rule = Rule { usual: 2.2, relative: 0.5 };
@@ -111,6 +124,20 @@ mod tests {
         }
         // a body is no flatter than a plate: Izz <= Ixx + Iyy
         assert!(vertical_inertia().usual < 2.0 * horizontal_inertia().usual);
+    }
+
+    #[test]
+    fn mass_goes_with_the_square_of_the_arms() {
+        let (least, most) = mass_over_arm_squared();
+        assert!((least - 0.028 / 0.046_f64.powi(2)).abs() < 1e-9, "{least}");
+        assert!((most - 0.752 / 0.125_f64.powi(2)).abs() < 1e-9, "{most}");
+        // vehicles that fly and are not among the published ones: mass and size from motor to motor
+        for (mass_kg, size_m) in
+            [(0.028, 0.065), (0.7, 0.22), (3.5, 0.43), (15.5, 1.13), (101.0, 2.18), (1.5, 0.9)]
+        {
+            let of = mass_kg / (0.5 * size_m * 0.5 * size_m);
+            assert!((least / BEYOND_PUBLISHED..most * BEYOND_PUBLISHED).contains(&of), "{mass_kg} kg: {of}");
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ use super::rules::{self, Rule};
 use crate::autopilot::{Frame, Layout, LayoutError, LayoutUnit, Outputs, Stack};
 use crate::recording::Recording;
 use crate::signals::{RotorDifference, bus_range, holds_fractions, rotor_difference};
+use crate::text::{compact, significant};
 use crate::units::GRAVITY_M_S2;
 use crate::vehicle::{
     Actuator, Anchor, Guess, Guessed, Limits, Propulsion, PwmRange, RigidBody, Rotor, Spin, ThrustLaw,
@@ -159,8 +160,30 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
              --frame out, and the parameters say where the motors are"
         )
     };
-    let doubts = other.iter().map(contradiction).collect();
+    let arms_are_known = !vehicle.guesses.iter().any(|guess| guess.of == Guessed::Arms);
+    let unfit = unfit(given, arm_m).filter(|_| arms_are_known);
+    let doubts = other.iter().map(contradiction).chain(unfit).collect();
     Ok(Draft { vehicle, origins: noted.origins, doubts })
+}
+
+/// A mass that does not go with the arms (m), in a sentence.
+fn unfit(given: &Given, arm_m: f64) -> Option<String> {
+    let (least, most) = rules::mass_over_arm_squared();
+    let (least, most) = (least / rules::BEYOND_PUBLISHED, most * rules::BEYOND_PUBLISHED);
+    let square_m2 = arm_m * arm_m;
+    if (least * square_m2..=most * square_m2).contains(&given.mass_kg) {
+        return None;
+    }
+    let what = if given.size_m.is_some() { "--size" } else { "the arms that the parameters state" };
+    Some(format!(
+        "--mass: {} kg does not go with {what}: with arms of {} m it would be {} to {} kg, a factor of {} on both sides of published \
+         multirotors. Weigh the vehicle with its battery, in kg, and measure from motor to motor across the centre, in m",
+        compact(given.mass_kg),
+        compact(arm_m),
+        significant(least * square_m2, 2),
+        significant(most * square_m2, 2),
+        rules::BEYOND_PUBLISHED
+    ))
 }
 
 /// What states the layout, where it is not the parameters.

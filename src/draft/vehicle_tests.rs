@@ -48,6 +48,21 @@ fn arms_that_nobody_states_are_a_guess() {
 }
 
 #[test]
+fn a_mass_that_does_not_go_with_the_size_is_doubted() {
+    let doubts =
+        |mass_kg, size_m| draft(&copter(), &Given { mass_kg, ..given(size_m) }, "drafted").unwrap().doubts;
+    for (mass_kg, size_m) in [(20.0, 0.5), (200.0, 0.492), (0.15, 0.5)] {
+        let said = doubts(mass_kg, Some(size_m)).join("; ");
+        assert!(said.contains("does not go with --size"), "{mass_kg} kg, {size_m} m: {said}");
+    }
+    for (mass_kg, size_m) in [(1.5, 0.5), (0.03, 0.065), (0.8, 0.2), (60.0, 2.2), (2.5, 1.0)] {
+        assert_eq!(doubts(mass_kg, Some(size_m)), Vec::<String>::new());
+    }
+    // arms by the rule of thumb contradict no mass
+    assert_eq!(doubts(200.0, None), Vec::<String>::new());
+}
+
+#[test]
 fn the_flight_says_the_thrust() {
     let key = |quantity, source| StreamKey { quantity, source, instance: 0 };
     let time_s: Vec<f64> = (0..400).map(|index| 0.01 * f64::from(index)).collect();

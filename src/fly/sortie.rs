@@ -103,6 +103,8 @@ pub struct Settings {
     pub await_clearance: bool,
     /// the operator's word is waited for before the vehicle is armed ([`Key::Arm`](super::Key))
     pub await_word: bool,
+    /// the vehicle is the simulated twin of the operator's, and so it is said wherever the operator looks
+    pub is_twin: bool,
     /// a refusal by one of these is a warning
     pub accepted: Vec<Check>,
     /// parameters of the vehicle's logging that were set and wait for its next start
@@ -132,6 +134,7 @@ impl Default for Settings {
             gone_after: Duration::from_secs(120),
             await_clearance: false,
             await_word: false,
+            is_twin: false,
             accepted: Vec::new(),
             log_awaited: Vec::new(),
             first_question: FirstQuestion::random(),

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 const FORMS: &str = "udpin:HOST:PORT, udpout:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT, \
-                     serial:PATH:BAUD[:rtscts] or pty:PATH";
+                     serial:PATH:BAUD[:rtscts] or pty:PATH (udp: is udpin:, and tcp: is tcpout:)";
 
 /// Where a link goes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -216,6 +216,7 @@ mod tests {
             ("127.0.0.1:14550", "udpin:HOST:PORT"),
             ("udq:127.0.0.1:14550", "udpin:HOST:PORT"),
             ("udpin:14550", "udpin:HOST:PORT"),
+            ("upd:127.0.0.1:14550", "(udp: is udpin:, and tcp: is tcpout:), got"),
             ("udpin::14550", "host name"),
             ("udpin:[]:14550", "host name"),
             ("udpout:::1:14550", "in brackets"),

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::physics::WHICH_ROTOR;
 use crate::study::{KnownConfusable, KnownEffect, KnownParameter, ParameterKind};
 use crate::text::{compact, significant, wrapped};
 
@@ -10,6 +11,9 @@ const COLUMNS: usize = 100;
 
 /// Below this distance, in standard deviations, two effects are one to a flight.
 const NOT_APART: f64 = 0.1;
+
+/// What the number of a rotor is, where it stands for itself.
+const COUNTED: &str = "; rotors are counted from 0 in the vehicle file's order";
 
 /// One line an effect.
 #[must_use]
@@ -62,7 +66,8 @@ fn parameters(effect: &KnownEffect) -> String {
             (mass, arm) => format!("; bounds scale with {}", scaling(mass, arm)),
         };
         let bounds = format!("{} to {}", compact(*least), compact(*greatest));
-        format!("  {name:<20}{unit:<14}{bounds:<22}{kind}{scales}")
+        let counted = if *name == WHICH_ROTOR { COUNTED } else { "" };
+        format!("  {name:<20}{unit:<14}{bounds:<22}{kind}{scales}{counted}")
     };
     effect.parameters.iter().map(line).collect::<Vec<_>>().join("\n")
 }

@@ -245,7 +245,11 @@ fn table(effect: &dyn Effect, of: &Vehicle, usual: &[(&str, f64)]) -> String {
         let (least, greatest) = parameter.bounds.at(&of.size());
         let unit = if parameter.unit == "-" { "" } else { parameter.unit };
         let of_tests = OF_TESTS.contains(&(effect.id(), parameter.name));
-        let remark = if of_tests { ", the size concealed in the tests" } else { "" };
+        let remark = match parameter.is_rotor() {
+            true => ", counted from 0 in the vehicle file's order; its name is taken too",
+            false if of_tests => ", the size concealed in the tests",
+            false => "",
+        };
         let bounds = format!("{unit} ({} to {}){remark}", compact(least), compact(greatest));
         // writing to a String cannot fail
         let _ = writeln!(text, "{} = {:?} # {}", parameter.name, rounded(value), bounds.trim_start());

@@ -103,10 +103,15 @@ fn not_of_a_body(stated: f64) -> String {
 pub fn draft_notes(draft: &Draft) -> Vec<Note> {
     let about = || About::File(DRAFTED.to_owned());
     let mut notes = file_notes(Path::new(DRAFTED), &implausible(draft));
-    notes.extend(draft.doubts.iter().map(|doubt| Note::warning(about(), doubt.as_str())));
+    notes.extend(doubted(draft, &about()));
     notes.push(Note::remark(about(), draft.origins.join("; ")));
     notes.extend(guesses(&draft.vehicle).map(|text| Note::remark(about(), text)));
     notes
+}
+
+/// What is given and contradicts the log or the rest of what is given.
+fn doubted(draft: &Draft, about: &About) -> impl Iterator<Item = Note> {
+    draft.doubts.iter().map(|doubt| Note::warning(about.clone(), doubt.as_str()))
 }
 
 /// What is possible of a drafted vehicle but hardly meant.
@@ -185,7 +190,7 @@ pub(super) const DRAFTED: &str = "the drafted vehicle";
 
 fn of_draft(draft: &Draft) -> LoadedVehicle {
     LoadedVehicle {
-        warnings: implausible(draft),
+        warnings: implausible(draft).into_iter().chain(doubted(draft, &About::Vehicle)).collect(),
         vehicle: draft.vehicle.clone(),
         model: ModelTables::default(),
     }

@@ -56,7 +56,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     // what a thrust stand measured of a rotor
     ("stand", &["units", "text", "vehicle"]),
     // a first description of a vehicle, from parameters, weight and a flight
-    ("draft", &["units", "autopilot", "vehicle", "recording", "signals"]),
+    ("draft", &["text", "units", "autopilot", "vehicle", "recording", "signals"]),
     ("regression", &["signals"]),
     ("estimate", &["note", "vehicle", "physics", "signals", "regression"]),
     // never estimate

@@ -1,9 +1,10 @@
 //! The terminal view on a made-up screen.
 
 use mavid::fly::finding::Level;
+use mavid::fly::preflight::Page;
 use mavid::fly::view::{
-    Attitude, Battery, LandedView, LinkView, ParameterRow, Phase, PlainLog, StageView, Trace, ViewModel,
-    render, render_landed,
+    Attitude, Battery, LandedView, LinkView, ParameterRow, Phase, PlainLog, StageView, TWIN, Trace,
+    ViewModel, render, render_landed,
 };
 use ratatui::backend::TestBackend;
 use ratatui::{Frame, Terminal};
@@ -91,6 +92,32 @@ fn everything_that_matters_is_on_the_screen() {
     }
     let line = screen.lines().find(|line| line.contains("mass")).unwrap();
     assert!(line.contains('█') && line.contains('▁'), "the mass falls to its value: {line}");
+}
+
+#[test]
+fn the_twin_is_named_wherever_the_word_for_arming_is_asked_for() {
+    let page = Page::default().said_of(Some(format!("what flies now is {TWIN}")));
+    let mut model = ViewModel { is_twin: true, awaits_word: true, ..model() };
+    model.page = Some(page.into());
+    let lines = PlainLog::default().lines(&model);
+    let named = |begin: &str| lines.iter().any(|line| line.contains(begin) && line.contains(TWIN));
+    assert!(
+        named("what flies now is") && named("type arm and return") && named("] trajectory"),
+        "{lines:#?}"
+    );
+    let screen = drawn(&model, 80, 24);
+    for wanted in [format!("what flies now is {TWIN}"), format!("type arm to fly {TWIN}; Ctrl-C leaves")] {
+        assert!(screen.contains(&wanted), "no `{wanted}` in\n{screen}");
+    }
+    (model.awaits_word, model.is_twin) = (false, true);
+    assert!(drawn(&model, 80, 24).contains("Events of the simulated twin"));
+    model.is_twin = false;
+    assert!(
+        !PlainLog::default()
+            .lines(&model)
+            .iter()
+            .any(|line| line.contains("] trajectory, the simulated twin"))
+    );
 }
 
 #[test]

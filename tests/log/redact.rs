@@ -163,6 +163,12 @@ fn the_command_writes_the_log_and_says_what_it_did() {
     let said = String::from_utf8(done.stdout).unwrap();
     assert!(done.status.success() && said.contains("6 messages") && said.contains("Read back"), "{said}");
     assert_eq!(std::fs::read(&out).unwrap(), redact(&telltale()).unwrap().bytes);
+    // what is there stays, unless it may be replaced
+    std::fs::write(&out, "mine").unwrap();
+    let refused = run(&out);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(refused.status.code() == Some(2) && said.contains("which exists; --force replaces it"), "{said}");
+    assert_eq!(std::fs::read(&out).unwrap(), b"mine");
     // the log itself stays
     assert_eq!(run(&log).status.code(), Some(2));
     assert_eq!(std::fs::read(&log).unwrap(), telltale());

@@ -351,6 +351,21 @@ fn the_table_says_of_every_effect_which_simulators_can_hold_it() {
 }
 
 #[test]
+fn each_rotor_beside_a_weak_one_says_what_its_coefficient_rests_on() {
+    let effects = [effect("weak_rotor", &[2.0, 0.9])];
+    let identified =
+        "[effects.weak_rotor]\nrotor = { value = 2.0, std = 0.0 }\nfactor = { value = 0.9, std = 0.01 }\n";
+    let identified = toml::from_str(identified).unwrap();
+    let written =
+        aircraft_parameters(&vehicle(), &effects, Some(&identified), (Autopilot::Px4, None)).unwrap();
+    let of = |name: &str| written.parameters.iter().find(|parameter| parameter.name == name).unwrap();
+    let (weak, sound) = (of("CA_ROTOR2_CT"), of("CA_ROTOR0_CT"));
+    assert!((weak.value - 0.9 * 6.5).abs() < 1e-9 && (weak.std.unwrap() - 0.065).abs() < 1e-9);
+    assert!(weak.why.contains("0.900 +- 0.010 of the others' thrust"), "{}", weak.why);
+    assert!(sound.value == 6.5 && sound.why.contains("whose error is the weak one's"), "{}", sound.why);
+}
+
+#[test]
 fn an_aircraft_gets_what_was_identified_and_nothing_else() {
     let vehicle = vehicle();
     let effects = [
@@ -403,6 +418,7 @@ fn an_aircraft_gets_what_was_identified_and_nothing_else() {
     assert!((elasticity(&bent) - elasticity(&curve)).abs() < 1e-6, "{factor}");
     let hover = of("MPC_THR_HOVER");
     assert!((hover.value - curve(command)).abs() < 1e-9 && hover.std.unwrap() > 0.01 * hover.value);
+    assert!(hover.why.contains("the model file does not hold the voltage"), "{}", hover.why);
     // thinner air: the same drag at sea level is more, and ArduPilot scales the throttle by the density itself
     let of_ardupilot = |altitude_m| {
         let autopilot = (Autopilot::ArduPilot, altitude_m);
@@ -415,6 +431,19 @@ fn an_aircraft_gets_what_was_identified_and_nothing_else() {
         let at = low.iter().position(|parameter| parameter.name == name).unwrap();
         assert!((ratios[at] - ratio).abs() < 5e-4, "{name}: {}", ratios[at]);
         assert!(high[at].why.contains("1.158 kg/m^3"), "{}", high[at].why);
+    }
+    // what cannot be held is named with all that goes with it
+    let strong = [effect("linear_drag", &[9.0, 9.0, 0.2]), effects[1].clone()];
+    let strong = aircraft_parameters(&vehicle, &strong, Some(&identified), (Autopilot::Px4, None)).unwrap();
+    assert!(!strong.parameters.iter().any(|parameter| parameter.name.starts_with("EKF2")));
+    for id in ["linear_drag", "quadratic_drag"] {
+        let named = format!("{id} cannot be represented here: ");
+        assert!(strong.left_out.iter().any(|note| note.starts_with(&named)), "{id}: {:?}", strong.left_out);
+        assert!(
+            !written.left_out.iter().any(|note| note.starts_with(&named)),
+            "{id}: {:?}",
+            written.left_out
+        );
     }
     // without standard errors nothing follows
     let none = aircraft_parameters(&vehicle, &effects, None, (Autopilot::ArduPilot, None));

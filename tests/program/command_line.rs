@@ -103,6 +103,9 @@ fn bad_input_and_bad_usage_are_status_two_with_nothing_on_stdout() {
 #[test]
 fn help_and_version_succeed() {
     let help = mavid(&["--help"]);
+    for example in ["  mavid demo", "  mavid explain flight.ulg --mass 2.0", "  mavid run --connect"] {
+        assert!(stdout(&help).lines().any(|line| line.starts_with(example)), "{example}");
+    }
     assert_eq!(help.status.code(), Some(0));
     assert!(
         stdout(&help).contains("Exit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss, 4 done and something changed (compare, fleet report).")

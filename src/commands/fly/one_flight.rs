@@ -31,6 +31,8 @@ pub struct Manner {
     pub own: Option<Nonce>,
     /// watches in place of the view or the lines
     pub watches: Option<Watches>,
+    /// it is the simulated twin of the vehicle, and so it is said
+    pub is_twin: bool,
     /// what becomes of the logging was decided before
     pub decided: bool,
 }
@@ -67,6 +69,7 @@ pub fn one_flight(
     if manner.own.is_some() {
         (ride.sortie.own_vehicle, ride.sortie.may_arm) = (manner.own, false);
     }
+    ride.sortie.settings.is_twin = manner.is_twin;
     if args.set_logging {
         // a signal ends the conversation with the vehicle
         work.ends_itself();

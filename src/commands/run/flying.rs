@@ -65,6 +65,7 @@ pub fn fly(context: &Context<'_>, target: &Target, step: &Step) -> Result<Flight
         own: target.embedded.as_ref().map(|embedded| embedded.nonce),
         watches: watched
             .map(|bar| -> Box<dyn FnOnce(&_) + Send> { Box::new(move |pictures| bar.follow(pictures)) }),
+        is_twin: target.is_twin,
         decided: true,
     };
     let flown = fly::one_flight((context.stderr, context.work), &args, manner);
@@ -81,10 +82,33 @@ pub fn fly(context: &Context<'_>, target: &Target, step: &Step) -> Result<Flight
             let arm = if args.arm { "" } else { "; everything was checked: --arm beside --yes flies" };
             Err(CommandError::Failure(format!("not flown{}{arm}", why())))
         }
-        Ending::InTheAir(mode) => Err(CommandError::Failure(format!(
-            "the vehicle was left in the air, mode {mode}{}; its recording is in {}",
-            why(),
-            text::path(&args.out)
-        ))),
+        Ending::InTheAir(mode) => {
+            Err(CommandError::Failure(in_the_air((target.is_twin, &args.out), mode, &why())))
+        }
+    }
+}
+
+/// What is said where it was left in the air. Whoever rehearses says where the twin's recording is.
+fn in_the_air((is_twin, out): (bool, &Path), mode: impl std::fmt::Display, why: &str) -> String {
+    match is_twin {
+        true => format!("the twin was left in the air, mode {mode}{why}"),
+        false => {
+            let kept = text::path(out);
+            format!("the vehicle was left in the air, mode {mode}{why}; its recording is in {kept}")
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_recording_is_named_once() {
+        let out = Path::new("run/rehearsal2");
+        let said = in_the_air((false, out), "hold", ": Ctrl-C");
+        assert!(said.contains("mode hold: Ctrl-C; its recording is in run/rehearsal2"), "{said}");
+        let twin = in_the_air((true, out), "hold", "");
+        assert_eq!(twin, "the twin was left in the air, mode hold");
     }
 }

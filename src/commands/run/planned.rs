@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use mavid::config::read_limits;
+use mavid::plan::Extremes;
 use mavid::study::PlanStudy;
 use mavid::text;
 use mavid::vehicle::Vehicle;
@@ -29,6 +30,7 @@ const PRODUCTS: [&str; 3] = ["ixy", "ixz", "iyz"];
 pub fn first(context: &Context<'_>, vehicle: &Vehicle) -> Result<PathBuf, CommandError> {
     let path = context.folder.plan(1);
     if path.exists() {
+        inside(context, vehicle, &path)?;
         output::message(&format!("trajectory: {}, which is there", text::path(&path)));
         return Ok(path);
     }
@@ -55,6 +57,18 @@ pub fn first(context: &Context<'_>, vehicle: &Vehicle) -> Result<PathBuf, Comman
     });
     output::message(&format!("{flight_s:.0} s of trajectory inside the room{errors}"));
     Ok(path)
+}
+
+/// A trajectory that is there keeps the room of the folder.
+fn inside(context: &Context<'_>, vehicle: &Vehicle, path: &Path) -> Result<(), CommandError> {
+    let (course, limits) = follows::course(context, vehicle, path)?;
+    room::holds(&limits, &Extremes::of(course.path(), vehicle), vehicle).map_err(|why| {
+        let (plan, limits) = (text::path(path), text::path(&context.folder.limits()));
+        CommandError::Input(format!(
+            "{plan}: expected a trajectory inside the room of {limits}, got a wider one ({why}): remove {plan}, so that one is \
+             planned for this room"
+        ))
+    })
 }
 
 /// The trajectory of a further flight, from the one that `explain --next` designed.

@@ -39,7 +39,7 @@ pub fn rehearse(context: &Context<'_>, vehicle: &Vehicle, trajectory: &Path) -> 
         .word("--transmitter");
     let (embedded, step) = Embedded::start(&step)?;
     context.tell(&step);
-    let twin = Target { connect: embedded.address(), system: None, embedded: Some(embedded) };
+    let twin = Target { connect: embedded.address(), system: None, embedded: Some(embedded), is_twin: true };
     let out = free(context)?;
     let step = step_of(context, &twin, (trajectory, &out), Logging::Left);
     let flown = fly(context, &twin, &step);

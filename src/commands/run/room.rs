@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use mavid::plan::{Reach, floor_m, with_room};
+use mavid::config::read_limits;
+use mavid::plan::{Extremes, Reach, floor_m, with_room};
+use mavid::text::{self, compact};
 use mavid::units::deg_from_rad;
 use mavid::vehicle::{Limits, Vehicle};
 
@@ -16,6 +18,8 @@ pub const USUAL_M: [f64; 3] = [4.0, 4.0, 3.0];
 const SIDES_M: (f64, f64) = (0.5, 200.0);
 /// Where the lowest point of a flight is, if the room is high enough, m.
 const LOW_M: f64 = 1.0;
+/// Lengths that are the same, m: the file has them to a tenth of a millimetre.
+const SAME_M: f64 = 1e-3;
 /// A flight has at least this much to climb and to sink, m, ...
 const LEAST_HEIGHT_M: f64 = 0.3;
 /// ... and this much to each side.
@@ -85,6 +89,54 @@ pub fn hover_m(limits: &Limits, vehicle: &Vehicle) -> f64 {
     (50.0 * (low_m + high_m)).round() / 100.0
 }
 
+/// The room that is given does not contradict the file `limits.toml`, if the folder has one.
+///
+/// # Errors
+/// It does, or the file cannot be read.
+pub fn same_room(folder: &Folder, given: Option<&[f64]>) -> Result<(), CommandError> {
+    let path = folder.limits();
+    let (Some(given), true) = (given, path.exists()) else { return Ok(()) };
+    let known = sides_in(&read_limits(&path)?);
+    let is_same = |(known, given): (&Option<f64>, &f64)| known.is_some_and(|m| (m - given).abs() < SAME_M);
+    if known.iter().zip(given).all(is_same) {
+        return Ok(());
+    }
+    let side = |side: &Option<f64>| side.map_or_else(|| "unbounded".to_owned(), compact);
+    let known = known.iter().map(side).collect::<Vec<_>>().join(",");
+    Err(CommandError::Input(format!(
+        "--room: expected the {known} m of {}, which is there, got {}: give another folder with --out, or remove limits.toml \
+         and plan.toml, so that a flight in the other room is planned",
+        text::path(&path),
+        came(given)
+    )))
+}
+
+/// Length, width and height of the room of these limits, m.
+fn sides_in(limits: &Limits) -> [Option<f64>; 3] {
+    let twice = |half: f64| 2.0 * half;
+    [limits.x_max_m.map(twice), limits.y_max_m.map(twice), limits.z_max_m]
+}
+
+/// Along a trajectory with these extremes the rotors keep walls and ceiling of the limits.
+///
+/// # Errors
+/// Which of them they do not keep.
+pub fn holds(limits: &Limits, extremes: &Extremes, vehicle: &Vehicle) -> Result<(), String> {
+    let reach = Reach::of(vehicle);
+    let side_m = |axis: usize| extremes.high_m[axis].max(-extremes.low_m[axis]) + reach.side_m;
+    let bounds = [
+        ("x_max_m", limits.x_max_m, side_m(0)),
+        ("y_max_m", limits.y_max_m, side_m(1)),
+        ("z_max_m", limits.z_max_m, extremes.high_m[2] + reach.up_m),
+    ];
+    for (name, bound_m, needed_m) in bounds {
+        if let Some(bound_m) = bound_m.filter(|bound_m| needed_m > bound_m + SAME_M) {
+            return Err(format!("{name} is {}, and its rotors reach {needed_m:.2} m", compact(bound_m)));
+        }
+    }
+    Ok(())
+}
+
 /// The room in the file `limits.toml` of the folder: that of `given`, or the one that is agreed to. A file that is there stays.
 ///
 /// # Errors
@@ -97,9 +149,7 @@ pub fn of_folder(
 ) -> Result<(), CommandError> {
     let path = folder.limits();
     if path.exists() {
-        if given.is_some() {
-            output::message("the room of limits.toml stays; remove the file to state another one");
-        }
+        output::message(&format!("room: {}, which is there", text::path(&path)));
         return Ok(());
     }
     let option = |why: String| CommandError::Input(format!("--room: expected {why}"));
@@ -173,6 +223,42 @@ mod tests {
         assert_eq!(with_room(&read, &vehicle).notes, []);
         let hover_m = hover_m(&read, &vehicle);
         assert!(hover_m > read.z_min_m.unwrap() && hover_m < 5.0);
+    }
+
+    #[test]
+    fn a_folder_has_one_room() {
+        let place = std::env::temp_dir().join(format!("mavid-room-{}", std::process::id()));
+        let folder = Folder::at(place).unwrap();
+        let vehicle = random_vehicle(1).truth;
+        assert!(same_room(&folder, Some(&[9.0, 9.0, 9.0])).is_ok(), "nothing is there");
+        let limits = limits_in([4.0, 4.0, 3.0], &vehicle).unwrap();
+        std::fs::write(folder.limits(), text_of(&limits)).unwrap();
+        assert!(same_room(&folder, None).is_ok() && same_room(&folder, Some(&[4.0, 4.0, 3.0])).is_ok());
+        let other = same_room(&folder, Some(&[2.0, 2.0, 2.0])).unwrap_err();
+        assert_eq!(other.status(), 2);
+        let said = other.to_string();
+        assert!(
+            said.contains("expected the 4,4,3 m of") && said.contains("got 2,2,2: give another"),
+            "{said}"
+        );
+        std::fs::write(folder.limits(), "[limits]\nx_max_m = 2.0\n").unwrap();
+        let said = same_room(&folder, Some(&[4.0, 4.0, 3.0])).unwrap_err().to_string();
+        assert!(said.contains("expected the 4,unbounded,unbounded m of"), "{said}");
+        std::fs::remove_dir_all(folder.path()).unwrap();
+    }
+
+    #[test]
+    fn a_trajectory_of_a_larger_room_is_not_held() {
+        let vehicle = random_vehicle(1).truth;
+        let limits = limits_in([4.0, 4.0, 3.0], &vehicle).unwrap();
+        let reach = |side: f64| Extremes {
+            low_m: [-side, -side, 1.0],
+            high_m: [side, side, 1.5],
+            ..Extremes::default()
+        };
+        assert_eq!(holds(&limits, &reach(1.0), &vehicle), Ok(()));
+        let said = holds(&limits, &reach(1.95), &vehicle).unwrap_err();
+        assert!(said.contains("x_max_m is 2, and its rotors reach"), "{said}");
     }
 
     #[test]

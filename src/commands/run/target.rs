@@ -22,6 +22,8 @@ pub struct Target {
     pub system: Option<u32>,
     /// the one that this program started
     pub embedded: Option<Embedded>,
+    /// it is that one, in place of the vehicle of the run
+    pub is_twin: bool,
 }
 
 impl Target {
@@ -30,7 +32,7 @@ impl Target {
         let system = context.args.system_id;
         if let Some(connect) = &context.args.connect {
             crate::commands::network::address("--connect", connect)?;
-            return Ok(Self { connect: connect.clone(), system, embedded: None });
+            return Ok(Self { connect: connect.clone(), system, embedded: None, is_twin: false });
         }
         let args = context.args;
         let autopilot = args.autopilot.and_then(mavid::autopilot::Autopilot::stack);
@@ -45,7 +47,7 @@ impl Target {
         let step = step.maybe("--effects", args.effects.as_ref());
         let (embedded, step) = Embedded::start(&step)?;
         context.tell(&step);
-        Ok(Self { connect: embedded.address(), system, embedded: Some(embedded) })
+        Ok(Self { connect: embedded.address(), system, embedded: Some(embedded), is_twin: false })
     }
 
     /// As the arguments of a conversation.

@@ -16,8 +16,10 @@ use mavid::vehicle::{Guessed, Vehicle};
 
 use super::ask::number;
 use super::context::Context;
+use super::folder::Folder;
 use super::step::Step;
 use super::target::Target;
+use crate::cli::RunArgs;
 use crate::commands::log::{Answered, parameters_of_vehicle};
 use crate::commands::sitl::DEFAULT_VEHICLE;
 use crate::commands::{CommandError, output, vehicle};
@@ -38,7 +40,7 @@ pub fn of_folder(context: &Context<'_>, target: &mut Target) -> Result<Vehicle, 
     let path = context.folder.vehicle();
     let args = context.args;
     if path.exists() {
-        same_vehicle(context, &path)?;
+        output::message(&format!("vehicle: {}, which is there", text::path(&path)));
     } else if let Some(file) = &args.vehicle {
         read_vehicle(file)?;
         let text = std::fs::read(file);
@@ -58,9 +60,16 @@ pub fn of_folder(context: &Context<'_>, target: &mut Target) -> Result<Vehicle, 
     Ok(loaded.vehicle)
 }
 
-/// What is given does not contradict the file that is there.
-fn same_vehicle(context: &Context<'_>, path: &Path) -> Result<(), CommandError> {
-    let (args, shown) = (context.args, text::path(path));
+/// What is given does not contradict the vehicle's file, if the folder has one.
+///
+/// # Errors
+/// It does, or the file cannot be read.
+pub fn same_vehicle(folder: &Folder, args: &RunArgs) -> Result<(), CommandError> {
+    let path = &folder.vehicle();
+    if !path.exists() {
+        return Ok(());
+    }
+    let shown = text::path(path);
     let known = read_vehicle(path)?.vehicle.body.mass_kg;
     let another = "give another folder with --out, or change the file";
     if let Some(mass_kg) = args.mass.filter(|mass_kg| (mass_kg - known).abs() > SAME * known) {
@@ -73,7 +82,6 @@ fn same_vehicle(context: &Context<'_>, path: &Path) -> Result<(), CommandError> 
         let what = format!("--vehicle: expected what is in {shown}, got {}: {another}", text::path(file));
         return Err(CommandError::Input(what));
     }
-    output::message(&format!("vehicle: {shown}, which is there"));
     Ok(())
 }
 

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use mavid::config::{parse_vehicle, read_vehicle};
 use mavid::fly::Record;
+use mavid::fly::view::TWIN;
 use mavid::link::Address;
 use mavid::study::{ExplainStudy, check_given};
 use mavid::vehicle::Vehicle;
@@ -118,6 +119,8 @@ struct FlownFlights {
 /// Flies until a further flight would bring nothing that is needed, or nobody wants one.
 fn all_flights(context: &Context<'_>) -> Result<FlownFlights, CommandError> {
     context.stage("Vehicle");
+    vehicle::same_vehicle(&context.folder, context.args)?;
+    room::same_room(&context.folder, context.args.room.as_deref())?;
     taken_up::take_up(context)?;
     let flights = context.folder.flights();
     let is_over = flights.len() >= context.flights_max();
@@ -151,7 +154,7 @@ fn fly_all(
         let trajectory = planned::first(context, vehicle)?;
         let Some(target) = target.as_deref_mut() else { return Err(nothing_flown()) };
         if context.args.rehearse {
-            context.stage("Rehearsal on the embedded twin");
+            context.stage(&format!("Rehearsal with {TWIN}"));
             rehearsal::prepare(context, target, vehicle.body.mass_kg)?;
             rehearsal::rehearse(context, vehicle, &trajectory)?;
         }

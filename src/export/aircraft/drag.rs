@@ -13,6 +13,8 @@ use crate::export::source::Source;
 use crate::text::{significant, with_error};
 use crate::units::{AIR_DENSITY_KG_M3, air_density_ratio};
 
+/// The effects that the estimator's drag holds.
+const EFFECTS: [&str; 2] = ["linear_drag", "quadratic_drag"];
 /// Largest coefficient of momentum drag that both autopilots document, 1/s.
 const MOST_MOMENTUM: f64 = 1.0;
 /// Smallest coefficients that both take for more than none: of momentum drag, 1/s, and of a bluff body, kg/m^2.
@@ -44,6 +46,7 @@ pub(super) fn drag(
     ];
     if all.iter().any(|(_, found)| matches!(found, Coefficient::Beyond)) {
         source.note("the drag of the estimator is left out as a whole: with a part of it alone the wind would come out wrong");
+        EFFECTS.into_iter().for_each(|id| source.refuse(id));
         return Vec::new();
     }
     if all.iter().all(|(_, found)| matches!(found, Coefficient::Absent)) {
@@ -51,8 +54,13 @@ pub(super) fn drag(
             "{} and {}/{} are not written: the model contains no significant drag",
             names.momentum, names.ballistic[0], names.ballistic[1]
         ));
+        EFFECTS.into_iter().for_each(|id| source.refuse(id));
         return Vec::new();
     }
+    let found = |found: &Coefficient| matches!(found, Coefficient::Found(_));
+    let [(_, linear), quadratic @ ..] = &all;
+    let held = [found(linear), quadratic.iter().any(|(_, of_axis)| found(of_axis))];
+    EFFECTS.into_iter().zip(held).filter(|(_, is_held)| !is_held).for_each(|(id, _)| source.refuse(id));
     tell_form(source, table);
     let control = names
         .control
@@ -89,7 +97,6 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
         ));
     }
     if value > MOST_MOMENTUM {
-        source.refuse("linear_drag");
         source.note(format!(
             "{name} would be {value:.3} 1/s, more than the {MOST_MOMENTUM} that the autopilot documents"
         ));
@@ -125,7 +132,6 @@ fn bluff(
         return Coefficient::Absent;
     }
     if value <= LEAST_BALLISTIC {
-        source.refuse("quadratic_drag");
         source.note(format!(
             "{name} would be {value:.3} kg/m^2, and the autopilot takes {LEAST_BALLISTIC} and less for none"
         ));

@@ -7,7 +7,7 @@ use super::parameter::AircraftParameter;
 use super::table::Table;
 use crate::export::axes::frd;
 use crate::export::source::Source;
-use crate::text::with_error;
+use crate::text::{compact, with_error};
 
 /// PX4's default of CA_ROTORn_CT.
 const CT: f64 = 6.5;
@@ -51,18 +51,24 @@ fn coefficients(source: &mut Source<'_>, determined: &Determined<'_>) -> Vec<Air
     let Some(std) = determined.std("weak_rotor", "factor") else { return Vec::new() };
     let rotor = source.take_or("weak_rotor", "rotor", f64::NAN);
     let factor = source.take("weak_rotor", "factor");
+    let factors = source.rotor_factors();
     let one = |(index, rotor_file): (usize, &crate::vehicle::Rotor)| {
         let is_weak = (index as f64 - rotor).abs() < 0.5;
         let name = format!("CA_ROTOR{index}_CT");
-        let why = format!("{}, relative to the others", rotor_file.motor_words(index));
+        let motor = rotor_file.motor_words(index);
         if is_weak {
             let why = format!(
-                "{why}: it gives {} of their thrust; repair it rather than fly with this",
+                "{motor}: it gives {} of the others' thrust; repair it rather than fly with this",
                 with_error(factor, std)
             );
             AircraftParameter::number(name, (CT * factor, CT * std), "-", why)
         } else {
-            AircraftParameter::switch(name, CT, false, why)
+            let own = factors.get(index).copied().unwrap_or(1.0);
+            let why = format!(
+                "{motor}: PX4's own {CT}{}, beside which the weak one's stands; PX4 takes their ratios alone, whose error is the weak one's",
+                if own < 1.0 { format!(" times {} of the model", compact(own)) } else { String::new() }
+            );
+            AircraftParameter::switch(name, CT * own, false, why)
         }
     };
     source.vehicle.rotors.iter().enumerate().map(one).collect()

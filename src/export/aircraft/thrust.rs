@@ -82,6 +82,7 @@ fn curve(
     let value = at(curvature);
     let (least, most) = names.curve_bounds;
     if !(least..=most).contains(&value) {
+        source.refuse("thrust_curve");
         source.note(format!(
             "{} is left out: the curve that was identified would need {value:.3}, and the autopilot documents {least} to {most}",
             names.curve
@@ -122,8 +123,8 @@ fn hover(
     let by_curve = air_ratio * factor_std * command * (1.0 - command);
     let voltage = source.value("battery_sag", "full_voltage");
     let voltage = voltage.map_or_else(
-        || "at the battery voltages of the flight".to_owned(),
-        |full_v| format!("at {full_v:.2} V"),
+        || "at the battery voltage of the flight (the model file does not hold the voltage)".to_owned(),
+        |full_v| format!("at a battery voltage of {full_v:.2} V"),
     );
     let why = format!(
         "weight of {:.4} kg over full thrust of all rotors {voltage}, with {} = {factor:.3}; {air}",

@@ -16,6 +16,8 @@ const ALWAYS: [&str; 5] = ["if setpoints end", "battery", "fence", "room", TAKEO
 /// The page that is shown before the vehicle is armed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Page {
+    /// that it is another vehicle than may be thought
+    of: Option<String>,
     /// warnings, the worst first
     warnings: Vec<Finding>,
     /// facts about the trajectory and the failsafes
@@ -34,9 +36,15 @@ impl Page {
             good.filter(|finding| ALWAYS.contains(&finding.subject))
                 .map(|finding| format!("{}: {}", finding.subject, finding.came)),
         );
-        let mut page = Self { warnings: Vec::new(), facts, drawing: drawing(situation) };
+        let mut page = Self { of: None, warnings: Vec::new(), facts, drawing: drawing(situation) };
         page.warn_of(findings);
         page
+    }
+
+    /// Says first whose page it is.
+    #[must_use]
+    pub fn said_of(self, of: Option<String>) -> Self {
+        Self { of, ..self }
     }
 
     /// Replaces the warnings by those of these findings, the worst first.
@@ -52,7 +60,7 @@ impl Page {
     pub fn lines(&self, columns: usize) -> Vec<String> {
         let mut lines = Vec::new();
         let warnings = self.warnings.iter().map(Finding::to_string);
-        for text in warnings.chain(self.facts.iter().cloned()) {
+        for text in self.of.iter().cloned().chain(warnings).chain(self.facts.iter().cloned()) {
             lines.extend(wrapped(&text, columns));
         }
         lines.extend(self.drawing.iter().cloned());

@@ -22,7 +22,7 @@ use crate::fly::outcome::{Level, Note, Outcome};
 use crate::fly::parameters::Parameters;
 use crate::fly::requests::LinkKind;
 use crate::fly::safety::Lead;
-use crate::fly::view::{Attitude, Battery, KeyCommand, LinkView, Phase, ViewModel};
+use crate::fly::view::{Attitude, Battery, KeyCommand, LinkView, Phase, TWIN, ViewModel};
 use crate::link::{LinkEvent, LinkWriter, ReceivedFrame};
 use crate::text;
 use crate::units::deg_from_rad;
@@ -77,7 +77,10 @@ impl Drive {
         clock: Clock,
         (place, estimating, judging): (Place, Estimating, Judging),
     ) -> Self {
-        let mut model = ViewModel { title: place.vehicle.name.clone(), ..ViewModel::default() };
+        let is_twin = flight.sortie().settings.is_twin;
+        let title =
+            if is_twin { format!("{} (twin)", place.vehicle.name) } else { place.vehicle.name.clone() };
+        let mut model = ViewModel { title, is_twin, ..ViewModel::default() };
         model.tracking.limit_m = Some(flight.sortie().settings.tracking_max_m);
         let waits = format!("{}: waiting for a vehicle", place.address);
         let notes = vec![Note::new(clock.elapsed(), Level::Information, "link", waits)];
@@ -203,7 +206,8 @@ impl Drive {
         if let Some(decoder) = cleared.decoder {
             self.estimating.begin(decoder, live);
         }
-        self.model.page = Some(Arc::new(cleared.page));
+        let of = self.model.is_twin.then(|| format!("what flies now is {TWIN}"));
+        self.model.page = Some(Arc::new(cleared.page.said_of(of)));
     }
 
     fn keep_parameters(&mut self, now: Duration, parameters: &Parameters) {

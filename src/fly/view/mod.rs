@@ -16,7 +16,7 @@ pub use instruments::{bar, horizon, path_map};
 pub use keys::{KILL_WORD, KeyCommand, Keys};
 pub use landed::{LandedView, StageView, render_landed};
 pub use model::{
-    Attitude, Battery, EventLine, HISTORY, LinkView, ParameterRow, Phase, Trace, Tracking, ViewModel,
+    Attitude, Battery, EventLine, HISTORY, LinkView, ParameterRow, Phase, TWIN, Trace, Tracking, ViewModel,
 };
 pub use plain::PlainLog;
 pub use render::{page_rows, render};

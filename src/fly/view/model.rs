@@ -7,6 +7,8 @@ use crate::fly::preflight::Page;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+/// What is said of the simulated twin, lest it is taken for the vehicle.
+pub const TWIN: &str = "the simulated twin, not your vehicle";
 /// Values that a trace keeps; older ones are forgotten.
 pub const HISTORY: usize = 120;
 /// Places of the path that are kept; older ones are forgotten.
@@ -128,6 +130,8 @@ pub struct ParameterRow {
 pub struct ViewModel {
     /// vehicle and autopilot
     pub title: String,
+    /// it is the simulated twin of the operator's vehicle
+    pub is_twin: bool,
     /// what the flight is doing, in a few words
     pub state: String,
     /// its colour

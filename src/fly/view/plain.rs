@@ -1,7 +1,7 @@
 //! The flight as lines, for a log or a terminal that cannot draw.
 
 use super::keys::ARM_WORD;
-use super::model::{EventLine, ParameterRow, Phase, ViewModel};
+use super::model::{EventLine, ParameterRow, Phase, TWIN, ViewModel};
 use crate::fly::finding::Level;
 
 /// Between two lines of state, s.
@@ -63,7 +63,8 @@ impl PlainLog {
             lines.extend(page.lines(if self.columns > 0 { self.columns } else { COLUMNS }));
         }
         if model.awaits_word && !std::mem::replace(&mut self.word_said, true) {
-            lines.push(format!("type {ARM_WORD} and return to arm and fly; Ctrl-C ends it"));
+            let what = if model.is_twin { format!(" {TWIN}") } else { String::new() };
+            lines.push(format!("type {ARM_WORD} and return to arm and fly{what}; Ctrl-C ends it"));
         }
         if is_due(&mut self.state_s, model.elapsed_s, STATE_S) {
             lines.push(state_line(model));
@@ -97,6 +98,7 @@ fn event_line(event: &EventLine) -> String {
 
 fn state_line(model: &ViewModel) -> String {
     let mut parts = vec![model.state.clone()];
+    parts.extend(model.is_twin.then(|| TWIN.to_owned()));
     parts.extend(model.stall_s.map(|stall_s| format!("this computer stalled {stall_s:.1} s")));
     parts.extend((!model.mode.is_empty()).then(|| model.mode.clone()));
     parts.extend(model.progress_s.map(|(done_s, all_s)| format!("{done_s:.0} of {all_s:.0} s")));

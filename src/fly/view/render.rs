@@ -2,7 +2,7 @@
 
 use super::instruments::{bar, horizon, path_map};
 use super::keys::{ARM_WORD, KILL_WORD};
-use super::model::{ParameterRow, Phase, ViewModel};
+use super::model::{ParameterRow, Phase, TWIN, ViewModel};
 use super::plain::with_error;
 use super::spark::spark;
 use crate::fly::finding::Level;
@@ -82,6 +82,8 @@ fn before_flight(frame: &mut Frame<'_>, model: &ViewModel, page: &Page) {
     let typed = model.typed.as_deref().unwrap_or_default();
     let asked = if more {
         format!("line {end} of {all}: Space for more, Ctrl-C leaves")
+    } else if model.is_twin {
+        format!("{ARM_WORD}> {typed}_  type {ARM_WORD} to fly {TWIN}; Ctrl-C leaves")
     } else {
         format!("{ARM_WORD}> {typed}_   type {ARM_WORD} and Enter to arm and fly; Ctrl-C leaves, Up for more")
     };
@@ -212,18 +214,37 @@ fn motion_lines(model: &ViewModel) -> Vec<Line<'_>> {
 fn parameter_lines(model: &ViewModel, columns: u16) -> Vec<Line<'_>> {
     if model.parameters.is_empty() {
         let waits = model.parameters_await.as_deref().unwrap_or("it takes some seconds of the trajectory");
-        return vec![Line::raw(format!("nothing yet: {waits}"))];
+        let inside = usize::from(columns.saturating_sub(2));
+        return vec![Line::raw(whole_words(&format!("nothing yet: {waits}"), inside))];
     }
     let room = usize::from(columns).saturating_sub(NAME_COLUMNS + VALUE_COLUMNS + 4);
-    model.parameters.iter().map(|row| parameter_line(row, room)).collect()
+    let reason = usize::from(columns).saturating_sub(NAME_COLUMNS + 2);
+    model.parameters.iter().map(|row| parameter_line(row, (room, reason))).collect()
 }
 
-fn parameter_line(row: &ParameterRow, room: usize) -> Line<'_> {
+/// As much of a text as fits, to the end of a word.
+fn whole_words(text: &str, columns: usize) -> String {
+    if text.chars().count() <= columns {
+        return text.to_owned();
+    }
+    // a column for the dots
+    let fits: String = text.chars().take(columns).collect();
+    let end = fits.rfind(' ').unwrap_or(0);
+    format!("{}…", fits[..end].trim_end_matches([' ', ',', ':', ';', '(']))
+}
+
+/// Why a parameter has no value yet, in so many columns.
+fn not_yet(why: Option<&str>, columns: usize) -> String {
+    let why = why.map_or_else(String::new, |why| format!(": {why}"));
+    let long = format!("not determined yet{why}");
+    if long.chars().count() <= columns { long } else { whole_words(&format!("not yet{why}"), columns) }
+}
+
+fn parameter_line(row: &ParameterRow, (room, reason): (usize, usize)) -> Line<'_> {
     let name =
         Span::styled(format!("{:<NAME_COLUMNS$}", row.name), Style::new().add_modifier(Modifier::BOLD));
     let Some((value, std)) = row.value.zip(row.std) else {
-        let why = row.why.as_deref().map_or_else(String::new, |why| format!(": {why}"));
-        return Line::from(vec![name, Span::raw(format!("not determined yet{why}"))]);
+        return Line::from(vec![name, Span::raw(not_yet(row.why.as_deref(), reason))]);
     };
     let value = format!("{} {}", with_error(value, std), row.unit);
     Line::from(vec![
@@ -252,7 +273,8 @@ fn event_list(frame: &mut Frame<'_>, model: &ViewModel, area: Rect) {
         })
         .collect();
     // the newest is at the end
-    boxed(frame, "Events", lines.split_off(lines.len().saturating_sub(room)), area);
+    let title = if model.is_twin { format!("Events of {TWIN}") } else { "Events".to_owned() };
+    boxed(frame, &title, lines.split_off(lines.len().saturating_sub(room)), area);
 }
 
 fn help(model: &ViewModel) -> Line<'_> {
@@ -264,5 +286,26 @@ fn help(model: &ViewModel) -> Line<'_> {
         None => Line::raw(format!(
             "h hold   l land   r return   :{KILL_WORD} Enter stops the motors   Ctrl-C end"
         )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_word_of_a_reason_is_cut() {
+        let why = "the length of the arms is a guess (usual for the mass)";
+        assert_eq!(not_yet(Some(why), 34), "not yet: the length of the arms…");
+        assert_eq!(not_yet(Some("fly more"), 34), "not determined yet: fly more");
+        assert_eq!(
+            (not_yet(None, 34).as_str(), not_yet(Some(why), 5).as_str()),
+            ("not determined yet", "not…")
+        );
+        for columns in 10..60 {
+            let said = not_yet(Some(why), columns);
+            assert!(said.chars().count() <= columns, "{columns}: {said}");
+        }
+        assert_eq!(not_yet(Some(why), 100), format!("not determined yet: {why}"));
     }
 }

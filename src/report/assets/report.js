@@ -3,6 +3,7 @@
   'use strict';
   var HUES = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9'];
   var DARK = ['#56b4e9', '#ff8a3d', '#2fc99b', '#e5a3c6', '#f0bd3c', '#8fd0f5'];
+  var MARKS = { dashed: 'dashed', dots: 'dotted' };
   var SPAN = 'rgba(230,159,0,0.22)';
   var night = window.matchMedia('(prefers-color-scheme: dark)');
   var groups = {};
@@ -70,6 +71,8 @@
         Object.assign({ label: of.y_label, labelSize: 18, size: narrow ? 46 : 56 }, axis)
       ],
       series: series(of),
+      // a mark is a line as it is drawn
+      legend: { markers: { dash: function (u, index) { return MARKS[(of.lines[index - 1] || {}).stroke] || 'solid'; } } },
       bands: of.bands.map(function (band, place) {
         return { series: [first + 2 * place + 1, first + 2 * place], fill: faint(hue(band.colour)), dir: -1 };
       }),

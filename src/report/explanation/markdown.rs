@@ -4,26 +4,28 @@ use super::answer::answer;
 use super::motor::motor;
 use super::text::after;
 use crate::diagnose::called;
+use crate::note::{About, Note};
 use crate::report::number::{percent, significant, spoken, with_error};
-use crate::study::{ExplainStudy, Predicted, QUANTITIES};
+use crate::study::{ExplainStudy, Predicted, QUANTITIES, ValidationData};
 use std::fmt::Write;
 
 /// The summary.
 #[must_use]
 pub fn explanation_markdown(study: &ExplainStudy) -> String {
-    let mut page = format!("**{}**\n", escaped(&answer(study)));
+    let files = files(study);
+    let mut page = format!("**{}**\n", escaped(&bare(&answer(study), &files)));
     named(&mut page, study);
-    better(&mut page, study);
+    better(&mut page, study, &files);
     body(&mut page, study);
     for said in &study.notes {
-        let _ = write!(page, "\n> {}\n", escaped(&said.sentence()));
+        let _ = write!(page, "\n> {}\n", escaped(&sentence(said, &files)));
     }
     let flights: Vec<String> = study
         .given
         .inputs
         .iter()
         .map(|input| {
-            let name = input.path.rsplit(['/', '\\']).next().unwrap_or_default();
+            let name = file_name(&input.path);
             let hash: String = input.sha256.chars().take(12).collect();
             format!("`{}` (SHA-256 {hash}...)", name.replace('`', "'"))
         })
@@ -36,6 +38,63 @@ pub fn explanation_markdown(study: &ExplainStudy) -> String {
         env!("CARGO_PKG_VERSION")
     );
     page
+}
+
+/// The files of an answer, by their names as given.
+fn files(study: &ExplainStudy) -> Vec<&str> {
+    let held_out = match &study.shown_on {
+        ValidationData::Flights(inputs) => inputs.as_slice(),
+        _ => &[],
+    };
+    let inputs = study.given.inputs.iter().chain(held_out);
+    inputs
+        .flat_map(|input| {
+            std::iter::once(&input.path)
+                .chain(input.other_logs.iter().map(|(path, _)| path))
+                .map(String::as_str)
+        })
+        .collect()
+}
+
+/// A file's name without its folder.
+fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or_default()
+}
+
+/// Text in which files stand without their folders: `known` ones, and whatever else begins as a path does.
+fn bare(text: &str, known: &[&str]) -> String {
+    let mut text = text.to_owned();
+    let mut folders: Vec<(&str, &str)> = known
+        .iter()
+        .map(|path| path.split_at(path.len() - file_name(path).len()))
+        .filter(|(folder, _)| !folder.is_empty())
+        .collect();
+    // one may end as another does
+    folders.sort_by_key(|(folder, _)| std::cmp::Reverse(folder.len()));
+    for (folder, name) in folders {
+        let name = name.split([' ', ',']).next().unwrap_or_default();
+        text = text.replace(&format!("{folder}{name}"), name);
+    }
+    let word = |word: &str| {
+        let begin = word.len() - word.trim_start_matches(['(', '[', '`', '"', '\'']).len();
+        let (mark, path) = word.split_at(begin);
+        let begins = |with: &&str| path.len() > with.len() && path.starts_with(*with);
+        let is_path = ["/", "./", "../", "~/"].iter().any(begins) || path.get(1..3) == Some(":\\");
+        if is_path { format!("{mark}{}", file_name(path)) } else { word.to_owned() }
+    };
+    text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
+/// What a note says, with files by their names alone.
+fn sentence(note: &Note, known: &[&str]) -> String {
+    match &note.about {
+        About::File(names) => {
+            let names = bare(names, known);
+            let names: Vec<&str> = names.split(' ').map(file_name).collect();
+            format!("{}: {}", names.join(" "), bare(&note.text, known))
+        }
+        _ => bare(&note.sentence(), known),
+    }
 }
 
 /// Text that Markdown takes as text, on one line.
@@ -82,14 +141,14 @@ fn named(page: &mut String, study: &ExplainStudy) {
     table(page, &["effect", "parameter", "value", "unit"], &rows);
 }
 
-fn better(page: &mut String, study: &ExplainStudy) {
+fn better(page: &mut String, study: &ExplainStudy, files: &[&str]) {
     let (predicted, on) = match &study.holdout {
         Some(of) => (Some(of), study.shown_on.heading()),
         None => (study.identify.as_ref(), "flights explained".to_owned()),
     };
     let rows = predicted.map_or_else(Vec::new, rows_of);
     if !rows.is_empty() {
-        let _ = write!(page, "\nError of a prediction over 0.5 s ({}):\n", escaped(&on));
+        let _ = write!(page, "\nError of a prediction over 0.5 s ({}):\n", escaped(&bare(&on, files)));
     }
     let columns = ["", "unchanged", "rigid body", "model found", "better by", "unit"];
     table(page, &columns, &rows);
@@ -127,6 +186,19 @@ fn body(page: &mut String, study: &ExplainStudy) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_stand_without_their_folders() {
+        let known = ["/work/my logs/ap 12.bin", "m/radio.tlog, flight 2", "a.ulg", "C:\\logs\\b.bin"];
+        let of = |text: &str| bare(text, &known);
+        assert_eq!(of("read /work/my logs/ap 12.bin (slowly)"), "read ap 12.bin (slowly)");
+        assert_eq!(of("m/radio.tlog: 2 m/s, 0.3 N/(m/s)"), "radio.tlog: 2 m/s, 0.3 N/(m/s)");
+        assert_eq!(of("a.ulg and (/home/me/c.bin) and ../d.bin"), "a.ulg and (c.bin) and d.bin");
+        assert_eq!(of("C:\\logs\\b.bin, D:\\e.bin"), "b.bin, e.bin");
+        let note = Note::warning(About::File("logs/x.bin, m/radio.tlog".to_owned()), "slow: 3 m/s");
+        assert_eq!(sentence(&note, &known), "x.bin, radio.tlog: slow: 3 m/s");
+        assert_eq!(sentence(&Note::remark(About::Vehicle, "at /"), &known), "at /");
+    }
 
     #[test]
     fn words_of_others_stay_words() {
