@@ -5,7 +5,7 @@ use super::candidates::Candidate;
 use super::channels::{CHANNELS, Channels};
 use super::evidence::Weighted;
 use super::fit::Fitted;
-use super::named::Confusable;
+use super::named::{APART, Confusable};
 use super::rows::Rows;
 use super::score::at_once;
 use super::tested::Tested;
@@ -13,10 +13,6 @@ use super::trace::Trace;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Effects whose distance is below this many standard deviations are not distinguished. Set by judgement: an effect
-/// is named from four standard errors on, and one more is asked of a distinction; the pairs in the figures are by
-/// this value (`cargo bench --bench explain -- --pairs 12 --seed 2026112501`).
-pub(in crate::diagnose) const APART: f64 = 5.0;
 /// An effect of which another leaves more than this share of its norm is not similar to it, however weak it is:
 /// sqrt(3)/2, a cosine of one half. Only the list of confusable effects depends on it.
 const UNLIKE: f64 = 0.866;

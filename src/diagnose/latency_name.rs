@@ -1,11 +1,10 @@
 //! The name of a lag or delay that is larger than on every vehicle.
 
 use super::base::Base;
-use super::confusable::APART;
 use super::fit::Newton;
 use super::floors::FORM;
 use super::latency::{FAST_MOTOR_S, LatencyFinding, REFUSED, held_s, is_delay, stated_lag_s, with_latency};
-use super::named::{Confusable, Named, NamedParameter, Strength};
+use super::named::{APART, Confusable, Named, NamedParameter, Strength};
 use super::signature::LatencyKind;
 use super::signatures::{latency_signature, signature_of};
 use super::tested::Search;

@@ -1,6 +1,5 @@
 //! An effect that was named, with its values and the evidence for it.
 
-use super::confusable::APART;
 use crate::text::with_error;
 use std::fmt;
 
@@ -58,6 +57,10 @@ pub struct Strength {
     pub count: usize,
 }
 
+/// Effects whose distance is below this many standard deviations are not distinguished. Set by judgement: an effect
+/// is named from four standard errors on, and one more is asked of a distinction; the pairs in the figures are by
+/// this value (`cargo bench --bench explain -- --pairs 12 --seed 2026112501`).
+pub(in crate::diagnose) const APART: f64 = 5.0;
 /// Another effect that explains the same residual.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Confusable {

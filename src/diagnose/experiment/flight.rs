@@ -1,6 +1,6 @@
 //! The next flight and its expected results.
 
-use crate::diagnose::confusable::APART;
+use crate::diagnose::named::APART;
 use crate::diagnose::signatures::latency_kind;
 use crate::trajectory::FourierTrajectory;
 use crate::vehicle::Limits;
