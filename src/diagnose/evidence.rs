@@ -250,17 +250,6 @@ impl Weighted {
         self.normal.as_ref().map_or_else(|| DVector::zeros(part.len()), |normal| normal.solve(&part))
     }
 
-    /// The same with some of the coefficients held at none.
-    pub(super) fn part_in_with_held(&self, column: &DVector<f64>, held: &[usize]) -> DVector<f64> {
-        let part = self.part_in(column);
-        let Some(normal) = self.normal.as_ref().filter(|_| !held.is_empty()) else { return part };
-        let units = DMatrix::from_fn(part.len(), held.len(), |row, of| f64::from(u8::from(row == held[of])));
-        let moved = normal.solve(&units);
-        let of_held = |of: &DMatrix<f64>| DMatrix::from_fn(held.len(), held.len(), |i, j| of[(held[i], j)]);
-        let pulls = DVector::from_iterator(held.len(), held.iter().map(|&index| part[index]));
-        of_held(&moved).lu().solve(&pulls).map_or_else(|| part.clone(), |by| &part - moved * by)
-    }
-
     /// A column without the part that the nuisances explain.
     pub(super) fn project(&self, column: &DVector<f64>) -> DVector<f64> {
         match &self.normal {

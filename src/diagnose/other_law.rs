@@ -79,14 +79,11 @@ pub(super) fn of_other_laws(flights: &[Trace], last: &[Tested], fitted: &Fitted)
     let with_air = |term: &EffectTerm| drags(term) || term.signature.role.wind.is_some();
     let present = &fitted.base.effects;
     let go_along: Vec<bool> = present.iter().flat_map(|term| vec![with_air(term); term.free.len()]).collect();
-    let of = |is: fn(&EffectTerm, usize) -> bool| -> Vec<usize> {
-        let each = present.iter().flat_map(|term| term.free.iter().map(move |&slot| is(term, slot)));
-        let first = fitted.weighted.nuisances.len().saturating_sub(go_along.len());
-        each.enumerate().filter(|(_, is)| *is).map(|(place, _)| first + place).collect()
-    };
-    // where a drag acts is told by torques: held, a force cannot hide in it
-    let at_hubs = of(|term, slot| drags(term) && term.is_share_at_hubs(slot));
-    let amounts = of(|term, slot| drags(term) && term.is_amount(slot));
+    let first = fitted.weighted.nuisances.len().saturating_sub(go_along.len());
+    let is_drag =
+        present.iter().flat_map(|term| term.free.iter().map(|&slot| drags(term) && term.is_amount(slot)));
+    let drag_columns: Vec<usize> =
+        is_drag.enumerate().filter(|(_, is)| *is).map(|(place, _)| first + place).collect();
     let mut widest = 0.0;
     for law in other_laws(flights, last, fitted) {
         let part = &law.part;
@@ -98,15 +95,15 @@ pub(super) fn of_other_laws(flights: &[Trace], last: &[Tested], fitted: &Fitted)
             let Some(usual) = usual else { continue };
             let (told, std) = law.told(index);
             let column = weighted(column, &fitted.weighted.sigma);
-            let mut brings: DVector<f64> = fitted.weighted.part_in_with_held(&column, &at_hubs);
+            let mut brings: DVector<f64> = fitted.weighted.part_in(&column);
             let effects = brings.len() - go_along.len();
             for (place, brings) in brings.iter_mut().enumerate() {
                 let goes_along = place.checked_sub(effects).is_some_and(|place| go_along[place]);
                 *brings *= if goes_along { 1.0 } else { 0.0 };
             }
-            let most = amounts.iter().map(|&index| brings[index].abs()).fold(0.0, f64::max);
-            if most > MOST_OF_OTHER {
-                brings *= MOST_OF_OTHER / most;
+            // drags that the flights do not tell from their own winds and tilts tell nothing of another law
+            if drag_columns.iter().any(|&index| brings[index].abs() > MOST_OF_OTHER) {
+                continue;
             }
             added += &brings * brings.transpose() * second_moment(told, std, usual);
         }
