@@ -23,6 +23,10 @@ const BY_RATE_LAW: &str = "over 0.5 s, a constant state predicts body rates or a
                            it below [identified.rate_law], and `mavid validate` predicts with it. A simulator does not, and \
                            its rates are worse than a constant state. With a trajectory that turns the vehicle more (`mavid plan`), the torques can be compared";
 
+/// Names serve where they lower the errors over 0.5 s of how a vehicle moves, or of how it turns, by more, percent. Set by judgement: chance
+/// does not do this on data that were not used.
+const HELPS_PERCENT: f64 = 10.0;
+
 /// Mean over the quantities of how much smaller errors over 0.5 s have to be without an effect. The model without it has the other
 /// parameters of the model with it, which speaks for the effect; predictions are repeated to a tenth of this.
 const LEAST_BETTER_PERCENT: f64 = 1.0;
@@ -116,7 +120,9 @@ impl ExplainStudy {
         let named = self.explanation.named.iter();
         let worse_percent = -self.holdout.as_ref()?.work_of_effects()?;
         let names: Vec<String> = named.map(|named| brief(named, &self.given.vehicle, true)).collect();
-        let refuted = worse_percent > 0.0 && !names.is_empty() && self.other_vehicle().is_none();
+        // what explains how it moves is not refuted by how it turns, and the other way round
+        let helps = self.holdout.as_ref()?.better_work_of_effects().is_some_and(|work| work > HELPS_PERCENT);
+        let refuted = worse_percent > 0.0 && !helps && !names.is_empty() && self.other_vehicle().is_none();
         refuted.then_some(Refuted { names, worse_percent })
     }
 

@@ -96,9 +96,20 @@ impl Predicted {
     /// predicts better does not count.
     #[must_use]
     pub fn work_of_effects(&self) -> Option<f64> {
-        let each: Vec<f64> = self
-            .half_second()
-            .into_iter()
+        Self::work_on(&self.half_second())
+    }
+
+    /// The same of how the vehicle moves (position, velocity) and of how it turns (attitude, rates): the better one.
+    #[must_use]
+    pub fn better_work_of_effects(&self) -> Option<f64> {
+        let all = self.half_second();
+        let (moves, turns) = all.split_at(all.len() / 2);
+        [moves, turns].into_iter().filter_map(Self::work_on).reduce(f64::max)
+    }
+
+    fn work_on(quantities: &[Option<Compared>]) -> Option<f64> {
+        let each: Vec<f64> = quantities
+            .iter()
             .flatten()
             .map(|Compared { before, after, .. }| improvement_percent(before.value, after.value))
             .filter(|percent| percent.is_finite())
@@ -158,6 +169,11 @@ mod tests {
         let found = predicted(of(2.0, 1.0), of(4.0, 5.0)).work_of_effects().unwrap();
         assert!((found - 12.5).abs() < 1e-12, "{found}");
         assert_eq!(predicted(None, None).work_of_effects(), None);
+        // how it moves is half as wrong, how it turns is three times as wrong
+        let turned =
+            Predicted { open_loop: vec![window(0.5, of(2.0, 1.0), of(1.0, 3.0))], improvement_percent: None };
+        assert_eq!(turned.work_of_effects(), Some(-75.0));
+        assert_eq!(turned.better_work_of_effects(), Some(50.0));
     }
 
     #[test]
