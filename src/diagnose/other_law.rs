@@ -14,7 +14,7 @@ use super::tested::Tested;
 use super::trace::Trace;
 use nalgebra::{DMatrix, DVector};
 
-/// Most that one unit of a law, SI, is of another one: the ratio of their forces at the speeds from 0.02 to 50 m/s.
+/// Most units of one law that one unit of another one can be, SI: the ratio of both forces at speeds from 0.02 to 50 m/s.
 const MOST_OF_OTHER: f64 = 50.0;
 
 /// Adds to the covariance of a fit's effects what the drag laws among the candidates that were not taken may bring into them.
@@ -101,7 +101,7 @@ pub(super) fn of_other_laws(flights: &[Trace], last: &[Tested], fitted: &Fitted)
                 let goes_along = place.checked_sub(effects).is_some_and(|place| go_along[place]);
                 *brings *= if goes_along { 1.0 } else { 0.0 };
             }
-            // drags that the flights do not tell from their own winds and tilts tell nothing of another law
+            // the flights then hardly tell the drag's own coefficient, and what would come into it means nothing
             if drag_columns.iter().any(|&index| brings[index].abs() > MOST_OF_OTHER) {
                 continue;
             }

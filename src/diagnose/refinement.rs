@@ -72,8 +72,8 @@ pub(super) fn refine(
     make_physical(traces, (vehicle, found.by_wider_window), &mut found.after)
 }
 
-/// The sizes of the effects, with what is left over in their errors; those that then have no name leave. `start` is a model with values that the
-/// reconstructed flight path tells.
+/// The sizes of the effects, with what is left over in their errors. Effects that then have no name leave. `start` is a model with values
+/// that the reconstructed flight path tells.
 fn estimate_sizes(
     (flights, traces): (&[Signals], &[Trace]),
     (vehicle, trim): (&Vehicle, &Trim),
@@ -105,95 +105,94 @@ fn estimate_sizes(
     Ok(())
 }
 
-/// The place of an effect that is nearer to nothing than the usual two errors, with what is left over in them; the nearest one. A lag or delay has
-/// its latency, which may be certain while its kind is not.
+/// The place of the effect that is nearest to nothing, where that is nearer than the usual two standard errors with what is left over in
+/// them. A lag or delay has its latency, which may be certain while its kind is not.
 fn uncertain(fitted: &Fitted) -> Option<usize> {
-    let mut first = fitted.rows.nuisances.len();
-    let mut nearest: Option<(f64, usize)> = None;
-    for (place, present) in fitted.base.effects.iter().enumerate() {
-        let Strength { z, count, .. } = fitted_strength(fitted, present, first);
-        first += present.free.len();
-        let judged = count > 0 && present.signature.role.latency.is_none();
-        if judged && z < CERTAIN && nearest.is_none_or(|(least, _)| z < least) {
-            nearest = Some((z, place));
-        }
-    }
-    nearest.map(|(_, place)| place)
+    let each = with_first_columns(fitted).enumerate();
+    let judged = each.filter(|(_, (present, _))| present.signature.role.latency.is_none());
+    let strengths = judged.map(|(place, (present, first))| (place, fitted_strength(fitted, present, first)));
+    weakest(strengths, CERTAIN).map(|(_, place)| place)
 }
 
-/// Removes effects without a name from the model: those of ordinary size, those that are not certain, those that the accelerometer
-/// does not feel, those that the flight could not have shown, and those that hover excludes. Returns whether there were any.
+/// The smallest normal deviate below `least` among the strengths of effects, with the place of its effect.
+fn weakest(strengths: impl Iterator<Item = (usize, Strength)>, least: f64) -> Option<(f64, usize)> {
+    let told = strengths.filter(|(_, of)| of.count > 0 && of.z < least).map(|(place, of)| (of.z, place));
+    told.min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// Each effect of a fit with the column of its first free value.
+fn with_first_columns(fitted: &Fitted) -> impl Iterator<Item = (&EffectTerm, usize)> {
+    fitted.base.effects.iter().scan(fitted.rows.nuisances.len(), |next, present| {
+        let first = *next;
+        *next += present.free.len();
+        Some((present, first))
+    })
+}
+
+/// Removes effects without a name from the model. Returns whether there were any. Those that the flights could not have shown leave first:
+/// they take from the others, which are then judged without them.
 fn leave_out_unnamed(
     (traces, given): (&[Trace], (&[Signals], &Vehicle)),
     trim: &Trim,
     found: &mut Search,
 ) -> Result<bool, PhysicsError> {
-    let all = found.after.base.clone();
-    let felt = Felt::of(&found.after);
-    let mut first = found.after.rows.nuisances.len();
-    // what is beyond its bounds takes from the others: they are judged without it
-    let any_beyond = is_any_beyond(&found.after);
-    let mut weakest: Option<(f64, usize)> = None;
-    let mut kept: Vec<bool> = Vec::new();
-    for (place, present) in all.effects.iter().enumerate() {
-        let beyond = is_beyond_showing(&found.after, present, first);
-        let strength = fitted_strength(&found.after, present, first);
-        let refuted = felt.as_ref().is_some_and(|felt| felt.refutes(&found.after, present, first));
-        // a bend acts on the commands' own noise, and that is in the torques
-        let bent = present.signature.role.bends_thrust.is_some() && is_fed_back(traces);
-        let unseen = bent
-            && (!shows_in_forces(&found.after, present, first) || is_noise(present, traces, &found.after));
-        let unbalanced = is_refuted(given, &found.after, present, first);
-        first += present.free.len();
-        let ordinary = is_ordinary(present, &all);
-        let keeps = if any_beyond { !beyond } else { !(refuted || unseen || unbalanced || ordinary) };
-        if !keeps {
-            tracing::info!(
-                effect = present.id(),
-                beyond,
-                refuted,
-                unseen,
-                unbalanced,
-                ordinary,
-                "effect gets no name"
-            );
-        }
-        kept.push(keeps);
-        if !any_beyond
-            && strength.count > 0
-            && strength.z < STAYS
-            && weakest.is_none_or(|(least, _)| strength.z < least)
-        {
-            weakest = Some((strength.z, place));
-        }
-    }
-    if let Some(place) = trim.refuted(&all)?.filter(|_| !any_beyond) {
-        tracing::info!(effect = all.effects[place].id(), "hover shows no such balance");
-        kept[place] = false;
-    }
-    // two that explain much of each other are both uncertain: one leaves, and the other is judged again
-    if let Some((z, place)) = weakest {
-        tracing::info!(effect = all.effects[place].id(), z, "effect is not certain beside the others");
-        kept[place] = false;
-    }
-    if kept.iter().all(|kept| *kept) {
+    let fitted = &found.after;
+    let beyond: Vec<bool> = with_first_columns(fitted)
+        .map(|(present, first)| {
+            let beyond = is_beyond_showing(fitted, present, first);
+            if beyond {
+                tracing::info!(effect = present.id(), "the flights could not have shown the effect");
+            }
+            beyond
+        })
+        .collect();
+    let leaves = if beyond.contains(&true) { beyond } else { unnamed((traces, given), trim, fitted)? };
+    if !leaves.contains(&true) {
         return Ok(false);
     }
-    let mut base = all;
-    let mut each = kept.into_iter();
-    base.effects.retain(|_| each.next().unwrap_or(true));
+    let mut base = fitted.base.clone();
+    let mut each = leaves.into_iter();
+    base.effects.retain(|_| !each.next().unwrap_or(false));
     found.after = fit(traces, base, Newton::Held)?;
     Ok(true)
 }
 
-/// Whether any effect of a fit is beyond what the flights can show.
-fn is_any_beyond(fitted: &Fitted) -> bool {
-    let mut first = fitted.rows.nuisances.len();
-    fitted.base.effects.iter().any(|present| {
-        let own = first;
-        first += present.free.len();
-        is_beyond_showing(fitted, present, own)
-    })
+/// Which effects of a fit get no name: those of ordinary size, the least certain of those that are not certain, those that the
+/// accelerometer does not feel, and those that hover excludes.
+fn unnamed(
+    (traces, given): (&[Trace], (&[Signals], &Vehicle)),
+    trim: &Trim,
+    fitted: &Fitted,
+) -> Result<Vec<bool>, PhysicsError> {
+    let felt = Felt::of(fitted);
+    let is_unnamed = |(present, first): (&EffectTerm, usize)| {
+        let refuted = felt.as_ref().is_some_and(|felt| felt.refutes(fitted, present, first));
+        // a bend acts on the commands' own noise, and that is in the torques
+        let bent = present.signature.role.bends_thrust.is_some() && is_fed_back(traces);
+        let unseen = bent && (!shows_in_forces(fitted, present, first) || is_noise(present, traces, fitted));
+        let unbalanced = is_refuted(given, fitted, present, first);
+        let ordinary = is_ordinary(present, &fitted.base);
+        let is_unnamed = refuted || unseen || unbalanced || ordinary;
+        if is_unnamed {
+            let effect = present.id();
+            tracing::info!(effect, refuted, unseen, unbalanced, ordinary, "effect gets no name");
+        }
+        is_unnamed
+    };
+    let mut leaves: Vec<bool> = with_first_columns(fitted).map(is_unnamed).collect();
+    let effects = &fitted.base.effects;
+    if let Some(place) = trim.refuted(&fitted.base)? {
+        tracing::info!(effect = effects[place].id(), "hover shows no such balance");
+        leaves[place] = true;
+    }
+    // two that explain much of each other are both uncertain: one leaves, and the other is judged again
+    let strengths =
+        with_first_columns(fitted).map(|(present, first)| fitted_strength(fitted, present, first));
+    if let Some((z, place)) = weakest(strengths.enumerate(), STAYS) {
+        tracing::info!(effect = effects[place].id(), z, "effect is not certain beside the others");
+        leaves[place] = true;
+    }
+    Ok(leaves)
 }
 
 /// Whether noise alone may have bent a thrust curve: it lowers the slope, and never raises it.

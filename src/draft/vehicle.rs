@@ -160,7 +160,7 @@ pub fn draft(recording: &Recording, given: &Given, name: &str) -> Result<Draft, 
              --frame out, and the parameters say where the motors are"
         )
     };
-    let arms_are_known = !vehicle.guesses.iter().any(|guess| guess.of == Guessed::Arms);
+    let arms_are_known = vehicle.guessed(Guessed::Arms) == 0.0;
     let unfit = unfit(given, arm_m).filter(|_| arms_are_known);
     let doubts = other.iter().map(contradiction).chain(unfit).collect();
     Ok(Draft { vehicle, origins: noted.origins, doubts })

@@ -19,21 +19,18 @@ const TOLD_APART: f64 = 4.0;
 pub fn for_readers(named: &[Named], airspeed_m_s: f64) -> Vec<Named> {
     let mut out = merged(named, airspeed_m_s);
     if out.iter().all(|named| signature_of(named.id).is_none_or(|of| of.role.axial_part_of.is_none())) {
-        let others = most_of_others(&out, airspeed_m_s);
-        let of = |(drag, most): (&mut Named, f64)| part_of_climb(drag, most);
+        let others: Vec<f64> = out.iter().map(|drag| of_others(&out, drag, airspeed_m_s)).collect();
+        let of = |(drag, others): (&mut Named, f64)| part_of_climb(drag, others);
         let parts: Vec<Named> = out.iter_mut().zip(others).filter_map(of).collect();
         out.extend(parts);
     }
     out
 }
 
-/// Of each drag what the others, which are known across the rotor axis only, may have in its term along the axis, N/(m/s).
-fn most_of_others(named: &[Named], airspeed_m_s: f64) -> Vec<f64> {
-    let of = |drag: &Named| {
-        let others = named.iter().filter(|other| other.id != drag.id);
-        others.filter_map(|other| slope_along(other, airspeed_m_s)).sum()
-    };
-    named.iter().map(of).collect()
+/// What the other drags, which are known across the rotor axis only, may have in the term of one along the axis, N/(m/s).
+fn of_others(named: &[Named], drag: &Named, airspeed_m_s: f64) -> f64 {
+    let others = named.iter().filter(|other| other.id != drag.id);
+    others.filter_map(|other| slope_along(other, airspeed_m_s)).sum()
 }
 
 /// Takes out of a drag what it has along the rotor axis, if that is thrust that falls with climb. Other drags may have up to so much of it,
@@ -87,8 +84,7 @@ fn added(named: &[Named], (drag, part): (&Named, &Named), airspeed_m_s: f64) -> 
     let (whole, own) = (Slots(signature_of(drag.id)?), Slots(signature_of(part.id)?));
     let (dx, dy, kz) = (whole.of(drag, 0)?, whole.of(drag, 1)?, own.axial(part)?);
     let across = 0.5 * (dx.value + dy.value);
-    let others = named.iter().zip(most_of_others(named, airspeed_m_s));
-    let most = across + others.filter(|(other, _)| other.id == drag.id).map(|(_, most)| most).sum::<f64>();
+    let most = across + of_others(named, drag, airspeed_m_s);
     let isotropic = (1.0 - ISOTROPIC) * across..=(1.0 + ISOTROPIC) * most;
     let other = whole.axial(drag).is_some() || !isotropic.contains(&kz.value);
     (!other).then_some(NamedParameter { name: whole.name(whole.0.role.axial?)?, ..kz })

@@ -37,24 +37,27 @@ pub(super) fn contenders(
         let doubts = file_notes(file, &loaded.warnings);
         doubts.iter().for_each(|note| progress.note(note));
         notes.extend(doubts);
-        let (model, by_law) = contender(file, loaded)?;
-        notes.extend(by_law.then(|| Note::remark(About::File(text::path(&file)), BY_LAW)));
-        models.push(model);
+        if loaded.model.identified.as_ref().is_some_and(|table| table.contains_key(RATE_LAW)) {
+            let by_law = Note::remark(About::File(text::path(&file)), BY_LAW);
+            progress.note(&by_law);
+            notes.push(by_law);
+        }
+        models.push(contender(file, loaded)?);
     }
     tell_apart(&mut models, files);
     Ok((models, notes))
 }
 
-/// Said of a model with a law of the rates.
+/// Table of a law of the rates below `[identified]`.
+const RATE_LAW: &str = "rate_law";
+/// Said of a model with one.
 const BY_LAW: &str = "attitude and rates in open loop are predicted with the empirical law of the rates that this file has \
                       ([identified.rate_law]); closed loops and output predictions are without it";
 
-/// A model by its file, and whether it has a law of the rates.
-fn contender(file: &Path, loaded: LoadedVehicle) -> Result<(Contender, bool), StudyError> {
-    let by_law = loaded.model.identified.as_ref().is_some_and(|table| table.contains_key("rate_law"));
+fn contender(file: &Path, loaded: LoadedVehicle) -> Result<Contender, StudyError> {
     let name = file.file_stem().map_or_else(|| loaded.vehicle.name.clone(), |stem| text::path(&stem));
     let input = InputFile::of(file)?;
-    Ok((flying(loaded, ValidatedModel { name, input })?, by_law))
+    flying(loaded, ValidatedModel { name, input })
 }
 
 fn flying(loaded: LoadedVehicle, of: ValidatedModel) -> Result<Contender, StudyError> {
@@ -79,9 +82,9 @@ fn rate_law(identified: Option<&toml::Table>) -> Result<Option<RateLaw>, String>
         decay_1_s: [f64; 3],
         offset_rad_s2: [f64; 3],
     }
-    let Some(table) = identified.and_then(|table| table.get("rate_law")) else { return Ok(None) };
-    let Law { share, decay_1_s, offset_rad_s2 } =
-        table.clone().try_into().map_err(|error| format!("identified.rate_law: {error}"))?;
+    let Some(table) = identified.and_then(|table| table.get(RATE_LAW)) else { return Ok(None) };
+    let unread = |error: toml::de::Error| format!("identified.rate_law: {}", error.message());
+    let Law { share, decay_1_s, offset_rad_s2 } = table.clone().try_into().map_err(unread)?;
     let within = share.iter().all(|of| (0.0..=1.0).contains(of))
         && decay_1_s.iter().all(|of| (0.0..f64::INFINITY).contains(of))
         && offset_rad_s2.iter().all(|of| of.is_finite());
