@@ -32,21 +32,21 @@ fn is_law(signature: &Signature) -> bool {
 }
 
 /// Brings the laws of the drag in line with the reconstructed flight path. Without a drag, or where no noise is fed back, all stays as
-/// the search left it. Returns the new model with the values of the flight path where it changed.
+/// the search left it. Laws that are `refused` do not enter. Returns the new model with the values of the flight path where it changed.
 ///
 /// # Errors
 /// [`PhysicsError`] where the vehicle is not physical.
 pub(super) fn settle_laws(
     signals: &[Signals],
     traces: &[Trace],
-    found: &mut Search,
+    (found, refused): (&mut Search, &[&'static str]),
 ) -> Result<Option<Base>, PhysicsError> {
     let present = &found.after.base.effects;
     if !is_fed_back(traces) || !present.iter().any(|term| is_law(term.signature)) {
         return Ok(None);
     }
     let mut best: Option<(f64, Reconstructed)> = None;
-    for base in with_all_laws(&found.after.base, traces) {
+    for base in with_all_laws(&found.after.base, traces, refused) {
         let Some(told) = reconstructed_with(signals, found, base) else { continue };
         // of several forms of a law the most certain one that is possible
         let before = &found.after.base.effects;
@@ -66,11 +66,11 @@ pub(super) fn settle_laws(
 }
 
 /// The model with all laws, each along all axes; one for each form of those that it lacks.
-fn with_all_laws(base: &Base, traces: &[Trace]) -> Vec<Base> {
+fn with_all_laws(base: &Base, traces: &[Trace], refused: &[&'static str]) -> Vec<Base> {
     let others = candidates(&base.vehicle, traces, ALL).into_iter().filter_map(|candidate| {
         let [part] = candidate.parts.as_slice() else { return None };
         let is_new = base.effects.iter().all(|present| !present.is(part.signature));
-        (is_new && is_law(part.signature)).then(|| part.clone())
+        (is_new && is_law(part.signature) && !refused.contains(&part.id())).then(|| part.clone())
     });
     let mut forms: Vec<EffectTerm> = Vec::new();
     for form in others {

@@ -141,7 +141,7 @@ pub fn explain_watched(
     let mut pace = Pace::new(tell);
     let mut found =
         search(&traces, vehicle, &settings.gates, (settings.signatures, &settings.refused, &mut pace))?;
-    refine((flights, &traces), vehicle, (&mut found, &mut pace))?;
+    refine((flights, &traces), vehicle, (&mut found, &settings.refused, &mut pace))?;
     let beyond = tracing::info_span!("locate").in_scope(|| beyond(&traces, &found));
     let explanation = judge(&traces, vehicle, found, beyond);
     explanation.emit();

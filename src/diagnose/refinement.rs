@@ -39,15 +39,16 @@ const CERTAIN: f64 = 2.0;
 const ROUNDS: usize = 6;
 
 /// Leaves effects without a name out, and estimates the sizes of the others by what has no noise of the autopilot's own: forces
-/// with the flight path, torques by instruments.
+/// with the flight path, torques by instruments. What is `refused` does not come back.
 pub(super) fn refine(
     (flights, traces): (&[Signals], &[Trace]),
     vehicle: &Vehicle,
-    (found, pace): (&mut Search, &mut Pace<'_>),
+    (found, refused, pace): (&mut Search, &[&'static str], &mut Pace<'_>),
 ) -> Result<(), PhysicsError> {
     let trim = Trim::of(flights, vehicle);
     leave_out_unnamed((traces, (flights, vehicle)), &trim, found)?;
-    let mut start = tracing::info_span!("laws").in_scope(|| settle_laws(flights, traces, found))?;
+    let mut start =
+        tracing::info_span!("laws").in_scope(|| settle_laws(flights, traces, (found, refused)))?;
     loop {
         estimate_sizes((flights, traces), (vehicle, &trim), (found, pace), start.take())?;
         let Some(place) = uncertain(&found.after) else { break };

@@ -43,8 +43,10 @@ pub fn search(
     loop {
         refused.extend(never);
         let price = Price::of(&after);
-        let passed;
+        let mut passed;
         (passed, last) = ranked(flights, (&after, price), gates, signatures, &refused);
+        // nor do they come back as the drag through which a wind acts
+        passed.retain(|tested| tested.candidate.parts.iter().all(|part| !never.contains(&part.id())));
         tracing::debug!(candidates = last.len(), taken = steps.len(), "candidates tested");
         pace.tested();
         match passed.first() {
@@ -77,16 +79,15 @@ pub fn search(
         }
     }
     let after = with_last(flights, after)?;
-    let found = finding_of(&after);
-    let latency = LatencyFinding {
-        against_lag: latency.against_lag,
-        against_delay: latency.against_delay,
-        uneven_std: latency.uneven_std,
-        // what could be taken for a latency makes it uncertain, whether it is in the model or not
-        std_s: found.std_s.max(beside.std_s),
-        ..found
-    };
+    let latency = told(finding_of(&after), latency, beside);
     Ok(Search { before, after, latency, steps, last, by_wider_window: [f64::NAN; 3] })
+}
+
+/// The latency of the final model, with its kind as the rigid body alone tells it. What could be taken for a latency makes it uncertain,
+/// whether it is in the model (`found`) or not (`beside`).
+fn told(found: LatencyFinding, alone: LatencyFinding, beside: LatencyFinding) -> LatencyFinding {
+    let LatencyFinding { against_lag, against_delay, uneven_std, .. } = alone;
+    LatencyFinding { against_lag, against_delay, uneven_std, std_s: found.std_s.max(beside.std_s), ..found }
 }
 
 /// Takes the best of the candidates into the model, or what stands for it and others of its kind; `None` where it is refused.
