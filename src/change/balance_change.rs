@@ -6,8 +6,8 @@ use crate::trim::{AXES, Balance};
 use crate::vehicle::Vehicle;
 use nalgebra::{DVector, Vector3};
 
-/// Sum of squares that an explanation must account for, in standard deviations: 4.5 of them. One of some thousand comparisons of one
-/// component exceeds it by chance where the errors are right, and a heavier tail is allowed for.
+/// Sum of squares that an explanation must account for, in standard deviations: 4.5 of them. One of 147 000 comparisons of one
+/// component exceeds it by chance where the errors are right: errors that are too small, and heavier tails, are allowed for.
 pub const NAMED: f64 = NAMED_SIGMAS * NAMED_SIGMAS;
 /// Its root: standard deviations that a change needs.
 pub const NAMED_SIGMAS: f64 = 4.5;
@@ -151,8 +151,9 @@ fn found(
     let is_either = matches!(best.what, What::Rotor(_))
         && of_both.is_some_and(|other| other + OF_BOTH * PRICE < cost + APART);
     let fits = best.left <= FITS && !is_either;
-    // where a battery or a load sits is the flight's own
-    if (best.what == What::CentreOfMass || !fits) && beyond_load < NAMED {
+    // where a battery or a load sits is the flight's own; it does not turn the vehicle
+    let about_z = if best.what == What::CentreOfMass { by.z.powi(2) / variances.z } else { 0.0 };
+    if (best.what == What::CentreOfMass || !fits) && beyond_load - about_z < NAMED {
         return None;
     }
     if fits {

@@ -52,10 +52,12 @@ pub fn judge_parameter(
     groups: &Groups,
     spread: &Spread,
 ) -> Option<ParameterChange> {
+    // one size for all: by its own, a value that came out small would weigh more
+    let size = groups.both().map(|group| mean_size(values, group)).into_iter().flatten().sum::<f64>() / 2.0;
     let of = |group: &[usize]| -> Vec<(usize, f64, f64)> {
         let one = |&flight: &usize| {
             let (value, std) = values.get(flight).copied().flatten()?;
-            let wide = std.powi(2) + (spread.relative * value).powi(2) + spread.absolute.powi(2);
+            let wide = std.powi(2) + (spread.relative * size).powi(2) + spread.absolute.powi(2);
             (value.is_finite() && wide.is_finite()).then_some((flight, value, wide))
         };
         group.iter().filter_map(one).collect()
@@ -105,6 +107,13 @@ fn undecided(
     Undecided { flights, by_spread: 2.0 * groups.map(own).iter().sum::<f64>() < moved.by.1.powi(2) }
 }
 
+/// Mean of the values' sizes, where a group has any.
+fn mean_size(values: &[Option<(f64, f64)>], group: &[usize]) -> Option<f64> {
+    let sizes: Vec<f64> =
+        group.iter().filter_map(|&flight| Some(values.get(flight).copied().flatten()?.0.abs())).collect();
+    (!sizes.is_empty()).then(|| sizes.iter().sum::<f64>() / sizes.len() as f64)
+}
+
 fn mean(group: &[(usize, f64, f64)], scale: f64) -> (f64, f64) {
     let weights: f64 = group.iter().map(|(.., variance)| variance.recip()).sum();
     let sum: f64 = group.iter().map(|(_, value, variance)| value / variance).sum();
@@ -138,6 +147,14 @@ mod tests {
         let found = judge_parameter(&values, &groups, &wide).unwrap();
         assert!(!found.changed && found.least > 1.0 && found.undecided.is_none());
         assert!(judge_parameter(&[None, None, Some((1.0, 0.1)), None], &groups, &exact).is_none());
+    }
+
+    #[test]
+    fn values_that_came_out_small_do_not_weigh_more() {
+        let spread = Spread { relative: 0.12, absolute: 0.0 };
+        let values = [1.0, 0.8, 1.2, 1.0].map(|value| Some((value, 0.0)));
+        let found = judge_parameter(&values, &Groups::split(4, 1), &spread).unwrap();
+        assert!((found.moved.after.0 - 1.0).abs() < 1e-12, "{found:?}");
     }
 
     #[test]

@@ -78,7 +78,7 @@ pub fn by_flight(
         let base = with_terms(explanation, &terms, (vehicle, &trace));
         let latency = latency_of(&trace, vehicle, &explanation.search.latency);
         let fit = flight_fit((signals, &[trace]), base, (explanation.search.latency, Forms::Chosen)).ok()?;
-        let mut out = parameters(&fit, explanation.turned_by_control, &terms, None);
+        let mut out = parameters(&fit, explanation, &terms, None);
         out.extend(latency.map(FlightParameter::from));
         Some(out)
     };
@@ -116,7 +116,7 @@ pub fn each_with_model_of_all(
         let fit = flight_fit((signals, own), base, (latency, Forms::Known)).ok()?;
         let alone = of_other_laws(own, &[], &fit.0);
         let laws = OtherLaws { alone: &alone, together: &together, of_all: &explanation.search.after };
-        let mut out = parameters(&fit, explanation.turned_by_control, &terms, Some(&laws));
+        let mut out = parameters(&fit, explanation, &terms, Some(&laws));
         if !moves(trace) {
             out.retain(|parameter| !is_of_air(parameter));
         }
@@ -182,7 +182,7 @@ pub fn of_one_flight(
     }
     let base = with_terms(explanation, &terms, (vehicle, &trace));
     let fit = flight_fit((signals, &[trace]), base, (explanation.search.latency, Forms::Chosen)).ok();
-    fit.map_or_else(Vec::new, |fit| parameters(&fit, explanation.turned_by_control, &terms, None))
+    fit.map_or_else(Vec::new, |fit| parameters(&fit, explanation, &terms, None))
 }
 
 /// A wind along the ground, about none, where a force of the air is there through which it acts.
@@ -205,7 +205,7 @@ pub fn rigid_by_flight(
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let (base, own) = (explanation.search.before.base.clone(), std::slice::from_ref(&trace));
         let fit = flight_fit((signals, own), base, (explanation.search.latency, Forms::Known)).ok()?;
-        let mut out = parameters(&fit, explanation.turned_by_control, &[], None);
+        let mut out = parameters(&fit, explanation, &[], None);
         add_payload(&mut out, &trace);
         Some(out)
     };
@@ -331,7 +331,7 @@ fn flight_fit(
 /// What a fit says. Flights that are compared have a spread for other laws of drag; where they are put together, `laws` are in the errors.
 fn parameters(
     (fitted, by_instruments): &(Fitted, Vec<usize>),
-    turned_by_control: bool,
+    explanation: &Explanation,
     terms: &[EffectTerm],
     laws: Option<&OtherLaws<'_>>,
 ) -> Vec<FlightParameter> {
@@ -340,12 +340,13 @@ fn parameters(
     add_floors(&mut whole);
     let common = |own: f64, all: f64| (all - own).max(0.0).sqrt();
     let mut out = Vec::new();
-    let (body, with_common) = (fitted.rigid_body(), whole.rigid_body());
-    let tells_inertia = fitted.rows.compares_torques && !turned_by_control;
+    let body = fitted.rigid_body().with_wider_window(explanation.search.by_wider_window);
+    let with_common = whole.rigid_body();
+    let tells_inertia = fitted.rows.compares_torques && !explanation.turned_by_control;
     // products say nothing that the moments do not
     for index in [0, 1, 4, 6].into_iter().filter(|index| *index == 0 || tells_inertia) {
         let variance = body.covariance[(index, index)];
-        if body.theta[index].is_finite() && variance > 0.0 {
+        if body.theta[index].is_finite() && variance > 0.0 && body.is_of_all_bands(index) {
             out.push(FlightParameter {
                 name: NAMES[index].to_owned(),
                 unit: UNITS[index],

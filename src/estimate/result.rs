@@ -141,6 +141,13 @@ impl Estimated {
         unexplained(self, index).is_none()
     }
 
+    /// Whether an inertia (place in `Theta`) is the same by a wider window, as far as that was assessed. Where feedback control
+    /// causes the torque, it is not.
+    #[must_use]
+    pub fn is_of_all_bands(&self, index: usize) -> bool {
+        of_feedback(self, index).is_none()
+    }
+
     /// How far a guessed thrust curve moves a parameter, in its unit.
     #[must_use]
     pub fn moved_by_curve(&self, index: usize) -> f64 {

@@ -160,6 +160,7 @@ impl Fit {
         let (mut solution, mut inverse) = solved(&rows, count, (&scatter, &inflation, &huber));
         for _ in 0..PASSES {
             let left: Vec<f64> = rows.iter().map(|row| row.lean - row.predicted(&solution)).collect();
+            let determined = determined(&rows, count, (&scatter, &inflation, &huber), &inverse);
             for flight in 0..count {
                 let own: Vec<f64> = rows
                     .iter()
@@ -167,7 +168,7 @@ impl Fit {
                     .filter(|(row, _)| row.flight == flight)
                     .map(|(_, left)| *left)
                     .collect();
-                (scatter[flight], inflation[flight]) = scatter_of(&own);
+                (scatter[flight], inflation[flight]) = scatter_of(&own, determined[flight]);
             }
             for ((weight, row), left) in huber.iter_mut().zip(&rows).zip(&left) {
                 *weight = (OUTLYING * scatter[row.flight] / left.abs().max(1e-12)).min(1.0);
@@ -230,12 +231,32 @@ fn solved(
     (&inverse * right, inverse)
 }
 
-/// Scatter of what is left of legs in order, and how much less certain their mean is than of independent ones.
-fn scatter_of(left: &[f64]) -> (f64, f64) {
+/// How many parameters the legs of each flight determine: the trace of their part of the hat matrix.
+fn determined(
+    rows: &[Equation],
+    count: usize,
+    (scatter, inflation, huber): (&[f64], &[f64], &[f64]),
+    inverse: &DMatrix<f64>,
+) -> Vec<f64> {
+    let mut out = vec![0.0; count];
+    for (row, huber) in rows.iter().zip(huber) {
+        let weight = huber / (scatter[row.flight].powi(2) * inflation[row.flight]);
+        let coefficients = row.coefficients();
+        let each = coefficients
+            .iter()
+            .flat_map(|&(i, by)| coefficients.iter().map(move |&(j, with)| by * with * inverse[(i, j)]));
+        out[row.flight] += weight * each.sum::<f64>();
+    }
+    out
+}
+
+/// Scatter of what is left of legs in order, which determined so many parameters, and how much less certain their mean is than of
+/// independent ones.
+fn scatter_of(left: &[f64], determined: f64) -> (f64, f64) {
     let count = left.len() as f64;
     let mut sizes: Vec<f64> = left.iter().map(|value| value.abs()).collect();
     let robust = crate::stats::normal_sigma(&mut sizes);
-    let rms = (left.iter().map(|value| value * value).sum::<f64>() / (count - 1.5).max(1.0)).sqrt();
+    let rms = (left.iter().map(|value| value * value).sum::<f64>() / (count - determined).max(1.0)).sqrt();
     // a leg or two of a gust are no scatter
     let scatter = rms.min(2.0 * robust.max(LEAST_SCATTER)).max(LEAST_SCATTER);
     let products: f64 = left.windows(2).map(|pair| pair[0] * pair[1]).sum();
@@ -247,6 +268,7 @@ fn scatter_of(left: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trim::LEAST_LEGS;
 
     /// Legs of a flight in an air that pushes by `felt` on the mean, whose balance in still air is `own`.
     fn flight(own: [f64; AXES], felt: f64) -> Vec<Leg> {
@@ -272,6 +294,25 @@ mod tests {
             }
         };
         (0..30).map(leg).collect()
+    }
+
+    #[test]
+    fn the_scatter_of_few_legs_is_neither_too_small_nor_too_large() {
+        use rand::{RngExt, SeedableRng};
+        let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(3);
+        let mut noise = || 0.01 * rng.sample::<f64, _>(rand_distr::StandardNormal);
+        let mut squares = 0.0;
+        for _ in 0..200 {
+            let mut short = || {
+                let mut legs = flight([0.01, -0.02, 0.03], 0.0)[..LEAST_LEGS].to_vec();
+                legs.iter_mut().for_each(|leg| leg.lean[0] += noise());
+                legs
+            };
+            squares += Fit::of(&[short(), short()], 0).scatter.iter().map(|std| std * std).sum::<f64>();
+        }
+        let ratio = (squares / 400.0).sqrt() / 0.01;
+        // by the number of legs less 1.5 it was 0.77
+        assert!((0.88..1.12).contains(&ratio), "{ratio}");
     }
 
     #[test]

@@ -141,11 +141,16 @@ fn leg(
     let thrust_n = wrench[0];
     let up =
         attitude[span.clone()].iter().map(|to_world| to_world.inverse() * Vector3::z()).sum::<Vector3<f64>>();
-    let middle = attitude[usize::midpoint(span.start, span.end)];
     let change =
         |series: &[Vector3<f64>]| (series[span.end] - series[span.start]) / (count * signals.grid.step_s);
-    let accelerated = signals.velocity.as_ref().map_or_else(Vector3::zeros, |velocity| change(velocity));
-    let specific = up / count + middle.inverse() * accelerated / scale.gravity_m_s2;
+    // the vehicle may turn during a leg
+    let in_body = |velocity: &[Vector3<f64>]| {
+        let steps =
+            span.clone().map(|index| attitude[index].inverse() * (velocity[index + 1] - velocity[index]));
+        steps.sum::<Vector3<f64>>() / (count * signals.grid.step_s)
+    };
+    let accelerated = signals.velocity.as_ref().map_or_else(Vector3::zeros, |velocity| in_body(velocity));
+    let specific = up / count + accelerated / scale.gravity_m_s2;
     let turning = signals.rate.as_ref().map_or_else(Vector3::zeros, |rate| change(rate));
     let rates = |rate: &[Vector3<f64>]| rate[span.clone()].iter().sum::<Vector3<f64>>() / count;
     let rate = signals.rate.as_ref().map_or_else(Vector3::zeros, |rate| rates(rate));

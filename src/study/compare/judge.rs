@@ -35,14 +35,16 @@ impl Judge<'_> {
     /// `least_sigmas` standard deviations is none.
     #[must_use]
     pub fn history(&self, order: &[usize], least_sigmas: f64) -> Vec<Step<Compared>> {
+        // of so many places one is reached by chance at that many more
+        let beyond = |places: usize| (2.0 * (places.max(1) as f64).ln()).sqrt();
+        let borders = order.len().saturating_sub(1);
+        let at_a_border = least_sigmas.max(NAMED_SIGMAS.hypot(beyond(borders)));
+        let there_and_back = least_sigmas.max(NAMED_SIGMAS).hypot(beyond(order.len() * borders / 2));
         let judged = |groups: &Groups| {
             let compared = self.compared(&flight_groups(groups, order));
             let strongest = compared.strongest();
-            (strongest > 0.0 && strongest >= least_sigmas).then_some((strongest, compared))
+            (strongest >= at_a_border).then_some((strongest, compared))
         };
-        // of so many places one is reached by chance at that many more
-        let pairs = (order.len() * order.len().saturating_sub(1) / 2).max(1) as f64;
-        let there_and_back = least_sigmas.max(NAMED_SIGMAS).hypot((2.0 * pairs.ln()).sqrt());
         let found = steps(order.len(), &judged, there_and_back);
         let mut found = if found.is_empty() {
             self.each_alone(order, least_sigmas)
