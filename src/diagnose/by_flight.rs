@@ -20,6 +20,7 @@ use super::recorded::Recorded;
 use super::signature::EffectTerm;
 use super::signatures::{ALL, signature_of};
 use super::tested::Search;
+use super::torque_law::ABOUT_Z;
 use super::torques_by_instruments::torques_by_instruments;
 use super::trace::Trace;
 use crate::estimate::{NAMES, UNITS};
@@ -343,8 +344,9 @@ fn parameters(
     let body = fitted.rigid_body().with_wider_window(explanation.search.by_wider_window);
     let with_common = whole.rigid_body();
     let tells_inertia = fitted.rows.compares_torques && !explanation.turned_by_control;
-    // products say nothing that the moments do not
-    for index in [0, 1, 4, 6].into_iter().filter(|index| *index == 0 || tells_inertia) {
+    // another law of the rotors' torque than the stated one leaves izz open; products say nothing that the moments do not
+    let tells = |index| tells_inertia && (index != ABOUT_Z || explanation.torque_law.is_none());
+    for index in [0, 1, 4, ABOUT_Z].into_iter().filter(|&index| index == 0 || tells(index)) {
         let variance = body.covariance[(index, index)];
         if body.theta[index].is_finite() && variance > 0.0 && body.is_of_all_bands(index) {
             out.push(FlightParameter {

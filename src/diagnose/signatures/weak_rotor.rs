@@ -34,7 +34,13 @@ pub static SIGNATURE: Signature = Signature {
         let rotors = terms(recorded.vehicle.rotors.len()).into_iter();
         rotors.map(|term| Form { term, instead_of_nuisance: false }).collect()
     },
-    naming: Naming { is_ordinary, least_std: BETWEEN_SAMPLES, ..Naming::PLAIN },
+    naming: Naming {
+        is_ordinary,
+        least_std: BETWEEN_SAMPLES,
+        // the first rotor's number is 0
+        says: |term, slot| slot == ROTOR || term.values[slot] != 0.0,
+        ..Naming::PLAIN
+    },
     role: Role { which: Some(ROTOR), of_the_vehicle: Some(OfTheVehicle::of(&[FACTOR])), ..Role::NONE },
     joint: Joint {
         forms: Some(|recorded: &Recorded, _| {
