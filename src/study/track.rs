@@ -128,7 +128,7 @@ impl Track {
         tracks
     }
 
-    /// What it is, as people say it: `drag (dx)`, `moment of inertia ixx`.
+    /// What it is, as people say it, without an article: `drag (dx)`, `moment of inertia ixx`.
     #[must_use]
     pub fn words(&self) -> String {
         if self.name == LATENCY {
@@ -138,9 +138,11 @@ impl Track {
             let is_moment = self.name.starts_with('i');
             return if is_moment { format!("moment of inertia {}", self.name) } else { self.name.clone() };
         };
+        let called = called(id);
+        let noun = ["an ", "a "].iter().find_map(|article| called.strip_prefix(article)).unwrap_or(called);
         match self.name.split_once('.') {
-            Some((_, parameter)) => format!("{} ({parameter})", called(id)),
-            None => called(id).to_owned(),
+            Some((_, parameter)) => format!("{noun} ({parameter})"),
+            None => noun.to_owned(),
         }
     }
 
