@@ -29,6 +29,8 @@ pub enum About {
     Vehicle,
     /// recorded streams of the motion
     Sensors,
+    /// streams that contradict each other, or the rotors of the vehicle file
+    Contradiction,
     /// commands, rotor speeds, and the law from them to thrust
     Actuators,
     /// the estimate and the method that it comes from

@@ -66,6 +66,24 @@ pub(super) fn add_slope(fitted: &mut Fitted) {
     }
 }
 
+/// The force of all laws of the drag along an axis of the body (`slot`) over that of one of them, whose coefficient has the place `index`;
+/// 1 of any other effect. What the form of the whole is wrong by, one of several laws takes: a linear and a quadratic drag have nearly
+/// the same force at the speeds of one flight.
+fn together(fitted: &Fitted, slot: usize, index: usize) -> f64 {
+    let first = fitted.rows.nuisances.len();
+    let slots = fitted.base.effects.iter().flat_map(|term| term.free.iter().map(move |&slot| (term, slot)));
+    let force = |(place, (term, of)): (usize, (&EffectTerm, usize))| {
+        let is_of_drag = of == slot && slot < 3 && term.signature.role.lateral_slope.is_some();
+        let column = fitted.rows.effects.get(place).filter(|_| is_of_drag)?;
+        let size = column[slot].iter().map(|value| value * value).sum::<f64>().sqrt();
+        Some((place, size * term.values[of].abs()))
+    };
+    let forces: Vec<(usize, f64)> = slots.enumerate().filter_map(force).collect();
+    let own = forces.iter().find(|(place, _)| first + place == index).map_or(0.0, |(_, force)| *force);
+    let all: f64 = forces.iter().map(|(_, force)| force).sum();
+    if own > 0.0 { all / own } else { 1.0 }
+}
+
 /// Adds the errors of the laws to those of a fit's mass, moments of inertia and sizes of effects.
 pub(super) fn add_floors(fitted: &mut Fitted) {
     add_slope(fitted);
@@ -77,7 +95,8 @@ pub(super) fn add_floors(fitted: &mut Fitted) {
             if term.is_amount(slot) && fitted.covariance[(index, index)] > 0.0 {
                 let on_scale = term.parameter(slot).is_some_and(|of| follows_force(of.unit));
                 let guess = term.parameter(slot).map_or(0.0, |of| guessed(&fitted.base.vehicle, of));
-                let law = if on_scale { FORM.hypot(scale) } else { FORM }.hypot(guess);
+                let form = FORM * together(fitted, slot, index);
+                let law = if on_scale { form.hypot(scale) } else { form }.hypot(guess);
                 fitted.covariance[(index, index)] += (law * term.from_nothing(slot)).powi(2);
             }
             index += 1;

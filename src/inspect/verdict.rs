@@ -184,6 +184,9 @@ fn doubts(evidence: &Evidence<'_>) -> Vec<String> {
     if evidence.assessment.notes.iter().any(|note| note.is_warning() && note.about == About::Vehicle) {
         doubts.push("its rotors contradict the autopilot's parameters, see the advice".to_owned());
     }
+    if evidence.assessment.notes.iter().any(|note| note.about == About::Contradiction) {
+        doubts.push("the recorded streams contradict each other or its rotors, see the advice".to_owned());
+    }
     doubts
 }
 

@@ -44,7 +44,7 @@ pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<Note> {
     if units.is_empty() {
         units.extend(torques(signals, vehicle, &spans));
     }
-    units.into_iter().map(|text| Note::warning(About::Sensors, text)).collect()
+    units.into_iter().map(|text| Note::warning(About::Contradiction, text)).collect()
 }
 
 /// First and last instants of the usable windows, in order.
@@ -159,6 +159,15 @@ fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Op
         let alike = alone(&columns, &changed)?;
         let best = (0..AXIS_NAMES.len()).max_by(|&a, &b| alike[a].abs().total_cmp(&alike[b].abs()))?;
         let wrong = alike[best].abs() > ALIKE && alike[best].abs() > alike[axis] + APART;
+        let others = (0..AXIS_NAMES.len()).filter(|other| *other != axis);
+        let beside = others.max_by(|&a, &b| alike[a].abs().total_cmp(&alike[b].abs()))?;
+        if !wrong && alike[beside].abs() > ALIKE {
+            return Some(format!(
+                "the body turns about {} as if by the rotors' torque about {} as well (partial correlation {:.2}; {:.2} with that about \
+                 {}): expected the rotors at the vehicle file's places, not turned about the vertical",
+                AXIS_NAMES[axis], AXIS_NAMES[beside], alike[beside].abs(), alike[axis], AXIS_NAMES[axis]
+            ));
+        }
         wrong.then(|| {
             let sign = if alike[best] < 0.0 { "-" } else { "" };
             format!(

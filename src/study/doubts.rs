@@ -23,11 +23,21 @@ pub(super) fn doubts<'a>(
     let other_rotors = |quality: &Quality| {
         quality.notes.iter().any(|note| note.is_warning() && note.about == About::Vehicle)
     };
-    if flights.into_iter().any(other_rotors) {
+    let flights: Vec<&Quality> = flights.into_iter().collect();
+    if flights.iter().copied().any(other_rotors) {
         doubts.push(OTHER_ROTORS.to_owned());
     }
+    // what was expected is for the warnings
+    let contradicting = flights.iter().flat_map(|quality| &quality.notes);
+    let mut contradicting = contradicting.filter(|note| note.about == About::Contradiction);
+    doubts.extend(contradicting.next().map(|note| before_expected(&note.text).to_owned()));
     let odd = vehicle.implausible();
     // questions are for the warnings
     doubts.extend(odd.iter().map(|odd| format!("implausible vehicle data, {}", odd.trim_end_matches('?'))));
     doubts
+}
+
+/// A sentence without what was expected instead.
+fn before_expected(text: &str) -> &str {
+    text.split_once(": expected").map_or(text, |(before, _)| before)
 }

@@ -234,8 +234,15 @@ fn by_what_is_left(
     whose: &str,
 ) -> Option<OtherVehicle> {
     let compared = |channel: &usize| torques_alike || !(3..AXES).contains(channel);
+    // a flight that turns more leaves more of its torque
+    let turns = |channel: usize| {
+        let Some(axis) = channel.checked_sub(3).filter(|axis| *axis < 3) else { return 1.0 };
+        let here = identified.rows.torque_rms[axis];
+        let there = weak.own.iter().map(|own| own.rows.torque_rms[axis]).fold(0.0, f64::max);
+        if here > 0.0 { (there / here).max(1.0) } else { 1.0 }
+    };
     let ratios = (0..CHANNELS).filter(compared).filter_map(|channel| {
-        let ratio = weak.own_rms[channel] / identified.weighted.sigma[channel];
+        let ratio = weak.own_rms[channel] / (identified.weighted.sigma[channel] * turns(channel));
         (ratio.is_finite() && ratio > LEFT_RATIO).then_some((channel, ratio))
     });
     let (channel, ratio) = ratios.max_by(|a, b| a.1.total_cmp(&b.1))?;

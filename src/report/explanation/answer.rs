@@ -238,12 +238,30 @@ fn nothing(study: &ExplainStudy) -> String {
             list(traces)
         ),
     };
+    let (these, it) = (study.these_flights(), if study.given.inputs.len() > 1 { "them" } else { "it" });
+    if let Some((left_n, share)) = much_left(study) {
+        return format!(
+            "Nothing was found that {these} could show. The rigid body with its rotors leaves a force of {} N rms, {:.0} % of the \
+             weight, which follows nothing that was tested: noise, vibration or something unknown{would}.{traces}{other}",
+            significant(left_n, 2),
+            100.0 * share
+        );
+    }
     format!(
-        "Nothing is missing that {} could show: the rigid body with its rotors explains {} down to the \
-         noise{would}.{traces}{other}",
-        study.these_flights(),
-        if study.given.inputs.len() > 1 { "them" } else { "it" }
+        "Nothing is missing that {these} could show: the rigid body with its rotors explains {it} down to the \
+         noise{would}.{traces}{other}"
     )
+}
+
+/// Share of the weight from which on what is left is not called noise. Set by judgement: simulated flights as noisy as real ones leave 5 %.
+const MUCH_LEFT: f64 = 0.15;
+
+/// Force that the model leaves, N rms over all axes and as a share of the weight, where that is much.
+fn much_left(study: &ExplainStudy) -> Option<(f64, f64)> {
+    let left =
+        study.residual().iter().filter(|of| of.unit == "N").map(|of| of.after.powi(2)).sum::<f64>().sqrt();
+    let share = left / (study.vehicle().body.mass_kg * study.vehicle().gravity_m_s2);
+    (share > MUCH_LEFT).then_some((left, share))
 }
 
 /// The flights that were explained show something that the others refute: that is not the same as nothing.
