@@ -1,9 +1,10 @@
 //! The fit on flights that were not used.
 
+use super::agreement::Agreement;
 use super::bootstrap::{Compared, Interval};
 use super::closed_loop::ClosedLoop;
 use super::open_loop::OpenLoop;
-use super::other_vehicle::{Agreement, OtherVehicle};
+use super::other_vehicle::OtherVehicle;
 use crate::note::Note;
 
 /// The fit on flights that were not used.

@@ -4,6 +4,7 @@
 //! the rigid body identified on the same flights without effects, so that no effect compensates for a wrong mass.
 //! Intervals come from a bootstrap over blocks of the flight, with the same blocks for both models.
 
+mod agreement;
 mod bootstrap;
 mod carried;
 mod closed_loop;
@@ -21,6 +22,7 @@ mod split;
 mod weak;
 mod without;
 
+pub use agreement::Agreement;
 pub use bootstrap::{AtEnd, Compared, Interval};
 pub use closed_loop::ClosedLoop;
 pub use error::HoldoutError;
@@ -28,7 +30,7 @@ pub use floor::{command_noise, state_noise};
 pub use hold_out::{IdentificationFit, on_holdout, on_identification, on_left_out};
 pub use holdout_fit::HoldoutFit;
 pub use open_loop::{HALF_S, OpenLoop, WINDOWS_S};
-pub use other_vehicle::{Agreement, Difference, OtherVehicle, differing};
+pub use other_vehicle::{Difference, OtherVehicle, differing};
 pub use rate_law::RateLaw;
 pub use settings::{Explained, HeldOut, HoldoutSettings};
 pub use split::{Split, split_last_periods};

@@ -1,5 +1,6 @@
 //! Test whether the held-out flights can be of the identified vehicle.
 
+use super::agreement::{Agreement, INERTIA_SHARE, MASS_SHARE, Relevance};
 use super::error::HoldoutError;
 use super::ready::{Ready, trace_of};
 use super::settings::{Explained, HeldOut, HoldoutSettings};
@@ -12,88 +13,6 @@ use crate::estimate::{INERTIA_ENTRIES, NAMES, UNITS};
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
 
-/// A parameter's value on the held-out flights against that of the model.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Agreement {
-    /// `mass`, `ixx` ... or `effect.parameter`
-    pub name: String,
-    /// SI
-    pub unit: &'static str,
-    /// of the model
-    pub identified: f64,
-    /// its standard error
-    pub identified_std: f64,
-    /// of the held-out flights alone
-    pub held_out: f64,
-    /// its standard error
-    pub held_out_std: f64,
-    /// the least difference that counts; `None` for a parameter that flights of one vehicle need not have in common
-    pub(super) relevance: Option<Relevance>,
-}
-
-/// The least difference of a parameter that counts: it has to exceed both.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Relevance {
-    /// of the parameter's value
-    share: f64,
-    /// in the parameter's unit
-    amount: f64,
-}
-
-impl Relevance {
-    const fn share(share: f64) -> Option<Self> {
-        Some(Self { share, amount: 0.0 })
-    }
-
-    /// Of a value of an effect.
-    fn of(term: &EffectTerm, slot: usize) -> Option<Self> {
-        let of = term.signature.role.of_the_vehicle.filter(|of| of.slots.contains(&slot))?;
-        Some(Self { share: AMOUNT_SHARE, amount: of.least_difference })
-    }
-}
-
-impl Agreement {
-    /// Difference in standard errors of the difference.
-    #[must_use]
-    pub fn sigmas(&self) -> f64 {
-        (self.held_out - self.identified) / self.identified_std.hypot(self.held_out_std)
-    }
-
-    fn share(&self) -> f64 {
-        (self.held_out - self.identified) / self.identified
-    }
-
-    /// A difference of mass alone that a payload makes.
-    fn is_by_a_load(&self) -> bool {
-        self.name == NAMES[0] && self.share().abs() < PAYLOAD_SHARE
-    }
-
-    fn is_of_inertia(&self) -> bool {
-        NAMES[1..].contains(&self.name.as_str())
-    }
-
-    /// Whether they differ significantly, and by more than flights of one vehicle do.
-    fn differs(&self) -> bool {
-        let Some(Relevance { share, amount }) = self.relevance else { return false };
-        // a small value moves by much of itself
-        let moved = (self.held_out - self.identified).abs() > amount;
-        self.sigmas().abs() > SIGMAS && self.share().abs() > share && moved
-    }
-}
-
-/// Largest share of the mass that a payload is, with which a multirotor still flies well.
-const PAYLOAD_SHARE: f64 = 0.5;
-/// Standard errors beyond which flights certainly differ: twice what a name needs, because a false word takes the whole hold-out away.
-const SIGMAS: f64 = 8.0;
-/// Least relevant difference, as a share of the mass. Set by judgement: with less, two batteries would be two
-/// vehicles.
-const MASS_SHARE: f64 = 0.08;
-/// Least relevant difference, as a share of a principal moment of inertia. Set by judgement: the phase at which a log
-/// samples moves inertia by up to 12 % (see `Spread` in `study/track.rs`), and twice that is no sampling.
-const INERTIA_SHARE: f64 = 0.22;
-/// Least relevant difference of an effect that belongs to the vehicle, as a share of its amount. Set by judgement:
-/// laws are never quite those of the air, and flights differ in speed.
-const AMOUNT_SHARE: f64 = 0.6;
 /// Least ratio of the residual of the held-out flight's own fit to that of the identified flights. A rotor 10 % weak, a
 /// centre of mass 10 mm off and a bent thrust curve in the hold-out alone gave 4.4 to 25 in simulated flights.
 const LEFT_RATIO: f64 = 4.0;
@@ -159,7 +78,8 @@ pub(super) fn judged(
     });
     // averaged torques leave less than those of each row
     let alike = ready.iter().all(|ready| ready.trace.torques == identified.rows.compares_torques);
-    Ok((all, by_parameters.or_else(|| by_what_is_left(identified, (weak, alike), whose))))
+    let faster = mean_speed_m_s(ready) / explanation.airspeed_m_s.max(f64::MIN_POSITIVE);
+    Ok((all, by_parameters.or_else(|| by_what_is_left(identified, (weak, alike, faster), whose))))
 }
 
 /// Reason why flights should not have been explained together: the own linear step of each at the common model,
@@ -230,19 +150,21 @@ pub enum Difference {
 /// identified ones.
 fn by_what_is_left(
     identified: &Fitted,
-    (weak, torques_alike): (&Weak, bool),
+    (weak, torques_alike, faster): (&Weak, bool, f64),
     whose: &str,
 ) -> Option<OtherVehicle> {
     let compared = |channel: &usize| torques_alike || !(3..AXES).contains(channel);
-    // a flight that turns more leaves more of its torque
-    let turns = |channel: usize| {
-        let Some(axis) = channel.checked_sub(3).filter(|axis| *axis < 3) else { return 1.0 };
+    // a flight that turns more leaves more of its torque, and a faster one more of the air's force
+    let moves = |channel: usize| {
+        let Some(axis) = channel.checked_sub(3).filter(|axis| *axis < 3) else {
+            return faster.powi(2).max(1.0);
+        };
         let here = identified.rows.torque_rms[axis];
         let there = weak.own.iter().map(|own| own.rows.torque_rms[axis]).fold(0.0, f64::max);
         if here > 0.0 { (there / here).max(1.0) } else { 1.0 }
     };
     let ratios = (0..CHANNELS).filter(compared).filter_map(|channel| {
-        let ratio = weak.own_rms[channel] / (identified.weighted.sigma[channel] * turns(channel));
+        let ratio = weak.own_rms[channel] / (identified.weighted.sigma[channel] * moves(channel));
         (ratio.is_finite() && ratio > LEFT_RATIO).then_some((channel, ratio))
     });
     let (channel, ratio) = ratios.max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -253,6 +175,12 @@ fn by_what_is_left(
     );
     let by = Difference::Residual { channel, ratio };
     Some(OtherVehicle { by, reason })
+}
+
+/// Mean speed over the rows of the held-out flights, m/s.
+fn mean_speed_m_s(ready: &[Ready]) -> f64 {
+    let rows = || ready.iter().flat_map(|of| of.trace.centers.iter().map(|&center| &of.trace.states[center]));
+    rows().map(|state| state.velocity_m_s.norm()).sum::<f64>() / rows().count().max(1) as f64
 }
 
 fn described(agreement: &Agreement) -> String {
