@@ -1,7 +1,7 @@
 //! What a further flight would bring, in one sentence.
 
 use crate::diagnose::experiment::{NextFlight, Pair};
-use crate::diagnose::{ByPart, called};
+use crate::diagnose::{ByPart, called, known_to};
 use crate::report::number::{spoken, with_error};
 use crate::study::ExplainStudy;
 use crate::text::capital;
@@ -49,7 +49,7 @@ fn unnamed_latency(study: &ExplainStudy) -> String {
 /// A sentence on the sizes that are known, where there are some.
 fn known(study: &ExplainStudy) -> String {
     let one = |effect| {
-        let percent = 100.0 * study.known_to(effect)?;
+        let percent = 100.0 * known_to(effect)?;
         let digits = usize::from(percent < 1.0);
         Some(format!("{} is known to {percent:.digits$} %", called(effect.id)))
     };
