@@ -26,10 +26,13 @@ impl ExplainStudy {
             && self.unsettled().next().is_none()
     }
 
-    /// What the designed flight separates or determines, of that which a user needs: names that could be another one's, and sizes
-    /// that are known worse than 5 %.
+    /// What the designed flight separates or determines, of that which a user needs: names that could be another one's and are told
+    /// apart with it, and sizes that are known worse than 5 %.
     pub fn worthwhile<'a>(&'a self, next: &'a NextFlight) -> impl Iterator<Item = &'a Pair> {
-        next.pairs.iter().filter(|pair| pair.other.is_some() || self.relative_std(pair) > WELL_KNOWN)
+        next.pairs.iter().filter(|pair| match pair.other {
+            Some(_) => pair.is_told_apart(),
+            None => self.relative_std(pair) > WELL_KNOWN,
+        })
     }
 
     /// A further flight was designed, and it would bring something that a user needs.
