@@ -13,6 +13,7 @@ use mavid::fly::parameters::{Parameters, requested_parameters};
 use mavid::study::{draft_from_parameters, implausible};
 use mavid::text;
 use mavid::vehicle::{Guessed, Vehicle};
+use mavid::wire::SystemId;
 
 use super::ask::number;
 use super::context::Context;
@@ -20,7 +21,8 @@ use super::folder::Folder;
 use super::step::Step;
 use super::target::Target;
 use crate::cli::RunArgs;
-use crate::commands::log::{Answered, parameters_of_vehicle};
+use crate::commands::log::{Answered, PATIENCE, parameters_of_vehicle};
+use crate::commands::progress::Spinner;
 use crate::commands::sitl::DEFAULT_VEHICLE;
 use crate::commands::{CommandError, output, vehicle};
 
@@ -128,12 +130,20 @@ pub fn asked(context: &Context<'_>, target: &mut Target, given: &Given) -> Resul
     };
     let link = target.link();
     context.work.ends_itself();
-    let found = parameters_of_vehicle(&link, |stack, known| {
+    let waiting = format!("waiting for a vehicle at {}", target.connect);
+    output::message(&format!("{waiting}, at most {} s", PATIENCE.as_secs()));
+    let shown = Spinner::of(context.stderr, waiting);
+    let heard = |system: SystemId, autopilot: Autopilot| {
+        let name = autopilot.stack().map_or("an unknown autopilot", |stack| stack.name);
+        let connect = &target.connect;
+        output::message(&format!("found system {}, {name}, at {connect}; reading its parameters", system.0));
+        shown.say("reading its parameters");
+    };
+    let found = parameters_of_vehicle(&link, heard, |stack, known| {
         stack.autopilot.stack().map_or_else(BTreeSet::new, |stack| needed(stack, known))
     })?;
+    drop(shown);
     context.work.waits();
-    let name = found.autopilot.stack().map_or("an unknown autopilot", |stack| stack.name);
-    output::message(&format!("found system {}, {name}, at {}", found.system, target.connect));
     target.system = Some(found.system);
     let all =
         Parameters { autopilot: found.autopilot, values: found.parameters.clone(), ..Parameters::default() };
