@@ -220,7 +220,10 @@ fn evidence(study: &ExplainStudy) -> Markup {
                     TriedAs::Rival => "rival".to_owned(),
                     TriedAs::Left => "in the end: not named".to_owned(),
                 }),
-                text(tried.id),
+                text(match tried.form.as_str() {
+                    "" => tried.id.to_owned(),
+                    form => format!("{} ({form})", tried.id),
+                }),
                 number(format!("{:.1}", tried.z)),
                 number(significant(100.0 * tried.gain, 2)),
                 number(chance(tried.p_cluster)),
