@@ -90,6 +90,12 @@ impl Spinner {
         spinner
     }
 
+    /// What is done from now on, in words.
+    pub fn say(&self, words: impl Into<String>) {
+        self.0.reset_elapsed();
+        self.0.set_message(words.into());
+    }
+
     fn restyle(&self, template: &str) {
         if let Ok(style) = ProgressStyle::with_template(template) {
             self.0.set_style(style);

@@ -56,7 +56,7 @@ fn draft(json: bool, args: &InitArgs) -> Result<Outcome, CommandError> {
     let mut draft = match link(args) {
         Some(link) => {
             let Answered { autopilot, parameters, .. } =
-                parameters_of_vehicle(&link, |stack, known| parameters_of(stack, &given, known))?;
+                parameters_of_vehicle(&link, |_, _| {}, |stack, known| parameters_of(stack, &given, known))?;
             draft_from_parameters((autopilot, parameters), &given, &link.connect)?
         }
         None => draft_from_log(&args.from, &args.read.settings(), &given)?,

@@ -115,7 +115,7 @@ pub use recorded::{Need, Recorded};
 pub use rotors::{OfRotors, RotorMotion, Thrusts};
 pub use rows::Rows;
 pub use search::search;
-pub use sentence::{brief, called, clause, limit};
+pub use sentence::{brief, called, clause, known_to, limit};
 pub use signature::EffectTerm;
 pub use slight::Slight;
 pub use tested::{Search, Step, Tested};

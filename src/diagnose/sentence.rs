@@ -4,7 +4,7 @@ use super::named::{DetectionLimit, Named, NamedParameter};
 use super::signature::Signature;
 use super::signatures::signature_of;
 use super::wording::{Clause, Size};
-use super::words::{norm, plain, range, said};
+use super::words::{largest, norm, plain, range, said};
 use crate::text::{significant, spoken, with_error};
 use crate::vehicle::Vehicle;
 
@@ -51,18 +51,34 @@ pub fn brief(named: &Named, vehicle: &Vehicle, with_size: bool) -> String {
     }
 }
 
+/// Relative standard error (-) of the size that [`brief`] states. `None` where that has no unit, or was set.
+#[must_use]
+pub fn known_to(named: &Named) -> Option<f64> {
+    let of = |p: &NamedParameter| (p.unit != "-").then_some((p.value, p.std));
+    let (value, std) = match signature_of(named.id).map_or(Size::First, |signature| signature.words.size) {
+        Size::Axes => largest(named),
+        Size::Norm { .. } => Some(norm(&with_unit(named))),
+        Size::Of { parameter, .. } => named.get(parameter).and_then(of),
+        Size::Own(_, number) => number(named),
+        Size::First => named.parameters.first().and_then(of),
+    }?;
+    (std > 0.0).then(|| std / value.abs()).filter(|relative| relative.is_finite())
+}
+
+fn with_unit(named: &Named) -> Vec<&NamedParameter> {
+    named.parameters.iter().filter(|p| p.unit != "-").collect()
+}
+
 /// The size of the effect with its unit, as text.
 fn size(named: &Named, signature: Option<&Signature>) -> Option<String> {
     match signature.map_or(Size::First, |signature| signature.words.size) {
         Size::Axes => Some(range(named)),
         Size::Norm { factor, unit } => {
-            let parameters: Vec<&NamedParameter> =
-                named.parameters.iter().filter(|p| p.unit != "-").collect();
-            let (norm, std) = norm(&parameters);
+            let (norm, std) = norm(&with_unit(named));
             Some(format!("{} {unit}", plain(factor * norm, factor * std)))
         }
         Size::Of { parameter, factor, unit } => said(named, parameter, factor, unit),
-        Size::Own(own) => own(named),
+        Size::Own(own, _) => own(named),
         Size::First => {
             let first = named.parameters.first()?;
             Some(format!("{} {}", plain(first.value, first.std), spoken(first.unit)).trim_end().to_owned())
@@ -123,6 +139,21 @@ mod tests {
         );
         let text = clause(&named("linear_drag", &[("dx", 0.41, 0.01), ("dy", 0.61, 0.02)]), &vehicle);
         assert!(text.contains("0.410 +- 0.010 along x and 0.61 +- 0.02 along y N per m/s"), "{text}");
+    }
+
+    #[test]
+    fn how_well_a_size_is_known_follows_from_the_size_that_is_stated() {
+        let alike = named("linear_drag", &[("dx", 0.60, 0.055), ("dy", 0.62, 0.055)]);
+        assert_eq!(brief(&alike, &vehicle(), true), "drag (0.61 +- 0.04 N per m/s)");
+        assert!((known_to(&alike).unwrap() - 0.055 / 2.0_f64.sqrt() / 0.61).abs() < 1e-9);
+        let apart = named("linear_drag", &[("dx", 0.61, 0.02), ("dy", 0.41, 0.01), ("dz", 0.02, 0.04)]);
+        assert!((known_to(&apart).unwrap() - 0.02 / 0.61).abs() < 1e-9);
+        let wind = named("steady_wind", &[("north", 3.0, 0.3), ("west", 4.0, 0.3)]);
+        assert!((known_to(&wind).unwrap() - 0.06).abs() < 1e-9);
+        // the moment of a change is not its size
+        let change = named("mass_change", &[("time", 26.0, 0.1), ("delta", -0.2, 0.02)]);
+        assert!((known_to(&change).unwrap() - 0.1).abs() < 1e-9);
+        assert_eq!(known_to(&named("thrust_curve", &[("curvature", 0.1, 0.01)])), None);
     }
 
     #[test]

@@ -81,6 +81,6 @@ pub enum Size {
         /// displayed unit
         unit: &'static str,
     },
-    /// text of its own
-    Own(fn(&Named) -> Option<String>),
+    /// text of its own, and of the number in it the value and the standard error, where it has a unit
+    Own(fn(&Named) -> Option<String>, fn(&Named) -> Option<(f64, f64)>),
 }

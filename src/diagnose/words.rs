@@ -46,6 +46,17 @@ pub fn range(named: &Named) -> String {
     format!("{} {unit}", ends.join(" to "))
 }
 
+/// Value and standard error of [`range`]: of the common value, otherwise of the largest one.
+#[must_use]
+pub fn largest(named: &Named) -> Option<(f64, f64)> {
+    let first = named.parameters.first()?;
+    let same: Vec<&NamedParameter> = named.parameters.iter().filter(|p| p.unit == first.unit).collect();
+    common(&same).or_else(|| {
+        let most = same.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))?;
+        Some((most.value, most.std))
+    })
+}
+
 /// Norm of values, and its standard error.
 #[must_use]
 pub fn norm(parameters: &[&NamedParameter]) -> (f64, f64) {

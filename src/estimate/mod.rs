@@ -2,6 +2,7 @@
 
 mod anchor;
 mod compensate;
+mod contradicted;
 mod error;
 mod expected;
 mod guessed_curve;
@@ -25,6 +26,7 @@ mod weak_flights;
 mod window;
 
 pub use anchor::{apply_anchor, identified_vehicle, rescaled, scaling_mass, thrust_scale};
+pub use contradicted::contradicted;
 pub use error::EstimateError;
 pub use expected::NoiseTerm;
 pub use guessed_curve::{GuessedCurve, MovedByCurve, rests_on_guessed_curve};

@@ -62,6 +62,12 @@ impl ReadParameters {
         })
     }
 
+    /// How many have answered, or are not waited for any more, of how many.
+    #[must_use]
+    pub fn progress(&self) -> (usize, usize) {
+        (self.items.iter().filter(|(.., settled)| *settled).count(), self.items.len())
+    }
+
     /// What came.
     #[must_use]
     pub fn known(self) -> Known {

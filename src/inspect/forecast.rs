@@ -3,8 +3,7 @@
 use crate::diagnose::{ExpectedError, LAW_OF_THRUST, LAW_OF_TORQUE, expected_errors};
 use crate::draft::{Given, draft};
 use crate::estimate::{
-    Contradiction, Estimated, GuessedCurve, IdentifySettings, WeakInformation, apply_anchor, contradictions,
-    identify, solve_weak, theta_of,
+    Contradiction, Estimated, GuessedCurve, WeakInformation, contradicted, solve_weak, theta_of,
 };
 use crate::recording::{Quantity, Recording};
 use crate::regression::{WeakMotion, weak_rows};
@@ -69,22 +68,14 @@ pub(super) fn forecast(
     };
     let of_effects = std::slice::from_ref(of_effects.as_ref().unwrap_or(&signals));
     Ok(Forecast {
-        contradictions: vehicle.map(|vehicle| contradicted(&signals, vehicle)).unwrap_or_default(),
+        contradictions: vehicle
+            .map(|vehicle| contradicted(std::slice::from_ref(&signals), vehicle))
+            .unwrap_or_default(),
         body: body(&signals, &known),
         effects: expected_errors(of_effects, &known).map_err(|error| error.to_string()),
         assumed: vehicle.is_none(),
         vehicle: known,
     })
-}
-
-/// What identification would find far from what the vehicle file states.
-fn contradicted(signals: &Signals, vehicle: &Vehicle) -> Vec<Contradiction> {
-    let settings = IdentifySettings::default();
-    let Ok(mut found) = identify(std::slice::from_ref(signals), vehicle, &settings) else {
-        return Vec::new();
-    };
-    let scale = apply_anchor(&mut found, vehicle);
-    contradictions(&found.best.result, vehicle, scale.as_ref())
 }
 
 fn body(signals: &Signals, vehicle: &Vehicle) -> Option<Estimated> {

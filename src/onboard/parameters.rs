@@ -2,9 +2,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use std::time::{Duration, Instant};
+
 use super::{Flow, OnboardError, Session};
 use crate::autopilot::Stack;
 use crate::fetch::ReadParameters;
+use crate::note::Note;
+
+/// Between two words about how many have answered.
+const STILL_WAITING: Duration = Duration::from_secs(3);
 
 /// Asks the vehicle for what is `needed` of its parameters by what is known so far, until nothing more is. Nothing else is
 /// sent but heartbeats. What does not answer is missing.
@@ -23,7 +29,20 @@ pub async fn read_as_needed(
         }
         let names: Vec<&str> = more.iter().map(String::as_str).collect();
         let mut reading = ReadParameters::new(session.vehicle, &names)?;
-        session.talk(&mut reading, |_| Ok(Flow::On)).await?;
+        let (tell, about) = session.teller();
+        let mut told = Instant::now();
+        let tell_progress = |reading: &mut ReadParameters| {
+            if told.elapsed() >= STILL_WAITING {
+                told = Instant::now();
+                let (there, all) = reading.progress();
+                let text = format!(
+                    "reading parameters: {there} of {all} are done; one that is not there never answers"
+                );
+                tell(&Note::remark(about.clone(), text));
+            }
+            Ok(Flow::On)
+        };
+        session.talk(&mut reading, tell_progress).await?;
         let came = reading.known();
         known.extend(more.iter().filter_map(|name| Some((name.clone(), came.value(name)?))));
         asked.extend(more);

@@ -130,6 +130,11 @@ impl Session {
         }
     }
 
+    /// Who takes what is to be known meanwhile, and what it is about.
+    pub(super) fn teller(&self) -> (fn(&Note), About) {
+        (self.tell, About::Link(self.address.clone()))
+    }
+
     /// What the vehicle offers.
     ///
     /// # Errors

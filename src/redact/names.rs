@@ -47,10 +47,19 @@ pub(super) fn is_secret_parameter(name: &str) -> bool {
     let last = words.last().map(String::as_str);
     let key = ["PASS", "PASSWD", "PASSWORD", "PASSPHRASE", "KEY", "SECRET", "TOKEN"];
     is_identity(name)
-        || coordinate(name).is_some()
+        || is_place(name, &words)
         || words.iter().any(|word| key.contains(&word.as_str()))
         // CAL_ACC0_ID, COMPASS_PRIO1_ID, INS_ACC_ID
         || (last == Some("ID") && words.len() > 2)
+}
+
+/// Whether a parameter of this name and these words holds a place, or what is peculiar to one: the declination of the magnetic field,
+/// and all of a simulation's start.
+fn is_place(name: &str, words: &[String]) -> bool {
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    coordinate(name).is_some()
+        || matches!(words[..], [.., "DECL" | "DECLINATION"] | ["COMPASS", "DEC"])
+        || matches!(words[..], ["SIM", "OPOS", ..] | ["SIH", "LOC", ..] | ["AHRS", "ORIG" | "ORIGIN", ..])
 }
 
 /// Whether a text holds what may be a serial number, a key or a position: eight hexadecimal digits in a row, or a number with
@@ -91,6 +100,23 @@ mod tests {
             ["CAL_ACC0_ID", "COMPASS_DEV_ID2", "BRD_SERIAL_NUM", "NET_PASS", "SIM_OPOS_LAT", "INS_ACC_ID"]
         {
             assert!(is_secret_parameter(name), "{name}");
+        }
+        for name in [
+            "EKF2_MAG_DECL",
+            "ATT_MAG_DECL",
+            "COMPASS_DEC",
+            "SIM_OPOS_ALT",
+            "SIM_OPOS_HDG",
+            "SIH_LOC_MU_X",
+            "AHRS_ORIG_LAT",
+            "BCN_LONGITUDE",
+            "LPE_LAT",
+        ] {
+            assert!(is_secret_parameter(name), "{name}");
+        }
+        for name in ["EKF2_DECL_TYPE", "EKF2_MAG_TYPE", "COMPASS_AUTODEC", "MPC_DEC_HOR_SLOW", "FENCE_RADIUS"]
+        {
+            assert!(!is_secret_parameter(name), "{name}");
         }
         for name in
             ["SERIAL0_BAUD", "MPC_THR_HOVER", "CA_ROTOR0_PX", "SYSID_THISMAV", "MAV_TYPE", "MOT_PWM_MAX"]

@@ -21,8 +21,8 @@ pub enum SignalsError {
     },
     /// the log is that of a vehicle with another number of rotors
     #[error(
-        "expected the log of a vehicle with {rotors} rotors, as the vehicle file has, got {came}: give the file of the vehicle that \
-         flew (`mavid vehicle init` drafts one from its log), or correct its [[rotor]] entries"
+        "expected the log of a vehicle with {rotors} rotors, as the given one has (its file, or --frame), got {came}: give the file of the \
+         vehicle that flew (`mavid vehicle init` drafts one from its log), correct its [[rotor]] entries, or leave --frame out"
     )]
     OtherRotors {
         /// rotors of the vehicle

@@ -85,10 +85,12 @@ pub enum StudyError {
     )]
     FilterWithEffects,
     /// the flights cannot be explained
-    #[error("{logs}: {source}")]
+    #[error("{logs}: {mismatch}{source}")]
     Explain {
         /// names of the logs
         logs: String,
+        /// that they contradict the vehicle, as the beginning of the sentence; empty where they do not
+        mismatch: String,
         /// why
         source: ExplainError,
     },

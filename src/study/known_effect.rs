@@ -202,11 +202,18 @@ fn times(effect: &dyn Effect, name: &str, (vehicle, reference): (&Vehicle, &Vehi
     powers.filter(|(mass, _)| *mass == 0).map_or(1.0, |(_, arm)| arms.powi(arm))
 }
 
+/// Bounds on a vehicle, in the parameter's unit: the number of a rotor is that of one of its own.
+fn bounds(parameter: &Parameter, of: &Vehicle) -> (f64, f64) {
+    let (least, greatest) = parameter.bounds.at(&of.size());
+    let last = of.rotors.len().saturating_sub(1) as f64;
+    (least, if parameter.is_rotor() { greatest.min(last) } else { greatest })
+}
+
 fn parameters(effect: &dyn Effect, of: &Vehicle) -> Vec<KnownParameter> {
     let amounts = signature_of(effect.id()).map_or(&[][..], |signature| signature.amounts);
     let common = effect.parameters();
     let known = |(slot, parameter): (usize, &Parameter)| {
-        let (least, greatest) = parameter.bounds.at(&of.size());
+        let (least, greatest) = bounds(parameter, of);
         let (mass_power, arm_power) = parameter.bounds.powers();
         let kind = match slot {
             slot if slot >= common.len() => ParameterKind::FinerForm,
@@ -242,11 +249,11 @@ fn table(effect: &dyn Effect, of: &Vehicle, usual: &[(&str, f64)]) -> String {
     for (parameter, value) in
         all.filter_map(|one| Some((one, usual.iter().find(|(name, _)| *name == one.name)?.1)))
     {
-        let (least, greatest) = parameter.bounds.at(&of.size());
+        let (least, greatest) = bounds(parameter, of);
         let unit = if parameter.unit == "-" { "" } else { parameter.unit };
         let of_tests = OF_TESTS.contains(&(effect.id(), parameter.name));
         let remark = match parameter.is_rotor() {
-            true => ", counted from 0 in the vehicle file's order; its name is taken too",
+            true => "; motor 1 is 0: counted from 0 in the vehicle file's order; its name is taken too",
             false if of_tests => ", the size concealed in the tests",
             false => "",
         };

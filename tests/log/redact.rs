@@ -11,6 +11,8 @@ use mavid::wire::{MARKER_V2, checksum};
 /// Latitude and longitude of the test, 1e-7 degrees: 59.9 N 10.75 E.
 const LATITUDE: i32 = 599_000_000;
 const LONGITUDE: i32 = 107_500_000;
+/// Declination of the magnetic field there, which tells the region.
+const DECLINATION_DEG: f32 = 4.6875;
 
 fn read(bytes: &[u8]) -> Recording {
     open(Input::Bytes { name: "redacted", bytes }, &OpenOptions::default()).unwrap().recording
@@ -54,6 +56,9 @@ fn telltale() -> Vec<u8> {
     parameter[8..19].copy_from_slice(b"CAL_ACC0_ID");
     let mut gain = parameter.clone();
     gain[8..24].copy_from_slice(b"MPC_THR_HOVER\0\0\0");
+    let mut declination = parameter.clone();
+    declination[..4].copy_from_slice(&DECLINATION_DEG.to_le_bytes());
+    declination[8..21].copy_from_slice(b"EKF2_MAG_DECL");
     let mut key = vec![0; 42];
     key[8..40].copy_from_slice(b"0123456789abcdefSECRETKEYSECRETK");
     let mut text = vec![0; 51];
@@ -65,8 +70,9 @@ fn telltale() -> Vec<u8> {
         frame(at(3), 148, 178, &version, false),
         frame(at(4), 22, 220, &parameter, false),
         frame(at(5), 22, 220, &gain, false),
-        frame(at(6), 256, 71, &key, false),
-        frame(at(7), 253, 83, &text, false),
+        frame(at(6), 22, 220, &declination, false),
+        frame(at(7), 256, 71, &key, false),
+        frame(at(8), 253, 83, &text, false),
     ]
     .concat()
 }
@@ -76,7 +82,7 @@ fn places_serial_numbers_and_keys_are_out_of_a_telemetry_log() {
     let log = telltale();
     let redacted = redact(&log).unwrap();
     let tally = redacted.tally;
-    assert_eq!((tally.kept, tally.moved, tally.emptied, tally.left_out), (6, 4, 3, 2), "{tally:?}");
+    assert_eq!((tally.kept, tally.moved, tally.emptied, tally.left_out), (7, 4, 4, 2), "{tally:?}");
     for told in [
         &b"SERIAL"[..],
         b"SECRET",
@@ -84,6 +90,7 @@ fn places_serial_numbers_and_keys_are_out_of_a_telemetry_log() {
         b"3433510A",
         &LATITUDE.to_le_bytes(),
         &LONGITUDE.to_le_bytes(),
+        &DECLINATION_DEG.to_le_bytes(),
     ] {
         assert!(holds(&log, told) && !holds(&redacted.bytes, told), "{told:?}");
     }

@@ -67,7 +67,7 @@ fn one_effect_is_told_with_its_size_on_a_vehicle() {
     let sag = said(&["effects", "battery_sag"]);
     assert!(sag.contains("size concealed in the tests; not known by class"), "{sag}");
     let weak = said(&["effects", "weak_rotor"]);
-    assert_eq!(weak.matches("counted from 0 in the vehicle file's order").count(), 2, "{weak}");
+    assert_eq!(weak.matches("motor 1 is 0: counted from 0 in the vehicle file's order").count(), 2, "{weak}");
     let flapping = said(&["effects", "blade_flapping"]);
     assert!(!flapping.contains("palm-sized"), "{flapping}");
     let unknown = mavid(&["effects", "drag"]);

@@ -6,7 +6,7 @@
 use std::io::{self, IsTerminal};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use mavid::fly::view::KeyCommand;
+use mavid::fly::view::{ARM_WORD, KeyCommand};
 use tokio::sync::mpsc::UnboundedSender;
 
 use crate::commands::output;
@@ -87,7 +87,10 @@ fn judge(line: &Line) -> Result<KeyCommand, String> {
     match KeyCommand::of_line(&line.text) {
         Some(KeyCommand::Arm) if !line.after_page => Err(EARLY.to_owned()),
         Some(command) => Ok(command),
-        None => Err(format!("{KEYS}; got `{}`", line.text.trim_end().escape_debug())),
+        None => Err(format!(
+            "expected {ARM_WORD} and return before the flight, or {KEYS}; got `{}`",
+            line.text.trim_end().escape_debug()
+        )),
     }
 }
 
@@ -211,6 +214,8 @@ mod tests {
         assert_eq!(said(b"arm\narm\nl\n", false), [early(), early(), Ok(KeyCommand::Land)]);
         assert_eq!(said(b"ar", false), []);
         assert_eq!(said(b"m\narm\n", true), [early(), Ok(KeyCommand::Arm)]);
+        let wrong = said(b"fly\n", true).pop().unwrap().unwrap_err();
+        assert!(wrong.starts_with("expected arm") && wrong.ends_with("got `fly`"), "{wrong}");
         assert_eq!(said(b"ar", true), []);
         assert_eq!(lines.end().map(|line| line.text), Some("ar".to_owned()));
         assert_eq!(lines.end(), None);

@@ -51,7 +51,7 @@ pub(super) fn vehicle_of(args: &FlyArgs) -> Result<FlightVehicle, CommandError> 
     let given = args.shape.given(mass_kg);
     check_given(&given)?;
     let link = link_of(args, args.system_id);
-    let found = parameters_of_vehicle(&link, |stack, known| parameters_of(stack, &given, known))?;
+    let found = parameters_of_vehicle(&link, |_, _| {}, |stack, known| parameters_of(stack, &given, known))?;
     let draft = draft_from_parameters((found.autopilot, found.parameters), &given, &args.connect)?;
     let guesses = draft.vehicle.guesses.len();
     output::message(&format!(

@@ -152,6 +152,7 @@ fn draw(
                     model.page_from = keys.from();
                 }
                 model.typed = keys.typed().map(str::to_owned);
+                model.refused = keys.refused().map(str::to_owned);
                 if screen.draw(&model).is_err() {
                     // lines and Ctrl-C need the terminal as it was
                     drop((screen, away));

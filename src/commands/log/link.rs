@@ -12,7 +12,7 @@ use crate::cli::VehicleLinkArgs;
 use crate::commands::{CommandError, network, output};
 
 /// A vehicle that is not heard within this is not there.
-const PATIENCE: Duration = Duration::from_secs(30);
+pub const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Opens the link and waits for the vehicle; one that is armed is refused. A host that refuses is not waited for.
 pub async fn open(args: &VehicleLinkArgs) -> Result<Session, CommandError> {
@@ -69,13 +69,15 @@ pub struct Answered {
     pub parameters: BTreeMap<String, f64>,
 }
 
-/// What is `needed` of the vehicle's parameters, as [`read_as_needed`] asks for it.
+/// What is `needed` of the vehicle's parameters, as [`read_as_needed`] asks for it. `found` is called before the first is read.
 pub fn parameters_of_vehicle(
     link: &VehicleLinkArgs,
+    found: impl FnOnce(SystemId, Autopilot),
     needed: impl Fn(&Stack, &BTreeMap<String, f64>) -> BTreeSet<String>,
 ) -> Result<Answered, CommandError> {
     network::block_on(async {
         let mut session = open(link).await?;
+        found(session.vehicle.system, session.stack.autopilot);
         let parameters = read_as_needed(&mut session, needed).await?;
         let (system, autopilot) = (session.vehicle.system.0, session.stack.autopilot);
         Ok(Answered { system, autopilot, parameters })

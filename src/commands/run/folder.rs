@@ -82,6 +82,11 @@ impl Folder {
             .map_err(|error| CommandError::Failure(format!("cannot write {}: {error}", text::path(&path))))
     }
 
+    /// Steps that made what is in the folder, those of earlier runs among them.
+    pub fn remembered(&self) -> usize {
+        fs::read_to_string(self.of(COMMANDS)).map_or(0, |text| text.lines().count())
+    }
+
     /// The vehicle's file.
     pub fn vehicle(&self) -> PathBuf {
         self.of("vehicle.toml")
@@ -211,6 +216,7 @@ mod tests {
         assert_eq!(folder.flights(), []);
         ["mavid plan v.toml", "mavid fly"].iter().for_each(|step| folder.remember(step).unwrap());
         assert_eq!(fs::read_to_string(folder.of(COMMANDS)).unwrap(), "mavid plan v.toml\nmavid fly\n");
+        assert_eq!(folder.remembered(), 2);
         fs::create_dir_all(folder.of("flight1")).unwrap();
         assert_eq!(folder.new_flight(), folder.of("flight1"), "an empty folder blocks nothing");
         flown(&folder.of("flight1"), &["connect", "check", "over"]);

@@ -1,7 +1,5 @@
 //! What becomes of the vehicle's logging for the flights of a run. No answer to it ends the run.
 
-use mavid::text;
-
 use super::context::Context;
 use super::step::Step;
 use super::target::Target;
@@ -175,7 +173,7 @@ pub fn put_back(context: &Context<'_>, target: &Target) {
 fn without(needs: &LoggingNeeds, step: &str, wanted: bool) -> String {
     let brings = match needs.would_log.as_slice() {
         [] => String::new(),
-        logs => format!(" ({})", text::listed(logs.iter())),
+        logs => format!(" ({})", logs.join("; ")),
     };
     let wants = if wanted {
         "the setting counts only after a restart of the autopilot, which --restart beside --set-logging orders: nothing is set, and "
@@ -232,13 +230,12 @@ mod tests {
 
     #[test]
     fn without_a_restart_it_is_said_what_the_next_flight_would_bring() {
-        let would_log = vec!["motor commands at their full rate".to_owned()];
+        // longer than a name in a list
+        let rates = "motor commands, torque setpoints, gyroscope and accelerometer at their full rate";
+        let would_log = vec![rates.to_owned()];
         let needs = LoggingNeeds { would_log, ..needs() };
         let said = without(&needs, "mavid log prepare", false);
-        assert!(
-            said.contains("(motor commands at their full rate) for the next flight: mavid log prepare"),
-            "{said}"
-        );
+        assert!(said.contains(&format!("({rates}) for the next flight: mavid log prepare")), "{said}");
         let asked = without(&needs, "mavid log prepare", true);
         assert!(asked.contains("--restart beside --set-logging") && asked.ends_with(&said), "{asked}");
     }

@@ -3,6 +3,7 @@
 //! ```text
 //! target       the vehicle: at an address, or embedded
 //! taken_up     what an earlier run left unfinished
+//! same_vehicle what is given does not contradict the folder
 //! vehicle      its file, from its parameters and what a person knows
 //! room         limits that a person confirms
 //! planned      the trajectory of each flight
@@ -31,6 +32,7 @@ mod planned;
 mod progress;
 mod rehearsal;
 mod room;
+mod same_vehicle;
 mod step;
 mod taken_up;
 mod target;

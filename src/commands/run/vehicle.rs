@@ -13,22 +13,20 @@ use mavid::fly::parameters::{Parameters, requested_parameters};
 use mavid::study::{draft_from_parameters, implausible};
 use mavid::text;
 use mavid::vehicle::{Guessed, Vehicle};
+use mavid::wire::SystemId;
 
 use super::ask::number;
 use super::context::Context;
-use super::folder::Folder;
 use super::step::Step;
 use super::target::Target;
-use crate::cli::RunArgs;
-use crate::commands::log::{Answered, parameters_of_vehicle};
+use crate::commands::log::{Answered, PATIENCE, parameters_of_vehicle};
+use crate::commands::progress::Spinner;
 use crate::commands::sitl::DEFAULT_VEHICLE;
 use crate::commands::{CommandError, output, vehicle};
 
 /// Masses and sizes that are taken at a question.
 const MASSES_KG: (f64, f64) = (0.01, 200.0);
 const SIZES_M: (f64, f64) = (0.05, 5.0);
-/// Masses that are the same.
-const SAME: f64 = 1e-6;
 /// Rotors whose parameters are asked for: those that are not there do not answer.
 const ROTORS: usize = 8;
 
@@ -58,31 +56,6 @@ pub fn of_folder(context: &Context<'_>, target: &mut Target) -> Result<Vehicle, 
     let loaded = read_vehicle(&path)?;
     output::warnings(&path, &loaded.warnings);
     Ok(loaded.vehicle)
-}
-
-/// What is given does not contradict the vehicle's file, if the folder has one.
-///
-/// # Errors
-/// It does, or the file cannot be read.
-pub fn same_vehicle(folder: &Folder, args: &RunArgs) -> Result<(), CommandError> {
-    let path = &folder.vehicle();
-    if !path.exists() {
-        return Ok(());
-    }
-    let shown = text::path(path);
-    let known = read_vehicle(path)?.vehicle.body.mass_kg;
-    let another = "give another folder with --out, or change the file";
-    if let Some(mass_kg) = args.mass.filter(|mass_kg| (mass_kg - known).abs() > SAME * known) {
-        let what =
-            format!("--mass: expected the {known} kg of {shown}, which is there, got {mass_kg}: {another}");
-        return Err(CommandError::Input(what));
-    }
-    let differs = |file: &Path| std::fs::read(file).ok() != std::fs::read(path).ok();
-    if let Some(file) = args.vehicle.as_deref().filter(|file| differs(file)) {
-        let what = format!("--vehicle: expected what is in {shown}, got {}: {another}", text::path(file));
-        return Err(CommandError::Input(what));
-    }
-    Ok(())
 }
 
 /// Drafts the file from the vehicle's parameters; what they do not say is asked.
@@ -128,12 +101,20 @@ pub fn asked(context: &Context<'_>, target: &mut Target, given: &Given) -> Resul
     };
     let link = target.link();
     context.work.ends_itself();
-    let found = parameters_of_vehicle(&link, |stack, known| {
+    let waiting = format!("waiting for a vehicle at {}", target.connect);
+    output::message(&format!("{waiting}, at most {} s", PATIENCE.as_secs()));
+    let shown = Spinner::of(context.stderr, waiting);
+    let heard = |system: SystemId, autopilot: Autopilot| {
+        let name = autopilot.stack().map_or("an unknown autopilot", |stack| stack.name);
+        let connect = &target.connect;
+        output::message(&format!("found system {}, {name}, at {connect}; reading its parameters", system.0));
+        shown.say("reading its parameters");
+    };
+    let found = parameters_of_vehicle(&link, heard, |stack, known| {
         stack.autopilot.stack().map_or_else(BTreeSet::new, |stack| needed(stack, known))
     })?;
+    drop(shown);
     context.work.waits();
-    let name = found.autopilot.stack().map_or("an unknown autopilot", |stack| stack.name);
-    output::message(&format!("found system {}, {name}, at {}", found.system, target.connect));
     target.system = Some(found.system);
     let all =
         Parameters { autopilot: found.autopilot, values: found.parameters.clone(), ..Parameters::default() };
@@ -153,7 +134,7 @@ pub fn autopilot_flown(context: &Context<'_>, logs: &[PathBuf]) -> Option<Autopi
     autopilot(context).or_else(|| logs.iter().find_map(beside))
 }
 
-fn autopilot_of(path: &Path) -> Option<Autopilot> {
+pub(super) fn autopilot_of(path: &Path) -> Option<Autopilot> {
     let text = std::fs::read_to_string(path).ok()?;
     Parameters::from_toml(&text, PARAMETERS).ok().map(|parameters| parameters.autopilot)
 }

@@ -18,6 +18,7 @@ use super::explained::{Explained, answer, explained};
 use super::folder::{Folder, Recorded};
 use super::logging::{self, Logging};
 use super::page::{Document, Made, places};
+use super::same_vehicle::same_vehicle;
 use super::target::Target;
 use super::{finish, flying, planned, rehearsal, room, taken_up, vehicle};
 use crate::cli::RunArgs;
@@ -119,7 +120,7 @@ struct FlownFlights {
 /// Flies until a further flight would bring nothing that is needed, or nobody wants one.
 fn all_flights(context: &Context<'_>) -> Result<FlownFlights, CommandError> {
     context.stage("Vehicle");
-    vehicle::same_vehicle(&context.folder, context.args)?;
+    same_vehicle(&context.folder, context.args)?;
     room::same_room(&context.folder, context.args.room.as_deref())?;
     taken_up::take_up(context)?;
     let flights = context.folder.flights();

@@ -28,17 +28,15 @@ impl NextFlight {
     /// The expected results as a sentence.
     #[must_use]
     pub fn sentence(&self) -> String {
-        let after = |pair: &Pair| {
-            format!("now {:.1} sigma, after {:.0} s of this {:.1} sigma", pair.now, self.seconds, pair.after)
-        };
-        let pairs = self.pairs.iter().map(|pair| match pair.other {
-            Some(other) => {
-                let better =
-                    if latency_kind(pair.named).is_some() && pair.after < APART { BY_SPEEDS } else { "" };
-                format!("{} from {other}: {}{better}", pair.named, after(pair))
-            }
-            None => {
-                format!("{} is confused with no other effect; its significance: {}", pair.named, after(pair))
+        let seconds = format!("{:.0} s of this", self.seconds);
+        let pairs = self.pairs.iter().map(|pair| {
+            let distance = pair.distance(&seconds);
+            match pair.other {
+                Some(other) => {
+                    let better = pair.otherwise().map_or_else(String::new, |how| format!(" ({how})"));
+                    format!("{} from {other}: {distance}{better}", pair.named)
+                }
+                None => format!("{} is confused with no other effect; from zero: {distance}", pair.named),
             }
         });
         pairs.chain(self.inseparable.iter().map(ToString::to_string)).collect::<Vec<_>>().join("; ")
@@ -64,6 +62,28 @@ impl Pair {
     pub fn with_next(&self) -> f64 {
         self.now.hypot(self.after)
     }
+
+    /// With the next flight the two effects are told apart.
+    #[must_use]
+    pub fn is_told_apart(&self) -> bool {
+        self.other.is_some() && self.with_next() >= APART
+    }
+
+    /// Their distance in words, now and with the next flight, which has the name `flight`.
+    #[must_use]
+    pub fn distance(&self, flight: &str) -> String {
+        let apart = match self.other {
+            Some(_) if !self.is_told_apart() => format!(", and {APART:.0} tell them apart"),
+            _ => String::new(),
+        };
+        format!("now {:.1}, with {flight} {:.1} standard deviations{apart}", self.now, self.with_next())
+    }
+
+    /// What else would tell the two apart, if the next flight does not; `None` where nothing is known.
+    #[must_use]
+    pub fn otherwise(&self) -> Option<&'static str> {
+        (latency_kind(self.named).is_some() && !self.is_told_apart()).then_some(BY_SPEEDS)
+    }
 }
 
 /// Two effects that no trajectory separates.
@@ -83,4 +103,20 @@ impl std::fmt::Display for Inseparable {
     }
 }
 
-const BY_SPEEDS: &str = " (rotor speed telemetry, or doublets of 5 Hz and more, separate them)";
+const BY_SPEEDS: &str = "rotor speed telemetry, or doublets of 5 Hz and more, separate them";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_counts_as_told_apart_is_said_to_be() {
+        let pair = |now, after| Pair { named: "motor_lag", other: Some("transport_delay"), now, after };
+        let near = pair(1.5, 1.2);
+        assert!(!near.is_told_apart() && near.otherwise().is_some());
+        assert_eq!(near.distance("it"), "now 1.5, with it 1.9 standard deviations, and 5 tell them apart");
+        let far = pair(3.0, 4.0);
+        assert!(far.is_told_apart() && far.otherwise().is_none());
+        assert_eq!(far.distance("it"), "now 3.0, with it 5.0 standard deviations");
+    }
+}

@@ -37,9 +37,12 @@ pub static SIGNATURE: Signature = Signature {
                     significant(named.value("full_voltage"), 4)
                 )
             }),
-            size: Size::Own(|named| {
-                Some(format!("the voltage to the power of {}", words::said(named, "exponent", 1.0, "")?))
-            }),
+            size: Size::Own(
+                |named| {
+                    Some(format!("the voltage to the power of {}", words::said(named, "exponent", 1.0, "")?))
+                },
+                |_| None,
+            ),
             ..Words::of("battery sag")
         },
     )

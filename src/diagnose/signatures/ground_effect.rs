@@ -74,7 +74,7 @@ pub static SIGNATURE: Signature = Signature {
         &[RHO, CA],
         Words {
             clause: Clause::Own(clause),
-            size: Size::Own(size),
+            size: Size::Own(size, |_| None),
             told_if_absent: Some(3),
             expected_in_motion: Some(2),
             ..Words::of("ground effect")

@@ -44,10 +44,13 @@ pub static SIGNATURE: Signature = Signature {
                     named.said("time", 1.0)
                 )
             }),
-            size: Size::Own(|named| {
-                let delta = words::said(named, "delta", 1.0, "kg")?;
-                Some(format!("{delta} at {} s", significant(named.value("time"), 3)))
-            }),
+            size: Size::Own(
+                |named| {
+                    let delta = words::said(named, "delta", 1.0, "kg")?;
+                    Some(format!("{delta} at {} s", significant(named.value("time"), 3)))
+                },
+                |named| named.get("delta").map(|delta| (delta.value, delta.std)),
+            ),
             ..Words::of("a change of mass")
         },
     )

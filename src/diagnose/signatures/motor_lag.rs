@@ -17,13 +17,16 @@ pub static SIGNATURE: Signature = Signature {
         &[0],
         Words {
             clause: Clause::Own(|named, _| clause(named)),
-            size: Size::Own(|named| {
-                let said = |name: &str| words::said(named, name, 1e3, "ms");
-                match (said("time_constant"), said("time_constant_down")) {
-                    (Some(up), Some(down)) => Some(format!("{up} up, {down} down")),
-                    (up, _) => up,
-                }
-            }),
+            size: Size::Own(
+                |named| {
+                    let said = |name: &str| words::said(named, name, 1e3, "ms");
+                    match (said("time_constant"), said("time_constant_down")) {
+                        (Some(up), Some(down)) => Some(format!("{up} up, {down} down")),
+                        (up, _) => up,
+                    }
+                },
+                |named| named.get("time_constant").map(|lag| (lag.value, lag.std)),
+            ),
             ..Words::of("motor lag")
         },
     )

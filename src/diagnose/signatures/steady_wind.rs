@@ -37,11 +37,14 @@ pub static SIGNATURE: Signature = Signature {
         &[0, 1, 2],
         Words {
             clause: Clause::Own(|named, _| clause(named)),
-            size: Size::Own(|named| {
-                let (speed, std) = speed(named);
-                let point = point_of(named.value("north"), named.value("west"));
-                Some(format!("{} m/s from the {point}", with_error(speed, std)))
-            }),
+            size: Size::Own(
+                |named| {
+                    let (speed, std) = speed(named);
+                    let point = point_of(named.value("north"), named.value("west"));
+                    Some(format!("{} m/s from the {point}", with_error(speed, std)))
+                },
+                |named| Some(speed(named)),
+            ),
             ..Words::of("a steady wind")
         },
     )

@@ -65,11 +65,14 @@ pub static SIGNATURE: Signature = Signature {
                 format!("a {what} {}", motor_words(vehicle, named.value("rotor")))
             }),
             clause: Clause::Own(clause),
-            size: Size::Own(|named| {
-                let p = named.get("factor")?;
-                let change = 100.0 * (1.0 - p.value).abs();
-                Some(format!("{} %", words::plain(change, 100.0 * p.std)))
-            }),
+            size: Size::Own(
+                |named| {
+                    let p = named.get("factor")?;
+                    let change = 100.0 * (1.0 - p.value).abs();
+                    Some(format!("{} %", words::plain(change, 100.0 * p.std)))
+                },
+                |_| None,
+            ),
             limit: Some(|limit| format!("a rotor {} % weak", significant(100.0 * limit, 2))),
             told_if_absent: Some(2),
             ..Words::of("a weak rotor")

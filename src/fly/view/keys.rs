@@ -52,6 +52,8 @@ pub struct Keys {
     last: usize,
     /// it was seen to its end
     read: bool,
+    /// what was entered last in place of the word for arming
+    refused: Option<String>,
 }
 
 /// Lines that are scrolled at once.
@@ -61,7 +63,7 @@ impl Keys {
     /// Sets whether the word for arming is awaited.
     pub fn ask(&mut self, asks: bool) {
         if asks != self.asks {
-            (self.asks, self.word) = (asks, None);
+            (self.asks, self.word, self.refused) = (asks, None, None);
         }
     }
 
@@ -90,6 +92,10 @@ impl Keys {
         if event.modifiers.contains(KeyModifiers::CONTROL) {
             return matches!(event.code, KeyCode::Char('c')).then_some(KeyCommand::Quit);
         }
+        if self.asks && self.read && event.code == KeyCode::Enter {
+            return self.enter_word();
+        }
+        self.refused = None;
         match (&mut self.word, event.code) {
             (_, KeyCode::Down) if self.asks => self.turn(self.from.saturating_add(1)),
             (_, KeyCode::Up) if self.asks => self.turn(self.from.saturating_sub(1)),
@@ -108,15 +114,29 @@ impl Keys {
             }
             (Some(word), KeyCode::Char(letter)) if word.len() < 2 * KILL_WORD.len() => word.push(letter),
             (Some(_), KeyCode::Enter) => {
-                let (wanted, command) =
-                    if self.asks { (ARM_WORD, KeyCommand::Arm) } else { (KILL_WORD, KeyCommand::Kill) };
-                // nobody arms on a page that was not seen whole
-                let allowed = !self.asks || self.read;
-                return self.word.take().filter(|word| allowed && word == wanted).map(|_| command);
+                return self
+                    .word
+                    .take()
+                    .filter(|word| !self.asks && word == KILL_WORD)
+                    .map(|_| KeyCommand::Kill);
             }
             _ => {}
         }
         None
+    }
+
+    /// The word for arming, of a page that was seen whole; another one arms nothing and is kept to be told.
+    fn enter_word(&mut self) -> Option<KeyCommand> {
+        let word = self.word.take().unwrap_or_default();
+        let is_it = word == ARM_WORD;
+        self.refused = (!is_it).then_some(word);
+        is_it.then_some(KeyCommand::Arm)
+    }
+
+    /// What was entered in place of the word for arming, until the next key.
+    #[must_use]
+    pub fn refused(&self) -> Option<&str> {
+        self.refused.as_deref()
     }
 
     /// The typed part of the word; `None` while keys are commands.
@@ -174,7 +194,11 @@ mod tests {
         keys.press(KeyEvent::from(KeyCode::PageDown));
         assert_eq!(keys.from(), 27);
         assert_eq!(press(&mut keys, "ar\nh\n:kill\n"), []);
-        assert_eq!(press(&mut keys, "arm\n"), [KeyCommand::Arm]);
+        for wrong in ["fly", "ARM", ""] {
+            assert_eq!((press(&mut keys, &format!("{wrong}\n")), keys.refused()), (vec![], Some(wrong)));
+        }
+        assert_eq!((press(&mut keys, "a"), keys.refused()), (vec![], None));
+        assert_eq!(press(&mut keys, "rm\n"), [KeyCommand::Arm]);
         keys.ask(false);
         assert_eq!(press(&mut keys, "h"), [KeyCommand::Hold]);
         assert_eq!(KeyCommand::of_line(" arm\n"), Some(KeyCommand::Arm));

@@ -13,7 +13,7 @@ mod screen;
 mod spark;
 
 pub use instruments::{bar, horizon, path_map};
-pub use keys::{KILL_WORD, KeyCommand, Keys};
+pub use keys::{ARM_WORD, KILL_WORD, KeyCommand, Keys};
 pub use landed::{LandedView, StageView, render_landed};
 pub use model::{
     Attitude, Battery, EventLine, HISTORY, LinkView, ParameterRow, Phase, TWIN, Trace, Tracking, ViewModel,

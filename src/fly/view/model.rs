@@ -174,6 +174,8 @@ pub struct ViewModel {
     pub event_count: u64,
     /// typed text, if a word is requested
     pub typed: Option<String>,
+    /// what was entered in place of the word for arming
+    pub refused: Option<String>,
 }
 
 impl ViewModel {

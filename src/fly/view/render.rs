@@ -82,6 +82,8 @@ fn before_flight(frame: &mut Frame<'_>, model: &ViewModel, page: &Page) {
     let typed = model.typed.as_deref().unwrap_or_default();
     let asked = if more {
         format!("line {end} of {all}: Space for more, Ctrl-C leaves")
+    } else if let Some(refused) = &model.refused {
+        format!("{ARM_WORD}> _   expected {ARM_WORD} and Enter, got {refused:?}: not armed; Ctrl-C leaves")
     } else if model.is_twin {
         format!("{ARM_WORD}> {typed}_  type {ARM_WORD} to fly {TWIN}; Ctrl-C leaves")
     } else {

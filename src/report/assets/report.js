@@ -237,11 +237,20 @@
         pen.stroke();
       }
       // words last, on a halo of the page's colour: no line runs through them
+      var written = [];
+      function isFree(x, y, long) {
+        return y >= 12 && y <= tall - 4 && written.every(function (other) {
+          return Math.abs(y - other[1]) >= 15 || x + long + 6 <= other[0] || other[0] + other[2] + 6 <= x;
+        });
+      }
       ends.forEach(function (axis, k) {
         var a = axis[0], b = axis[1], words = of.axes[k] + ' ' + (+(high[k] - low[k]).toPrecision(2)) + ' m';
         var long = pen.measureText(words).width, x = k === 2 ? a[0] - long / 2 : b[0] + (b[0] < a[0] ? -long / 2 : 4), y = k === 2 ? a[1] + 14 : b[1] + 14;
         x = Math.min(Math.max(x, 4), wide - long - 4);
         y = Math.min(Math.max(y, 12), tall - 4);
+        // of a flight that is long in one direction only, the ends lie together: one line of words each
+        y += 15 * ([0, 1, -1, 2, -2, 3, -3, 4, -4].filter(function (lines) { return isFree(x, y + 15 * lines, long); })[0] || 0);
+        written.push([x, y, long]);
         pen.lineWidth = 4;
         pen.lineJoin = 'round';
         pen.strokeStyle = getComputedStyle(document.body).backgroundColor;

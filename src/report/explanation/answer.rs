@@ -1,12 +1,12 @@
 //! The answer in one sentence.
 
+use super::whereabouts::whereabouts;
 use crate::diagnose::signatures::ALL;
 use crate::diagnose::wording::Words;
 use crate::diagnose::{Along, DetectionLimit, Named, Verdict, brief, called, clause, limit};
 use crate::report::number::significant;
-use crate::study::{ExplainStudy, Located, Predicted, Refuted, ValidationData};
+use crate::study::{ExplainStudy, Predicted, Refuted, ValidationData};
 use crate::vehicle::AXIS_NAMES;
-use std::fmt::Write;
 
 /// Largest number of effects that are listed with their sizes.
 const SIZED: usize = 4;
@@ -323,49 +323,6 @@ fn each_alone(study: &ExplainStudy) -> String {
 fn detection_limit(study: &ExplainStudy, id: &str) -> Option<DetectionLimit> {
     let limits = study.explanation.limits.iter().filter(|limit| limit.id == id);
     limits.copied().max_by(|a, b| a.limit.total_cmp(&b.limit))
-}
-
-/// Location of a misfit: axis, place or state, band.
-fn whereabouts(located: &Located) -> String {
-    let mut parts = Vec::new();
-    if let Some(field) = &located.field {
-        parts.push(format!(
-            "a force of {} N along world {} near the local position {} = {:.1} m, {} m wide",
-            significant(field.force_n, 2),
-            field.force_along,
-            field.changes_along,
-            field.at_m,
-            significant(field.extent_m, 1)
-        ));
-    } else if let Some(axis) = located.axes.first() {
-        let what =
-            axis.axis.replace("force_", "a force along body ").replace("torque_", "a torque about body ");
-        let mut words = format!("mainly {what} ({:.0} %)", axis.share_percent);
-        if let Some(state) = located.leading_state() {
-            let _ = write!(words, " that follows {}", spoken_state(&state.variable));
-        }
-        parts.push(words);
-    }
-    if let Some([low, high]) = located.band_hz {
-        parts.push(format!("between {} and {} Hz", significant(low, 2), significant(high, 2)));
-    }
-    if parts.is_empty() { "spread over all axes, times and states".to_owned() } else { parts.join(", ") }
-}
-
-/// The displayed name of a state.
-fn spoken_state(variable: &str) -> String {
-    match variable {
-        "rate_x" => "the roll rate".to_owned(),
-        "rate_y" => "the pitch rate".to_owned(),
-        "rate_z" => "the yaw rate".to_owned(),
-        "airspeed_x" | "airspeed_y" | "airspeed_z" => {
-            format!("the airspeed along body {}", variable.trim_start_matches("airspeed_"))
-        }
-        rotor if rotor.starts_with("rotor_") => {
-            format!("the thrust of motor {}", rotor.trim_start_matches("rotor_"))
-        }
-        other => format!("the {}", other.replace('_', " ")),
-    }
 }
 
 /// Identifiers of the effects that have such a rank, in its order.

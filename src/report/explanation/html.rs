@@ -167,8 +167,10 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
         .body()
         .into_iter()
         .map(|of| {
-            let moved = (of.after.value - of.before.value) / of.after.std.max(f64::MIN_POSITIVE);
-            let known = of.not_determined.is_none();
+            // both are of the same flights and err alike: their difference errs by no more than this
+            let std = of.before.std.hypot(of.after.std);
+            let known = of.not_determined.is_none() && of.before.std > 0.0;
+            let moved = (of.after.value - of.before.value) / std.max(f64::MIN_POSITIVE);
             vec![
                 text(of.name),
                 number(significant(of.nominal, 4)),
@@ -189,7 +191,7 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
     let content = html! {
         (table(
             "Before: without the effects. After: estimated together with the effects. Moved: change in standard \
-             errors.",
+             errors of both together.",
             &["parameter", "nominal|", "before|", "after|", "moved|", "unit"],
             &rows,
         ))
@@ -220,7 +222,10 @@ fn evidence(study: &ExplainStudy) -> Markup {
                     TriedAs::Rival => "rival".to_owned(),
                     TriedAs::Left => "in the end: not named".to_owned(),
                 }),
-                text(tried.id),
+                text(match tried.form.as_str() {
+                    "" => tried.id.to_owned(),
+                    form => format!("{} ({form})", tried.id),
+                }),
                 number(format!("{:.1}", tried.z)),
                 number(significant(100.0 * tried.gain, 2)),
                 number(chance(tried.p_cluster)),

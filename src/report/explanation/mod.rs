@@ -15,6 +15,7 @@ mod pictures;
 mod prospect;
 mod text;
 mod turning_json;
+mod whereabouts;
 
 pub use answer::answer as explanation_answer;
 pub use html::explanation_html;

@@ -1,7 +1,7 @@
 //! What a further flight would bring, in one sentence.
 
 use crate::diagnose::experiment::{NextFlight, Pair};
-use crate::diagnose::{ByPart, called};
+use crate::diagnose::{ByPart, called, known_to};
 use crate::report::number::{spoken, with_error};
 use crate::study::ExplainStudy;
 use crate::text::capital;
@@ -21,7 +21,10 @@ pub fn next_flight_words(study: &ExplainStudy) -> Option<String> {
         }
         Ok(next) => {
             let apart = never_apart(next);
-            format!("{}{apart}For these names no further flight is needed.", known(study))
+            match not_apart(next).as_str() {
+                "" => format!("{}{apart}For these names no further flight is needed.", known(study)),
+                not_apart => format!("{}{not_apart}{apart}", known(study)).trim_end().to_owned(),
+            }
         }
         Err(_) if study.unsettled().next().is_some() => {
             format!(
@@ -49,7 +52,7 @@ fn unnamed_latency(study: &ExplainStudy) -> String {
 /// A sentence on the sizes that are known, where there are some.
 fn known(study: &ExplainStudy) -> String {
     let one = |effect| {
-        let percent = 100.0 * study.known_to(effect)?;
+        let percent = 100.0 * known_to(effect)?;
         let digits = usize::from(percent < 1.0);
         Some(format!("{} is known to {percent:.digits$} %", called(effect.id)))
     };
@@ -76,8 +79,7 @@ fn unsettled(study: &ExplainStudy) -> String {
 /// What the designed flight separates, of that which a user needs.
 fn brought(study: &ExplainStudy, next: &NextFlight) -> String {
     let seconds = format!("A further flight of {:.0} s would", next.seconds);
-    let sigma =
-        |pair: &Pair| format!("now {:.1}, with it {:.1} standard deviations", pair.now, pair.with_next());
+    let sigma = |pair: &Pair| pair.distance("it");
     let pairs = study.worthwhile(next).map(|pair| match pair.other {
         Some(other) => {
             format!("{seconds} tell {} from {} ({}). ", called(pair.named), called(other), sigma(pair))
@@ -88,7 +90,22 @@ fn brought(study: &ExplainStudy, next: &NextFlight) -> String {
     if said.is_empty() {
         said = "A further flight would show whether it is there again. ".to_owned();
     }
-    (said + &never_apart(next)).trim_end().to_owned()
+    (said + &not_apart(next) + &never_apart(next)).trim_end().to_owned()
+}
+
+/// A sentence on each pair that the designed flight does not separate.
+fn not_apart(next: &NextFlight) -> String {
+    let pairs = next.pairs.iter().filter(|pair| !pair.is_told_apart());
+    let said = pairs.filter_map(|pair| {
+        let (named, other) = (called(pair.named), called(pair.other?));
+        let otherwise = pair.otherwise().map_or_else(String::new, |how| format!("; {how}"));
+        Some(format!(
+            "A further flight of {:.0} s would not tell {named} from {other} ({}{otherwise}). ",
+            next.seconds,
+            pair.distance("it")
+        ))
+    });
+    said.collect()
 }
 
 /// A sentence on each pair that no trajectory separates.

@@ -1,6 +1,8 @@
 //! What was tried, in the order in which it is told.
 
-use crate::diagnose::{GyroscopicShare, Tested, refused_by};
+use crate::diagnose::{EffectTerm, GyroscopicShare, Tested, refused_by};
+use crate::text::significant;
+use crate::vehicle::Vehicle;
 
 use super::ExplainStudy;
 
@@ -26,12 +28,14 @@ pub enum TriedAs {
 }
 
 /// One effect that was tried.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Tried {
     /// when, and how that ended
     pub tried_as: TriedAs,
     /// identifier of the effect
     pub id: &'static str,
+    /// which of its forms: the parameters that were estimated, and what was set
+    pub form: String,
     /// normal deviate of the evidence
     pub z: f64,
     /// share of the residual energy
@@ -43,10 +47,44 @@ pub struct Tried {
 }
 
 impl Tried {
-    fn new(tried_as: TriedAs, tested: &Tested, refused: Option<&'static str>) -> Self {
+    fn new(tried_as: TriedAs, tested: &Tested, (refused, vehicle): (Option<&'static str>, &Vehicle)) -> Self {
         let of = &tested.evidence;
-        Self { tried_as, id: tested.candidate.id, z: of.z, gain: of.gain, p_cluster: of.p_cluster, refused }
+        let form = tested.candidate.parts.last().map_or_else(String::new, |part| form(part, vehicle));
+        Self {
+            tried_as,
+            id: tested.candidate.id,
+            form,
+            z: of.z,
+            gain: of.gain,
+            p_cluster: of.p_cluster,
+            refused,
+        }
     }
+}
+
+/// Names of what is estimated of an effect, and what is set and is not zero: `cx, cy; by_face 1`.
+fn form(term: &EffectTerm, vehicle: &Vehicle) -> String {
+    let is_free = |slot: &usize| term.free.contains(slot);
+    let name = |slot: usize| term.parameter(slot).map(|parameter| parameter.name.to_owned());
+    let set = |slot: usize| {
+        let (parameter, value) = (term.parameter(slot)?, term.values[slot]);
+        let motor = vehicle.rotor_of(value).filter(|_| parameter.is_rotor());
+        let unit = if parameter.unit == "-" { "" } else { parameter.unit };
+        match motor {
+            Some(index) => Some(vehicle.motor_words(index)),
+            None => (value != 0.0).then(|| {
+                format!("{} {} {unit}", parameter.name, significant(value, 3)).trim_end().to_owned()
+            }),
+        }
+    };
+    let slots = 0..term.values.len();
+    let free: Vec<String> = slots.clone().filter(is_free).filter_map(name).collect();
+    let fixed = slots.filter(|slot| !is_free(slot)).filter_map(set);
+    std::iter::once(free.join(", "))
+        .chain(fixed)
+        .filter(|part| !part.is_empty())
+        .collect::<Vec<_>>()
+        .join("; ")
 }
 
 impl ExplainStudy {
@@ -60,11 +98,12 @@ impl ExplainStudy {
     #[must_use]
     pub fn tried(&self) -> Vec<Tried> {
         let search = &self.explanation.search;
+        let vehicle = self.vehicle();
         let mut all = Vec::new();
         for (index, step) in search.steps.iter().enumerate() {
-            all.push(Tried::new(TriedAs::Taken(index + 1), &step.taken, None));
+            all.push(Tried::new(TriedAs::Taken(index + 1), &step.taken, (None, vehicle)));
             let rivals = step.rivals.iter().take(RIVALS);
-            all.extend(rivals.map(|rival| Tried::new(TriedAs::Rival, rival, Some(EXPLAINS_LESS))));
+            all.extend(rivals.map(|rival| Tried::new(TriedAs::Rival, rival, (Some(EXPLAINS_LESS), vehicle))));
         }
         let mut last: Vec<&Tested> = search.last.iter().collect();
         last.sort_by(|a, b| b.evidence.z.abs().total_cmp(&a.evidence.z.abs()));
@@ -73,7 +112,7 @@ impl ExplainStudy {
             refused_by(tested, &search.after, gates, count).map_or(NOT_TOGETHER, |gate| gate.words())
         };
         let left = last.into_iter().take(LAST);
-        all.extend(left.map(|tested| Tried::new(TriedAs::Left, tested, Some(refused(tested)))));
+        all.extend(left.map(|tested| Tried::new(TriedAs::Left, tested, (Some(refused(tested)), vehicle))));
         all
     }
 }

@@ -88,8 +88,7 @@ impl Located {
         // torques whose commands are too far apart tell averages alone
         let compares =
             |axis: &str| explanation.search.after.rows.compares_torques || !axis.starts_with("torque");
-        let mut axes = axis_shares(found);
-        axes.retain(|of| compares(of.axis));
+        let axes = axis_shares(found, compares);
         let worst = axes.first().and_then(|first| channel_of(first.axis));
         let mut time_s: Vec<[f64; 2]> = found
             .spans
@@ -129,13 +128,16 @@ fn channel_of(axis: &str) -> Option<usize> {
     CHANNEL_NAMES.iter().position(|name| *name == axis)
 }
 
-/// Both readings of a force are one axis.
-fn axis_shares(found: &Localisation) -> Vec<AxisShare> {
-    let mut axes: Vec<AxisShare> = (0..AXES)
-        .map(|axis| {
-            let second = found.axes.get(SECOND + axis).map_or(0.0, |second| second.share);
-            AxisShare { axis: CHANNEL_NAMES[axis], share_percent: 100.0 * (found.axes[axis].share + second) }
-        })
+/// Shares of the misfit of the axes that are compared. Both readings of a force are one axis.
+fn axis_shares(found: &Localisation, compares: impl Fn(&str) -> bool) -> Vec<AxisShare> {
+    let share = |axis: usize| {
+        let second = found.axes.get(SECOND + axis).map_or(0.0, |second| second.share);
+        found.axes[axis].share + second
+    };
+    let compared = || (0..AXES).filter(|axis| compares(CHANNEL_NAMES[*axis]));
+    let all = compared().map(share).sum::<f64>().max(f64::MIN_POSITIVE);
+    let mut axes: Vec<AxisShare> = compared()
+        .map(|axis| AxisShare { axis: CHANNEL_NAMES[axis], share_percent: 100.0 * share(axis) / all })
         .filter(|axis| axis.share_percent > LEAST_SHARE_PERCENT)
         .collect();
     axes.sort_by(|a, b| b.share_percent.total_cmp(&a.share_percent));

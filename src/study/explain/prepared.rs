@@ -7,8 +7,12 @@ use super::short::Short;
 use super::validation_data::ValidationData;
 use crate::diagnose::holdout::HoldoutSettings;
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, Named, TorqueLaw, Trace, Verdict};
-use crate::estimate::{Contradiction, contradicting_flights, moved_by_guessed_curve};
+use crate::diagnose::{
+    ExplainError, ExplainSettings, Explanation, GyroscopicShare, Named, TorqueLaw, Trace, Verdict,
+};
+use crate::estimate::{
+    Contradiction, contradicted, contradicting_flights, contradicts_file, moved_by_guessed_curve,
+};
 use crate::note::Note;
 use crate::signals::Signals;
 use crate::study::flights::{Prepared, names};
@@ -175,8 +179,17 @@ impl Task<'_> {
     fn explanation(&self, flights: &Prepared, settings: &ExplainSettings) -> Result<Explanation, StudyError> {
         let tell = |done, of| self.progress.about(done, of);
         let found = crate::diagnose::explain_watched(&flights.signals, self.asked.vehicle, settings, &tell)
-            .map_err(|source| StudyError::Explain { logs: names(self.asked.logs), source })?;
+            .map_err(|source| self.unexplained(flights, source))?;
         Ok(without_gust_of_none(found, &flights.signals, self.alone, (self.asked.vehicle, settings)))
+    }
+
+    /// Why flights cannot be explained; that the vehicle is another one's is said first, because then less of them can be used.
+    fn unexplained(&self, flights: &Prepared, source: ExplainError) -> StudyError {
+        let is_short = matches!(source, ExplainError::TooShort { .. });
+        let apart = if is_short { contradicted(&flights.signals, self.asked.vehicle) } else { Vec::new() };
+        let mismatch =
+            contradicts_file(&apart).map(|apart| format!("{apart} (is it another vehicle's?); with it "));
+        StudyError::Explain { logs: names(self.asked.logs), mismatch: mismatch.unwrap_or_default(), source }
     }
 
     fn given(&self, flights: &Prepared, settings: ExplainSettings) -> Given {

@@ -2,7 +2,7 @@
 
 use super::result::ExplainStudy;
 use crate::diagnose::experiment::{NextFlight, Pair};
-use crate::diagnose::{ByPart, Named, Verdict, by_part};
+use crate::diagnose::{ByPart, Verdict, by_part, known_to};
 use crate::note::{About, Note};
 
 /// A size whose relative standard error (-) is not larger serves a simulator or a controller: no further flight is advised for it
@@ -26,10 +26,13 @@ impl ExplainStudy {
             && self.unsettled().next().is_none()
     }
 
-    /// What the designed flight separates or determines, of that which a user needs: names that could be another one's, and sizes
-    /// that are known worse than 5 %.
+    /// What the designed flight separates or determines, of that which a user needs: names that could be another one's and are told
+    /// apart with it, and sizes that are known worse than 5 %.
     pub fn worthwhile<'a>(&'a self, next: &'a NextFlight) -> impl Iterator<Item = &'a Pair> {
-        next.pairs.iter().filter(|pair| pair.other.is_some() || self.relative_std(pair) > WELL_KNOWN)
+        next.pairs.iter().filter(|pair| match pair.other {
+            Some(_) => pair.is_told_apart(),
+            None => self.relative_std(pair) > WELL_KNOWN,
+        })
     }
 
     /// A further flight was designed, and it would bring something that a user needs.
@@ -42,7 +45,7 @@ impl ExplainStudy {
     /// Of the size of a named effect; where none has a unit, of its distance from zero.
     fn relative_std(&self, pair: &Pair) -> f64 {
         let named = self.effects.iter().find(|effect| effect.id == pair.named);
-        named.and_then(|effect| self.known_to(effect)).unwrap_or(1.0 / pair.now)
+        named.and_then(known_to).unwrap_or(1.0 / pair.now)
     }
 
     /// From command to rotor beyond the lag that the vehicle file states, and its standard error (s), where it is long and has no
@@ -70,14 +73,5 @@ impl ExplainStudy {
                 self.notes.push(Note::warning(About::Estimate, text));
             }
         }
-    }
-
-    /// Relative standard error (-) of the size of an effect: of its best known parameter with a unit. `None` where no
-    /// parameter is such a size.
-    #[must_use]
-    pub fn known_to(&self, effect: &Named) -> Option<f64> {
-        let sizes = effect.parameters.iter().filter(|parameter| parameter.unit != "-" && parameter.std > 0.0);
-        let relative = sizes.map(|parameter| parameter.std / parameter.value.abs());
-        relative.filter(|relative| relative.is_finite()).min_by(f64::total_cmp)
     }
 }
