@@ -4,7 +4,7 @@ use super::agreement::Agreement;
 use super::bootstrap::{Compared, Interval};
 use super::closed_loop::ClosedLoop;
 use super::open_loop::OpenLoop;
-use super::other_vehicle::OtherVehicle;
+use super::other_vehicle::{Difference, OtherVehicle};
 use crate::note::Note;
 
 /// The fit on flights that were not used.
@@ -33,5 +33,12 @@ impl HoldoutFit {
     #[must_use]
     pub fn half_second(&self) -> Option<&OpenLoop> {
         OpenLoop::half_second(&self.open_loop)
+    }
+
+    /// Whether the held-out flights may be of the identified vehicle and contain something that the others do not: no parameter of the
+    /// model differs, and their own fit leaves far more.
+    #[must_use]
+    pub fn holds_more(&self) -> bool {
+        self.other_vehicle.as_ref().is_some_and(|other| matches!(other.by, Difference::Residual { .. }))
     }
 }

@@ -1,6 +1,7 @@
 //! The answer in one sentence.
 
 use super::whereabouts::whereabouts;
+use crate::diagnose::holdout::HoldoutFit;
 use crate::diagnose::signatures::ALL;
 use crate::diagnose::wording::Words;
 use crate::diagnose::{Along, DetectionLimit, Named, Verdict, brief, called, clause, limit};
@@ -187,6 +188,9 @@ fn whose(study: &ExplainStudy) -> &'static str {
     match study.shown_on {
         ValidationData::HeldBack { .. } => "something changed in the part of the flight that was held back",
         ValidationData::LeftOut { .. } => "the flights are not of one vehicle",
+        _ if study.shown.as_ref().is_some_and(HoldoutFit::holds_more) => {
+            "the hold-out is of another vehicle or contains something that the flights explained do not"
+        }
         _ => "the hold-out is of another vehicle",
     }
 }
