@@ -122,7 +122,7 @@ impl Task<'_> {
         (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
     ) -> Result<(ExplainStudy, Vec<Note>), StudyError> {
         let mut settings = ExplainSettings::default();
-        let (mut notes, mut unsure) = (Vec::new(), Vec::new());
+        let (mut notes, mut unsure) = (Vec::new(), Vec::<(&str, String)>::new());
         let mut all_was_explained = false;
         loop {
             let mut explanation = self.explanation(flights, &settings)?;
@@ -151,12 +151,15 @@ impl Task<'_> {
             let (id, note) = match (unshown, worthless) {
                 (Some(of), _) => {
                     let more = (of.id, of.note());
-                    unsure.push(of.name);
+                    unsure.push((of.id, of.name));
                     more
                 }
                 (None, Some(of)) => (of.id, of.note()),
                 (None, None) => {
-                    study.short.iter_mut().for_each(|short| short.unsure = std::mem::take(&mut unsure));
+                    // one that came back as a part of what stays has its name
+                    unsure.retain(|(id, _)| study.effects.iter().all(|named| named.id != *id));
+                    let names: Vec<String> = unsure.into_iter().map(|(_, name)| name).collect();
+                    study.short.iter_mut().for_each(|short| short.unsure.clone_from(&names));
                     return Ok((study, notes));
                 }
             };

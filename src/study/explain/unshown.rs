@@ -22,7 +22,7 @@ impl ExplainStudy {
             let lasts = |of: &Signature| of.role.latency.is_none() && of.role.moment.is_none();
             !refused && signature_of(named.id).is_some_and(lasts)
         };
-        let of = |named: &Named| {
+        let judged = |named: &Named| {
             let of: Vec<&ByPart> = parts.iter().filter(|part| part.id == named.id).collect();
             let halves = !of.is_empty() && of.iter().all(|part| part.is_in_each() && part.are_alike());
             let better_without = self.worth.as_ref().and_then(|worth| worth.better_without_percent(named.id));
@@ -32,7 +32,27 @@ impl ExplainStudy {
             let name = brief(named, &self.given.vehicle, true);
             unshown.then_some(Unshown { id: named.id, name, halves, worth_percent })
         };
-        let unshown = self.explanation.named.iter().filter(is_judged).filter_map(of);
-        unshown.min_by(|a, b| a.worth_percent.total_cmp(&b.worth_percent))
+        let names = || self.explanation.named.iter().filter(is_judged);
+        let least = names()
+            .filter_map(|named| Some((named, judged(named)?)))
+            .min_by(|(_, a), (_, b)| a.worth_percent.total_cmp(&b.worth_percent));
+        let (named, unshown) = least?;
+        // of two laws of the drag, which are nearly one force, the one that is known worse goes first
+        let drags = |named: &&Named| signature_of(named.id).is_some_and(|of| of.role.lateral_slope.is_some());
+        if !drags(&named) {
+            return Some(unshown);
+        }
+        let worst = names().filter(drags).max_by(|a, b| relative_std(a).total_cmp(&relative_std(b)));
+        let other = worst.filter(|worst| worst.id != named.id);
+        Some(match other {
+            Some(other) => Unshown { id: other.id, name: brief(other, &self.given.vehicle, true), ..unshown },
+            None => unshown,
+        })
     }
+}
+
+/// Standard error over the size of the parameter of an effect that is known best.
+fn relative_std(named: &Named) -> f64 {
+    let sizes = named.parameters.iter().filter(|of| of.unit != "-" && of.std > 0.0);
+    sizes.map(|of| of.std / of.value.abs()).fold(f64::INFINITY, f64::min)
 }
