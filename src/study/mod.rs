@@ -46,7 +46,7 @@ pub use flights::{ReadSettings, unread};
 pub use identify::{
     COMPONENTS, IdentifyRequest, IdentifyStudy, Misfit, RotorsAndMotion, WithEffects, identify,
 };
-pub use input::InputFile;
+pub use input::{InputFile, lost, said_of};
 pub use known_effect::{
     KnownConfusable, KnownEffect, KnownParameter, ParameterKind, UsualOfClass, known_effects,
 };

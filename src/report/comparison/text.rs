@@ -20,6 +20,11 @@ pub fn comparison_text(study: &CompareStudy) -> String {
     rotors(&mut page, study);
     tracks(&mut page, study);
     history(&mut page, study);
+    let warnings: Vec<String> =
+        study.notes.iter().filter(|note| note.is_warning()).map(|note| format!("\n  {note}")).collect();
+    if !warnings.is_empty() {
+        let _ = write!(page, "{}", warnings.concat());
+    }
     page.trim_end().to_owned()
 }
 

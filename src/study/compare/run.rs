@@ -19,7 +19,7 @@ use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins
 use crate::study::one_vehicle::{doubt_one_vehicle, refuse_others};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
-use crate::study::{InputFile, Progress, Stage, StudyError, Track, VehicleGiven};
+use crate::study::{InputFile, Progress, Stage, StudyError, Track, VehicleGiven, said_of};
 use crate::text::with_error;
 use crate::trim::{Leg, balance, legs, rotor_tracks};
 use crate::vehicle::Vehicle;
@@ -78,6 +78,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     flights.recordings.extend(later.recordings);
     flights.inputs.extend(later.inputs);
     flights.signals.extend(later.signals);
+    notes.extend(said_of(&flights.inputs));
     notes.extend(other_settings(&flights.recordings));
     notes.extend(doubts(&flights));
     let balance = balance(&legs_of(&flights, &vehicle)?);

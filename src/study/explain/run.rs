@@ -15,7 +15,7 @@ use crate::study::flights::{
 use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
-use crate::study::{Progress, Stage, StudyError};
+use crate::study::{Progress, Stage, StudyError, lost};
 use crate::text;
 use crate::vehicle::Vehicle;
 
@@ -107,13 +107,7 @@ fn of_vehicle(known: &Known) -> Result<Vec<Note>, StudyError> {
 
 /// What is to be known of the recordings: what was lost, what is doubtful, what was left out, what is missing.
 fn of_data(flights: &Prepared, held: &Prepared) -> Vec<Note> {
-    let mut notes = Vec::new();
-    for input in flights.inputs.iter().chain(&held.inputs) {
-        let losses = input.losses();
-        if !losses.is_empty() {
-            notes.push(Note::warning(About::File(input.path.clone()), losses.join("; ")));
-        }
-    }
+    let mut notes = lost(flights.inputs.iter().chain(&held.inputs));
     for (input, signals) in flights.each().chain(held.each()) {
         let about = || About::File(input.path.clone());
         let doubts = signals.quality.notes.iter().filter(|note| note.is_warning());
