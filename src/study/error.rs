@@ -41,6 +41,14 @@ pub enum StudyError {
         /// the other
         other: String,
     },
+    /// two recordings of one flight that are no two flights
+    #[error("expected another flight, but {other} is another log of the flight of {one}, or of a part of it")]
+    OneFlight {
+        /// one name
+        one: String,
+        /// the other
+        other: String,
+    },
     /// a flight that cannot be conditioned for this vehicle
     #[error("{flight} with {vehicle}: {source}{}", lost(.losses))]
     Flight {

@@ -10,10 +10,9 @@ use crate::log::{
     Hold, LogError, LogFlight, OpenOptions, OpenedFlights, ReadReport, format_of, open_flights,
 };
 use crate::note::{About, Note};
-use crate::recording::{Quantity, Recording, shared_share};
+use crate::recording::Recording;
 use crate::signals::{
-    ConditionSettings, ReportedState, Signals, adopt_in_flight_parameters, off_ground, outputs_off_mixer,
-    spans,
+    ConditionSettings, ReportedState, Signals, adopt_in_flight_parameters, outputs_off_mixer,
 };
 use crate::text;
 use crate::vehicle::{Guessed, Vehicle};
@@ -33,10 +32,6 @@ pub(super) const IDENTIFIED: Hold = Hold { seconds: 1800.0, numbers: SEARCHED };
 pub(super) const VALIDATED: Hold = Hold { seconds: 1800.0, numbers: 2 * SEARCHED };
 /// What is explained of one log.
 pub(super) const EXPLAINED: Hold = Hold { seconds: 480.0, numbers: SEARCHED };
-/// Share of a hold-out's samples that may be in an explained flight: none are, but for chance. A hold-out that shares
-/// more would be predicted from itself.
-const MOST_SHARED: f64 = 0.02;
-
 /// How logs are read.
 #[derive(Debug, Clone, Default)]
 pub struct ReadSettings {
@@ -308,34 +303,6 @@ pub(super) fn refuse_off_mixer<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) 
                 seconds.max(0.0)
             );
             return Err(StudyError::File { file: flight.input.path.clone(), why });
-        }
-    }
-    Ok(())
-}
-
-/// The share (0..1) of a recording in the air that the other holds as well, where it is more than chance. On the ground does not
-/// count: a simulator repeats the noise of its sensors from its start.
-pub(super) fn shared(of: &Recording, other: &Recording) -> Option<f64> {
-    let said = ReportedState::of(of);
-    // before its first word nothing is said
-    let first_word_s =
-        said.words().and_then(|words| words.time_s.first()).copied().unwrap_or(f64::NEG_INFINITY);
-    let may_fly = |t_s: f64| t_s >= first_word_s && said.may_be_off_ground(t_s);
-    let inertial = of.streams.iter().filter(|(key, _)| key.quantity == Quantity::AngularRate);
-    let time_s = inertial.map(|(_, stream)| &stream.time_s).max_by_key(|time_s| time_s.len());
-    let flown =
-        time_s.map_or_else(Vec::new, |time_s| off_ground(of, spans(time_s, |index| may_fly(time_s[index]))));
-    let counts =
-        |t_s: f64| flown.is_empty() || flown.iter().any(|(from_s, to_s)| (*from_s..*to_s).contains(&t_s));
-    Some(shared_share(of, other, counts)).filter(|share| *share > MOST_SHARED)
-}
-
-/// The same file twice is refused; `logs` are the flights of each.
-pub(super) fn refuse_twins<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) -> Result<(), StudyError> {
-    let inputs: Vec<&InputFile> = logs.filter_map(|log| log.first()).map(|flight| &flight.input).collect();
-    for (index, input) in inputs.iter().enumerate() {
-        if let Some(twin) = inputs[..index].iter().find(|other| other.sha256 == input.sha256) {
-            return Err(StudyError::Twins { one: twin.path.clone(), other: input.path.clone() });
         }
     }
     Ok(())

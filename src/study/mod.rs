@@ -22,6 +22,7 @@ mod one_vehicle;
 mod plan;
 mod progress;
 mod prove;
+mod same_flight;
 mod track;
 mod unflown;
 mod validate;

@@ -3,7 +3,6 @@
 mod along;
 mod judge;
 mod motion;
-mod other_flight;
 mod request;
 mod result;
 mod run;

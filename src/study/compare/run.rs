@@ -2,7 +2,6 @@
 
 use super::judge::Judge;
 use super::motion::{Motion, motion};
-use super::other_flight::refuse_same_flight;
 use super::request::CompareRequest;
 use super::result::{CompareStudy, Compared, ComparedFlight};
 use crate::change::{Groups, Step};
@@ -15,8 +14,9 @@ use crate::signals::{
     ConditionSettings, STEP_FOR_EFFECTS_S, Signals, ThrustPreference, best, other_settings,
 };
 use crate::study::flight::Flight;
-use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins};
+use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare};
 use crate::study::one_vehicle::{doubt_one_vehicle, refuse_others};
+use crate::study::same_flight::refuse_same_flight;
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{InputFile, Progress, Stage, StudyError, Track, VehicleGiven, said_of};
@@ -60,10 +60,9 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         notes = vec![Note::remark(About::Vehicle, SHARES)];
     }
     let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft, .. } = known;
-    refuse_twins(before.iter().chain(&after))?;
+    refuse_same_flight(before.iter().chain(&after))?;
     refuse_others(before.iter().chain(&after).flatten())?;
     notes.extend(doubt_one_vehicle(before.iter().chain(&after).flatten()));
-    refuse_same_flight(&before, &after)?;
     refuse_single(before.iter().chain(&after))?;
     progress.stage(Stage::Conditioning);
     let settings = ConditionSettings {

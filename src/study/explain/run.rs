@@ -9,10 +9,9 @@ use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::note::{About, Note, said_once};
 use crate::signals::{ConditionSettings, STEP_FOR_EFFECTS_S, Signals, ThrustPreference, other_settings};
-use crate::study::flights::{
-    EXPLAINED, Prepared, load_all, prepare, prepare_by_motion, refuse_off_mixer, refuse_twins,
-};
+use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, prepare_by_motion, refuse_off_mixer};
 use crate::study::one_vehicle::refuse_other_builds;
+use crate::study::same_flight::{refuse_same_flight, refuse_twins};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{Progress, Stage, StudyError, lost};
@@ -52,6 +51,8 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let mut held = load_all(&request.holdout, &request.read, &EXPLAINED).map_err(of_holdout)?;
     request.vehicle.own_units(&mut held);
     refuse_twins(logs.iter().chain(&held))?;
+    refuse_same_flight(logs.iter())?;
+    refuse_same_flight(held.iter())?;
     refuse_other_builds(logs.iter().chain(&held).flatten())?;
     refuse_off_mixer(logs.iter().chain(&held))?;
     progress.stage(Stage::Conditioning);
