@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use mavid::report::{ComparisonDocument, comparison_html, comparison_text};
-use mavid::study::{compare, lost};
+use mavid::study::compare;
 use mavid::text;
 
 use super::explain::REPORT;
@@ -32,11 +32,11 @@ pub fn run(json: bool, stderr: &StandardError, args: &CompareArgs) -> Result<Out
         output::text(&comparison_text(&study))?;
     }
     study.notes.iter().for_each(output::note);
-    // that something changed is what was asked; the output says what was lost
-    Ok(match lost(study.flights.iter().map(|flight| &flight.input)).as_slice() {
+    // that something changed is what was asked; the output says what was lost or left out
+    Ok(match study.is_whole() {
         _ if study.has_changed() => Outcome::Changed,
-        [] => Outcome::Done,
-        _ => Outcome::DoneWithLoss,
+        true => Outcome::Done,
+        false => Outcome::DoneWithLoss,
     })
 }
 

@@ -114,6 +114,7 @@ impl All<'_> {
             groups: None,
             compared: None,
             history: Vec::new(),
+            left_out: Vec::new(),
             notes,
             vehicle,
         };

@@ -106,9 +106,29 @@ pub(super) fn load_all(
     read: &ReadSettings,
     most: &Hold,
 ) -> Result<Vec<Vec<Flight>>, StudyError> {
+    match load_each(logs, read, most)? {
+        (_, refused) if !refused.is_empty() => refused.into_iter().next().map_or(Ok(Vec::new()), Err),
+        (logs, _) => Ok(logs),
+    }
+}
+
+/// The same of the logs in which there is a flight, and why there is none in the others.
+pub(super) fn load_each(
+    logs: &[PathBuf],
+    read: &ReadSettings,
+    most: &Hold,
+) -> Result<(Vec<Vec<Flight>>, Vec<StudyError>), StudyError> {
     let options = read.open_options()?;
     let done: Vec<_> = logs.par_iter().map(|path| load(path, &options, most)).collect();
-    Ok(each_flight_once(done.into_iter().collect::<Result<_, _>>()?))
+    let (mut flown, mut refused) = (Vec::new(), Vec::new());
+    for log in done {
+        match log {
+            Ok(flights) => flown.push(flights),
+            Err(error @ StudyError::NoFlight { .. }) => refused.push(error),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok((each_flight_once(flown), refused))
 }
 
 fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, StudyError> {
@@ -160,7 +180,7 @@ fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyErro
             "expected a log in the order in which it was written, got one whose stamps run back {count} times: it is damaged, or \
              its pieces were put together wrongly; give a sound copy"
         );
-        return Err(StudyError::File { file: text::path(&path), why });
+        return Err(StudyError::NoFlight { file: text::path(&path), why });
     }
     let why = if opened.report.lacks_definitions() {
         "expected a whole log, got one whose messages are not defined: its beginning is missing"
@@ -173,7 +193,7 @@ fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyErro
     } else {
         return Ok(());
     };
-    Err(StudyError::File { file: text::path(&path), why: why.to_owned() })
+    Err(StudyError::NoFlight { file: text::path(&path), why: why.to_owned() })
 }
 
 /// Why a log cannot be read, with its name.

@@ -32,7 +32,8 @@ mod vehicle_given;
 pub use after_flight::{AfterFlight, FlightLogs, after_flight};
 pub use alone::{AloneFlight, AloneRequest, AloneStudy, Depth, Explained, OwnWords, Whose, alone};
 pub use compare::{
-    Change, Changed, CompareRequest, CompareStudy, Compared, ComparedFlight, Judge, LeastChange, compare,
+    Change, Changed, CompareRequest, CompareStudy, Compared, ComparedFlight, Judge, LeastChange, LeftOut,
+    compare,
 };
 pub use correlation::Correlation;
 pub use effects::{effects_file, with_further, with_stated_lag};

@@ -39,6 +39,8 @@ pub struct ComparisonDocument {
     parameters: Vec<TrackEntry>,
     /// where along all flights something changed
     history: Vec<StepEntry>,
+    /// flights that were given and cannot be used; they have no place
+    left_out: Vec<LeftOutEntry>,
     /// warnings and remarks, a sentence each, with what they are about
     notes: Vec<String>,
 }
@@ -146,6 +148,14 @@ struct LeastEntry {
     unit: &'static str,
 }
 
+/// A flight that cannot be used.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct LeftOutEntry {
+    path: String,
+    /// what was expected and what came
+    why: String,
+}
+
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct FlightEntry {
     input: InputFile,
@@ -241,6 +251,11 @@ impl ComparisonDocument {
                     changes: entries(&step.change.changes),
                     as_before: step.as_before.clone(),
                 })
+                .collect(),
+            left_out: study
+                .left_out
+                .iter()
+                .map(|of| LeftOutEntry { path: of.path.clone(), why: of.why.clone() })
                 .collect(),
             notes: study.notes.iter().map(Note::sentence).collect(),
         }

@@ -6,10 +6,11 @@ mod motion;
 mod request;
 mod result;
 mod run;
+mod usable;
 
 pub use judge::Judge;
 pub(super) use motion::is_compared;
 pub use request::CompareRequest;
-pub use result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange};
+pub use result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange, LeftOut};
 pub use run::compare;
 pub(super) use run::{UNKNOWN, power_w};
