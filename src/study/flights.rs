@@ -152,7 +152,7 @@ fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, 
             .chain(after)
             .map(|text| Note::remark(about(), text)),
     );
-    Ok(of_log(opened.flights.flights, &input, LoggedBy::of(&opened.report)))
+    Ok(of_log(opened.flights.flights, &input, &opened.report))
 }
 
 /// Nothing but a multirotor is known here.
@@ -219,8 +219,8 @@ fn whose(report: &ReadReport) -> Option<String> {
 }
 
 /// Each flight under a name of its own; what is to be said of the log is said of the first.
-fn of_log(flights: Vec<LogFlight>, log: &InputFile, logged_by: LoggedBy) -> Vec<Flight> {
-    let of = flights.len();
+fn of_log(flights: Vec<LogFlight>, log: &InputFile, report: &ReadReport) -> Vec<Flight> {
+    let (of, logged_by) = (flights.len(), LoggedBy::of(report));
     let named = |(index, mut flight): (usize, LogFlight)| {
         // what an output was when it left the mixer is no setting of the flight before
         let off_mixer = outputs_off_mixer(&flight.recording);
@@ -238,7 +238,9 @@ fn of_log(flights: Vec<LogFlight>, log: &InputFile, logged_by: LoggedBy) -> Vec<
         let about = || About::File(input.path.clone());
         let told: Vec<Note> = off_mixer.iter().map(|off| Note::warning(about(), off.to_string())).collect();
         input.notes.extend(told);
-        Flight { logged_by, recording: flight.recording, input, off_mixer, actuator: None }
+        let from_us = (1e6 * flight.part_s.map_or(0.0, |(from_s, _)| from_s)) as u64;
+        let start_utc_us = report.start_utc_us().map(|start_us| start_us.saturating_add(from_us));
+        Flight { logged_by, start_utc_us, recording: flight.recording, input, off_mixer, actuator: None }
     };
     flights.into_iter().enumerate().map(named).collect()
 }

@@ -3,6 +3,7 @@
 mod along;
 mod judge;
 mod motion;
+mod order;
 mod request;
 mod result;
 mod run;

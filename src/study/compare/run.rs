@@ -2,6 +2,7 @@
 
 use super::judge::Judge;
 use super::motion::{Motion, motion};
+use super::order::out_of_order;
 use super::request::CompareRequest;
 use super::result::{CompareStudy, Compared, ComparedFlight, LeftOut};
 use super::usable::{Given, Usable};
@@ -51,10 +52,13 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     refuse_others(logs.each())?;
     let mut notes = doubt_one_vehicle(logs.each());
     refuse_single(logs.each())?;
-    let (Usable { flights, legs, first, left_out }, known) = logs.conditioned(known, progress)?;
+    let (Usable { flights, legs, starts_utc_us, first, left_out }, known) =
+        logs.conditioned(known, progress)?;
     notes.splice(0..0, of_vehicle(request, &known));
     let Known { loaded: LoadedVehicle { vehicle, .. }, draft, .. } = known;
     notes.extend(left_out.iter().map(LeftOut::note));
+    let paths = flights.inputs.iter().map(|input| input.path.as_str());
+    notes.extend(out_of_order(&starts_utc_us.into_iter().zip(paths).collect::<Vec<_>>(), first));
     notes.extend(said_of(&flights.inputs));
     notes.extend(other_settings(&flights.recordings));
     notes.extend(doubts(&flights));

@@ -28,6 +28,8 @@ pub(super) struct Usable {
     pub(super) flights: Prepared,
     /// of each flight
     pub(super) legs: Vec<Vec<Leg>>,
+    /// when each began, microseconds since 1970 UTC, where its log says so
+    pub(super) starts_utc_us: Vec<Option<u64>>,
     /// so many of them are of before
     pub(super) first: usize,
     pub(super) left_out: Vec<LeftOut>,
@@ -125,15 +127,22 @@ impl<'a> Given<'a> {
     }
 
     fn usable(self, [before, after]: [Vec<Made>; 2]) -> Usable {
-        let (mut flights, mut legs) = (Prepared::default(), Vec::new());
+        let (mut flights, mut legs, mut starts_utc_us) = (Prepared::default(), Vec::new(), Vec::new());
         let first = before.len();
         for (flight, (signals, of_flight)) in before.into_iter().chain(after) {
+            starts_utc_us.push(flight.start_utc_us);
             flights.recordings.push(flight.recording);
             flights.inputs.push(flight.input);
             flights.signals.push(signals);
             legs.push(of_flight);
         }
-        Usable { flights, legs, first, left_out: self.refused.iter().map(LeftOut::of).collect() }
+        Usable {
+            flights,
+            legs,
+            starts_utc_us,
+            first,
+            left_out: self.refused.iter().map(LeftOut::of).collect(),
+        }
     }
 }
 
