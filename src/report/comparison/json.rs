@@ -28,7 +28,8 @@ pub struct ComparisonDocument {
     undecided: Option<Vec<UndecidedEntry>>,
     /// full thrust over weight before and after, where it and several parameters say that this is hardly one vehicle; null elsewhere
     other_vehicle: Option<OtherVehicle>,
-    /// the smallest changes that would have been named; null where no groups were given
+    /// the smallest changes that would have been named: between the groups, or without groups in the middle of the row; null where no
+    /// groups were given and something changed
     smallest_changes: Option<Vec<LeastEntry>>,
     /// one entry a flight
     flights: Vec<FlightEntry>,
@@ -238,8 +239,9 @@ impl ComparisonDocument {
             other_vehicle: compared
                 .and_then(|compared| compared.other_vehicle)
                 .map(|(before, after)| OtherVehicle { before, after }),
-            smallest_changes: compared
-                .map(|compared| compared.least.iter().map(|least| least_entry(study, least)).collect()),
+            smallest_changes: study
+                .least()
+                .map(|all| all.iter().map(|least| least_entry(study, least)).collect()),
             flights: (0..study.flights.len()).map(|place| flight(study, place)).collect(),
             rotors: (0..study.rotors.len()).map(|place| rotor(study, place)).collect(),
             parameters: (0..study.tracks.len()).map(|place| track(study, place)).collect(),

@@ -29,6 +29,8 @@ pub struct CompareStudy {
     pub compared: Option<Compared>,
     /// where along all flights something changed
     pub history: Vec<Step<Compared>>,
+    /// the smallest changes that a border in the middle of all flights would have shown, where there are no groups and nothing changed
+    pub least_in_the_middle: Option<Vec<LeastChange>>,
     /// flights that were given and are not compared
     pub left_out: Vec<LeftOut>,
     /// what the user should know
@@ -166,6 +168,13 @@ impl CompareStudy {
             Some(compared) => !compared.changes.is_empty() || compared.other_vehicle.is_some(),
             None => !self.history.is_empty(),
         }
+    }
+
+    /// The smallest changes that would have been named: between the groups, or in the middle of a history in which nothing changed.
+    #[must_use]
+    pub fn least(&self) -> Option<&[LeastChange]> {
+        let between = self.compared.as_ref().map(|compared| compared.least.as_slice());
+        between.or(self.least_in_the_middle.as_deref())
     }
 
     /// All flights that were given are compared, and nothing of their logs was lost.

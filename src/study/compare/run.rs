@@ -74,7 +74,10 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let count = flights.signals.len();
     let groups = (first < count).then(|| Groups::split(count, first));
     let compared = groups.as_ref().map(|groups| judge.compared(groups));
-    let history = judge.history(&(0..count).collect::<Vec<_>>(), 0.0);
+    let order: Vec<usize> = (0..count).collect();
+    let history = judge.history(&order, 0.0);
+    let is_unchanged = groups.is_none() && history.is_empty();
+    let least_in_the_middle = is_unchanged.then(|| judge.least_in_the_middle(&order));
     if groups.is_none() {
         notes.extend(moved_by_loads(&judge, &flights.inputs, &history));
     }
@@ -89,6 +92,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         groups,
         compared,
         history,
+        least_in_the_middle,
         left_out,
         notes,
     })
