@@ -7,10 +7,8 @@ use mavid::study::compare;
 use mavid::text;
 
 use super::explain::REPORT;
-use super::identify::tell;
 use super::progress::Spinner;
 use super::standard_error::StandardError;
-use super::words::Word;
 use super::{CommandError, Outcome, output};
 use crate::cli::CompareArgs;
 
@@ -33,10 +31,13 @@ pub fn run(json: bool, stderr: &StandardError, args: &CompareArgs) -> Result<Out
     } else {
         output::text(&comparison_text(&study))?;
     }
-    study.notes.iter().map(Word::from).for_each(|word| word.say());
-    let read = tell(study.flights.iter().map(|flight| &flight.input));
-    // that something changed is what was asked; the output says what was lost
-    Ok(if study.has_changed() { Outcome::Changed } else { read })
+    study.notes.iter().for_each(output::note);
+    // that something changed is what was asked; the output says what was lost or left out
+    Ok(match study.is_whole() {
+        _ if study.has_changed() => Outcome::Changed,
+        true => Outcome::Done,
+        false => Outcome::DoneWithLoss,
+    })
 }
 
 /// A target that cannot be written is told before the work.

@@ -7,7 +7,7 @@ use mavid::report::{
     ExplanationDocument, explained_model, explanation_html, explanation_markdown, explanation_text,
 };
 use mavid::study::{
-    ExplainRequest, ExplainStudy, InputFile, Progress, draft_text, explain, stored_trajectory,
+    ExplainRequest, ExplainStudy, InputFile, Progress, draft_text, explain, lost, stored_trajectory,
 };
 use mavid::text;
 
@@ -86,7 +86,7 @@ pub fn remarks(study: &ExplainStudy) -> Vec<Word> {
 
 /// Whether something of the recordings was lost.
 pub fn outcome(study: &ExplainStudy) -> Outcome {
-    if study.inputs().all(|input| input.losses().is_empty()) { Outcome::Done } else { Outcome::DoneWithLoss }
+    if lost(study.inputs()).is_empty() { Outcome::Done } else { Outcome::DoneWithLoss }
 }
 
 /// The trajectory of the flight that distinguishes what these cannot, or why there is none.

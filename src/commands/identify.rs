@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use mavid::note::{About, Note, said_once};
 use mavid::report::{
     IdentificationDocument, history_charts, identification_html, identification_text, identified_model, svg,
 };
-use mavid::study::{IdentifyRequest, IdentifyStudy, InputFile, identify};
+use mavid::study::{IdentifyRequest, IdentifyStudy, InputFile, identify, lost, said_of};
 
 use super::progress::Spinner;
 use super::standard_error::StandardError;
@@ -86,16 +85,7 @@ pub fn make(stderr: &StandardError, args: &IdentifyArgs) -> Result<(IdentifyStud
 
 /// Says what is to be known of the logs, and what of them was lost; the same of several once.
 pub fn tell<'a>(inputs: impl Iterator<Item = &'a InputFile>) -> Outcome {
-    let (mut outcome, mut notes) = (Outcome::Done, Vec::new());
-    for input in inputs {
-        let about = || About::File(input.path.clone());
-        notes.extend(input.remarks().into_iter().map(|remark| Note::remark(about(), remark)));
-        let losses = input.losses();
-        if !losses.is_empty() {
-            notes.push(Note::loss(about(), losses.join("; ")));
-            outcome = Outcome::DoneWithLoss;
-        }
-    }
-    said_once(notes).iter().for_each(|note| output::message(&note.sentence()));
-    outcome
+    let inputs: Vec<&InputFile> = inputs.collect();
+    said_of(inputs.iter().copied()).iter().for_each(output::note);
+    if lost(inputs).is_empty() { Outcome::Done } else { Outcome::DoneWithLoss }
 }

@@ -114,6 +114,8 @@ impl All<'_> {
             groups: None,
             compared: None,
             history: Vec::new(),
+            least_in_the_middle: None,
+            left_out: Vec::new(),
             notes,
             vehicle,
         };

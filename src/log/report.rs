@@ -96,6 +96,16 @@ impl ReadReport {
         }
     }
 
+    /// When it began, microseconds since 1970 UTC: by the clock of the ground station, or by that of the vehicle's satellite receiver.
+    #[must_use]
+    pub fn start_utc_us(&self) -> Option<u64> {
+        match &self.details {
+            Details::Telemetry(report) => report.first_stamp_us.filter(|_| report.odd_stamps == 0),
+            Details::Onboard(report) => report.start_utc_us,
+            Details::Table(_) | Details::None => None,
+        }
+    }
+
     /// Messages carry times of the vehicle's: some that ArduPilot wrote until 2013 do not.
     #[must_use]
     pub fn is_timed(&self) -> bool {

@@ -20,7 +20,7 @@ pub use builder::RecordingBuilder;
 pub use event::Event;
 pub use flight::{ParameterChange, Recording};
 pub use growing::{Growing, StreamRepair};
-pub use overlap::shared_share;
+pub use overlap::Overlap;
 pub use quantity::Quantity;
 pub use statistics::{LEAST_SAMPLES, LEAST_SPAN_S, StreamStats, StreamTally};
 pub use stream::{Stream, StreamKey};

@@ -3,7 +3,6 @@
 use super::flight::Recording;
 use super::quantity::Quantity;
 use super::stream::Stream;
-use std::collections::HashSet;
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
 
@@ -12,30 +11,62 @@ const RUN: usize = 6;
 /// Sensors whose noise makes every sample another.
 const NOISY: [Quantity; 2] = [Quantity::AngularRate, Quantity::SpecificForce];
 
-/// Share (0..1) of a recording's inertial samples at the times that count (s) that the other holds as well, in the same order with
-/// the same values, whatever their times; of several streams the largest. 0 where neither body rates nor specific force are in both.
-#[must_use]
-pub fn shared_share(of: &Recording, other: &Recording, counts: impl Fn(f64) -> bool) -> f64 {
-    NOISY
-        .iter()
-        .filter_map(|quantity| {
-            let known: HashSet<u64> = streams(other, *quantity).flat_map(runs).map(|(_, run)| run).collect();
-            streams(of, *quantity).filter_map(|stream| share(stream, &known, &counts)).reduce(f64::max)
-        })
-        .fold(0.0, f64::max)
+/// Most samples of a stream that are looked for in another recording, spread evenly over it.
+const LOOKED_FOR: usize = 4096;
+
+/// What a recording's inertial sensors said, by which a part of it is known in another recording.
+#[derive(Debug, Clone)]
+pub struct Overlap {
+    /// of each of [`NOISY`]
+    sensors: [Sensor; 2],
+}
+
+/// Hashes of what one kind of sensor said, all streams of it.
+#[derive(Debug, Clone, Default)]
+struct Sensor {
+    /// of all times, in ascending order
+    known: Vec<u64>,
+    /// of each stream, of the times that count: at most [`LOOKED_FOR`]
+    counted: Vec<Vec<u64>>,
+}
+
+impl Overlap {
+    /// Of a recording; `counts` says at which times (s) its samples are looked for in others.
+    #[must_use]
+    pub fn of(recording: &Recording, counts: impl Fn(f64) -> bool) -> Self {
+        let sensor = |quantity| {
+            let mut sensor = Sensor::default();
+            for stream in streams(recording, quantity) {
+                let of_stream: Vec<(f64, u64)> = runs(stream).collect();
+                sensor.known.extend(of_stream.iter().map(|(_, run)| run));
+                let counted: Vec<u64> =
+                    of_stream.iter().filter(|(time_s, _)| counts(*time_s)).map(|(_, run)| *run).collect();
+                let every = counted.len().div_ceil(LOOKED_FOR).max(1);
+                sensor.counted.push(counted.into_iter().step_by(every).collect());
+            }
+            sensor.known.sort_unstable();
+            sensor
+        };
+        Self { sensors: NOISY.map(sensor) }
+    }
+
+    /// Share (0..1) of its samples that count that the other recording holds as well, in the same order with the same values, whatever
+    /// their times; of several streams the largest. 0 where neither body rates nor specific force are in both.
+    #[must_use]
+    pub fn share_in(&self, other: &Self) -> f64 {
+        let of_sensor = |(own, other): (&Sensor, &Sensor)| {
+            let share = |runs: &Vec<u64>| {
+                let same = runs.iter().filter(|run| other.known.binary_search(run).is_ok()).count();
+                if runs.is_empty() { 0.0 } else { same as f64 / runs.len() as f64 }
+            };
+            own.counted.iter().map(share).fold(0.0, f64::max)
+        };
+        self.sensors.iter().zip(&other.sensors).map(of_sensor).fold(0.0, f64::max)
+    }
 }
 
 fn streams(recording: &Recording, quantity: Quantity) -> impl Iterator<Item = &Stream> {
     recording.streams.iter().filter(move |(key, _)| key.quantity == quantity).map(|(_, stream)| stream)
-}
-
-fn share(stream: &Stream, known: &HashSet<u64>, counts: impl Fn(f64) -> bool) -> Option<f64> {
-    let (mut all, mut same) = (0_usize, 0_usize);
-    for (_, run) in runs(stream).filter(|(time_s, _)| counts(*time_s)) {
-        all += 1;
-        same += usize::from(known.contains(&run));
-    }
-    (all > 0).then(|| same as f64 / all as f64)
 }
 
 /// Hashes of every few samples in a row, each with the time of the first, s; a sensor that stands still is left out.
@@ -72,8 +103,8 @@ mod tests {
 
     #[test]
     fn a_part_of_a_flight_is_found_whatever_its_clock_says() {
-        let whole = recording(0, 1000, 0.0);
-        let share = |of: &Recording| shared_share(of, &whole, |_| true);
+        let whole = Overlap::of(&recording(0, 1000, 0.0), |_| true);
+        let share = |of: &Recording| Overlap::of(of, |_| true).share_in(&whole);
         assert_eq!(share(&recording(100, 300, 7.0)), 1.0);
         let half = share(&recording(500, 1500, 0.0));
         assert!((half - 0.5).abs() < 0.01, "{half}");
@@ -82,10 +113,17 @@ mod tests {
     }
 
     #[test]
+    fn a_long_recording_is_looked_for_in_samples() {
+        let (long, half) = (recording(0, 20_000, 0.0), recording(0, 10_000, 3.0));
+        let [long, half] = [long, half].map(|of| Overlap::of(&of, |_| true));
+        assert!((long.share_in(&half) - 0.5).abs() < 0.01 && half.share_in(&long) == 1.0);
+    }
+
+    #[test]
     fn only_what_counts_is_compared() {
         // a simulator repeats its noise from its start, until the vehicle moves at 10 s
-        let (whole, half) = (recording(0, 1000, 0.0), recording(500, 1500, 0.0));
-        assert_eq!(shared_share(&half, &whole, |time_s| time_s > 10.0), 0.0);
-        assert_eq!(shared_share(&half, &whole, |time_s| time_s < 9.0), 1.0);
+        let (whole, half) = (Overlap::of(&recording(0, 1000, 0.0), |_| true), recording(500, 1500, 0.0));
+        assert_eq!(Overlap::of(&half, |time_s| time_s > 10.0).share_in(&whole), 0.0);
+        assert_eq!(Overlap::of(&half, |time_s| time_s < 9.0).share_in(&whole), 1.0);
     }
 }

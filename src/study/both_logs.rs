@@ -69,6 +69,7 @@ impl Flight {
 fn add(onboard: &mut Flight, sent: Flight, offset: ClockOffset) {
     let own: BTreeSet<StreamKey> = onboard.recording.streams.keys().copied().collect();
     let mut sent = sent;
+    onboard.start_utc_us = onboard.start_utc_us.or(sent.start_utc_us);
     let part = leave_out_parts(&mut sent.recording, &onboard.recording, &offset);
     onboard.recording.add_log(sent.recording, |time_s| offset.on_first(time_s));
     let runs = match offset.drift {

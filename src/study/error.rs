@@ -33,9 +33,33 @@ pub enum StudyError {
         /// what was expected and what came
         why: String,
     },
+    /// a log in which no flight can be
+    #[error("{file}: {why}")]
+    NoFlight {
+        /// its name as given
+        file: String,
+        /// what was expected and what came
+        why: String,
+    },
+    /// a flight that shows no balance
+    #[error("{file}: {why}")]
+    NoBalance {
+        /// name of the log, and which flight of it
+        file: String,
+        /// what was expected and what came
+        why: String,
+    },
     /// one recording was given twice
     #[error("{one} and {other} are the same recording byte for byte; expected different flights")]
     Twins {
+        /// one name
+        one: String,
+        /// the other
+        other: String,
+    },
+    /// two recordings of one flight that are no two flights
+    #[error("expected another flight, but {other} is another log of the flight of {one}, or of a part of it")]
+    OneFlight {
         /// one name
         one: String,
         /// the other
@@ -103,6 +127,19 @@ impl StudyError {
             Self::Identify(error)
         } else {
             Self::IdentifyDamaged { error, losses: losses.to_vec() }
+        }
+    }
+
+    /// Name of the log that it is about, and why that cannot be used; no name where it is about no single log.
+    pub(super) fn of_log(&self) -> (String, String) {
+        match self {
+            Self::File { file, why } | Self::NoFlight { file, why } | Self::NoBalance { file, why } => {
+                (file.clone(), why.clone())
+            }
+            Self::Flight { flight, source, losses, .. } => {
+                (flight.clone(), format!("{source}{}", lost(losses)))
+            }
+            other => (String::new(), other.to_string()),
         }
     }
 }

@@ -35,6 +35,8 @@ impl LoggedBy {
 pub(super) struct Flight {
     pub(super) logged_by: LoggedBy,
     pub(super) recording: Recording,
+    /// when it began, microseconds since 1970 UTC, where its log says so
+    pub(super) start_utc_us: Option<u64>,
     /// name, hash, losses
     pub(super) input: InputFile,
     /// outputs that left the mixer: the recording ends where the first did

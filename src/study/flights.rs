@@ -10,10 +10,9 @@ use crate::log::{
     Hold, LogError, LogFlight, OpenOptions, OpenedFlights, ReadReport, format_of, open_flights,
 };
 use crate::note::{About, Note};
-use crate::recording::{Quantity, Recording, shared_share};
+use crate::recording::Recording;
 use crate::signals::{
-    ConditionSettings, ReportedState, Signals, adopt_in_flight_parameters, off_ground, outputs_off_mixer,
-    spans,
+    ConditionSettings, ReportedState, Signals, adopt_in_flight_parameters, outputs_off_mixer,
 };
 use crate::text;
 use crate::vehicle::{Guessed, Vehicle};
@@ -33,10 +32,6 @@ pub(super) const IDENTIFIED: Hold = Hold { seconds: 1800.0, numbers: SEARCHED };
 pub(super) const VALIDATED: Hold = Hold { seconds: 1800.0, numbers: 2 * SEARCHED };
 /// What is explained of one log.
 pub(super) const EXPLAINED: Hold = Hold { seconds: 480.0, numbers: SEARCHED };
-/// Share of a hold-out's samples that may be in an explained flight: none are, but for chance. A hold-out that shares
-/// more would be predicted from itself.
-const MOST_SHARED: f64 = 0.02;
-
 /// How logs are read.
 #[derive(Debug, Clone, Default)]
 pub struct ReadSettings {
@@ -111,9 +106,29 @@ pub(super) fn load_all(
     read: &ReadSettings,
     most: &Hold,
 ) -> Result<Vec<Vec<Flight>>, StudyError> {
+    match load_each(logs, read, most)? {
+        (_, refused) if !refused.is_empty() => refused.into_iter().next().map_or(Ok(Vec::new()), Err),
+        (logs, _) => Ok(logs),
+    }
+}
+
+/// The same of the logs in which there is a flight, and why there is none in the others.
+pub(super) fn load_each(
+    logs: &[PathBuf],
+    read: &ReadSettings,
+    most: &Hold,
+) -> Result<(Vec<Vec<Flight>>, Vec<StudyError>), StudyError> {
     let options = read.open_options()?;
     let done: Vec<_> = logs.par_iter().map(|path| load(path, &options, most)).collect();
-    Ok(each_flight_once(done.into_iter().collect::<Result<_, _>>()?))
+    let (mut flown, mut refused) = (Vec::new(), Vec::new());
+    for log in done {
+        match log {
+            Ok(flights) => flown.push(flights),
+            Err(error @ StudyError::NoFlight { .. }) => refused.push(error),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok((each_flight_once(flown), refused))
 }
 
 fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, StudyError> {
@@ -137,7 +152,7 @@ fn load(path: &Path, options: &OpenOptions, most: &Hold) -> Result<Vec<Flight>, 
             .chain(after)
             .map(|text| Note::remark(about(), text)),
     );
-    Ok(of_log(opened.flights.flights, &input, LoggedBy::of(&opened.report)))
+    Ok(of_log(opened.flights.flights, &input, &opened.report))
 }
 
 /// Nothing but a multirotor is known here.
@@ -165,7 +180,7 @@ fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyErro
             "expected a log in the order in which it was written, got one whose stamps run back {count} times: it is damaged, or \
              its pieces were put together wrongly; give a sound copy"
         );
-        return Err(StudyError::File { file: text::path(&path), why });
+        return Err(StudyError::NoFlight { file: text::path(&path), why });
     }
     let why = if opened.report.lacks_definitions() {
         "expected a whole log, got one whose messages are not defined: its beginning is missing"
@@ -178,7 +193,7 @@ fn refuse_no_flight(path: &Path, opened: &OpenedFlights) -> Result<(), StudyErro
     } else {
         return Ok(());
     };
-    Err(StudyError::File { file: text::path(&path), why: why.to_owned() })
+    Err(StudyError::NoFlight { file: text::path(&path), why: why.to_owned() })
 }
 
 /// Why a log cannot be read, with its name.
@@ -204,8 +219,8 @@ fn whose(report: &ReadReport) -> Option<String> {
 }
 
 /// Each flight under a name of its own; what is to be said of the log is said of the first.
-fn of_log(flights: Vec<LogFlight>, log: &InputFile, logged_by: LoggedBy) -> Vec<Flight> {
-    let of = flights.len();
+fn of_log(flights: Vec<LogFlight>, log: &InputFile, report: &ReadReport) -> Vec<Flight> {
+    let (of, logged_by) = (flights.len(), LoggedBy::of(report));
     let named = |(index, mut flight): (usize, LogFlight)| {
         // what an output was when it left the mixer is no setting of the flight before
         let off_mixer = outputs_off_mixer(&flight.recording);
@@ -223,7 +238,9 @@ fn of_log(flights: Vec<LogFlight>, log: &InputFile, logged_by: LoggedBy) -> Vec<
         let about = || About::File(input.path.clone());
         let told: Vec<Note> = off_mixer.iter().map(|off| Note::warning(about(), off.to_string())).collect();
         input.notes.extend(told);
-        Flight { logged_by, recording: flight.recording, input, off_mixer, actuator: None }
+        let from_us = (1e6 * flight.part_s.map_or(0.0, |(from_s, _)| from_s)) as u64;
+        let start_utc_us = report.start_utc_us().map(|start_us| start_us.saturating_add(from_us));
+        Flight { logged_by, start_utc_us, recording: flight.recording, input, off_mixer, actuator: None }
     };
     flights.into_iter().enumerate().map(named).collect()
 }
@@ -308,34 +325,6 @@ pub(super) fn refuse_off_mixer<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) 
                 seconds.max(0.0)
             );
             return Err(StudyError::File { file: flight.input.path.clone(), why });
-        }
-    }
-    Ok(())
-}
-
-/// The share (0..1) of a recording in the air that the other holds as well, where it is more than chance. On the ground does not
-/// count: a simulator repeats the noise of its sensors from its start.
-pub(super) fn shared(of: &Recording, other: &Recording) -> Option<f64> {
-    let said = ReportedState::of(of);
-    // before its first word nothing is said
-    let first_word_s =
-        said.words().and_then(|words| words.time_s.first()).copied().unwrap_or(f64::NEG_INFINITY);
-    let may_fly = |t_s: f64| t_s >= first_word_s && said.may_be_off_ground(t_s);
-    let inertial = of.streams.iter().filter(|(key, _)| key.quantity == Quantity::AngularRate);
-    let time_s = inertial.map(|(_, stream)| &stream.time_s).max_by_key(|time_s| time_s.len());
-    let flown =
-        time_s.map_or_else(Vec::new, |time_s| off_ground(of, spans(time_s, |index| may_fly(time_s[index]))));
-    let counts =
-        |t_s: f64| flown.is_empty() || flown.iter().any(|(from_s, to_s)| (*from_s..*to_s).contains(&t_s));
-    Some(shared_share(of, other, counts)).filter(|share| *share > MOST_SHARED)
-}
-
-/// The same file twice is refused; `logs` are the flights of each.
-pub(super) fn refuse_twins<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) -> Result<(), StudyError> {
-    let inputs: Vec<&InputFile> = logs.filter_map(|log| log.first()).map(|flight| &flight.input).collect();
-    for (index, input) in inputs.iter().enumerate() {
-        if let Some(twin) = inputs[..index].iter().find(|other| other.sha256 == input.sha256) {
-            return Err(StudyError::Twins { one: twin.path.clone(), other: input.path.clone() });
         }
     }
     Ok(())

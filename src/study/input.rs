@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::note::{Note, Severity};
+use crate::note::{About, Note, Severity, said_once};
 use crate::text;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Serialize, Serializer};
@@ -63,6 +63,26 @@ impl InputFile {
     fn texts(&self, is_wanted: impl Fn(Severity) -> bool) -> Vec<&str> {
         self.notes.iter().filter(|note| is_wanted(note.severity)).map(|note| note.text.as_str()).collect()
     }
+}
+
+/// What of the files was not read or not used: a warning for each that is damaged; the same of several once. Every view of a result says it.
+#[must_use]
+pub fn lost<'a>(inputs: impl IntoIterator<Item = &'a InputFile>) -> Vec<Note> {
+    let damaged = inputs.into_iter().filter_map(|input| match input.losses() {
+        losses if losses.is_empty() => None,
+        losses => Some(Note::warning(About::File(input.path.clone()), losses.join("; "))),
+    });
+    said_once(damaged.collect())
+}
+
+/// All that is to be known of the files: what of them was lost, and what else was said of them.
+#[must_use]
+pub fn said_of<'a>(inputs: impl IntoIterator<Item = &'a InputFile> + Clone) -> Vec<Note> {
+    let others = inputs.clone().into_iter().flat_map(|input| {
+        let of_file = |note: &Note| Note { about: About::File(input.path.clone()), ..note.clone() };
+        input.notes.iter().filter(|note| note.severity != Severity::Loss).map(of_file).collect::<Vec<_>>()
+    });
+    said_once(lost(inputs).into_iter().chain(others).collect())
 }
 
 /// `{"path", "sha256", "other_logs", "losses", "notes"}`, the third and the last only where there are some.
@@ -129,7 +149,11 @@ mod tests {
         let expected =
             r#"{"path":"a.tlog","sha256":"0","losses":["3 bytes cut off"],"notes":["two vehicles"]}"#;
         assert_eq!(text::json_line(&input).unwrap(), expected);
+        let told: Vec<String> = said_of([&input]).iter().map(ToString::to_string).collect();
+        assert_eq!(told, ["warning: a.tlog: 3 bytes cut off", "a.tlog: two vehicles"]);
+        assert_eq!(lost([&input]).len(), 1);
         let whole = InputFile { notes: Vec::new(), ..input };
+        assert!(lost([&whole]).is_empty());
         assert!(text::json_line(&whole).unwrap().ends_with(r#""losses":[]}"#));
     }
 }

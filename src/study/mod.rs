@@ -22,6 +22,7 @@ mod one_vehicle;
 mod plan;
 mod progress;
 mod prove;
+mod same_flight;
 mod track;
 mod unflown;
 mod validate;
@@ -31,7 +32,8 @@ mod vehicle_given;
 pub use after_flight::{AfterFlight, FlightLogs, after_flight};
 pub use alone::{AloneFlight, AloneRequest, AloneStudy, Depth, Explained, OwnWords, Whose, alone};
 pub use compare::{
-    Change, Changed, CompareRequest, CompareStudy, Compared, ComparedFlight, Judge, LeastChange, compare,
+    Change, Changed, CompareRequest, CompareStudy, Compared, ComparedFlight, Judge, LeastChange, LeftOut,
+    compare,
 };
 pub use correlation::Correlation;
 pub use effects::{effects_file, with_further, with_stated_lag};
@@ -46,7 +48,7 @@ pub use flights::{ReadSettings, unread};
 pub use identify::{
     COMPONENTS, IdentifyRequest, IdentifyStudy, Misfit, RotorsAndMotion, WithEffects, identify,
 };
-pub use input::InputFile;
+pub use input::{InputFile, lost, said_of};
 pub use known_effect::{
     KnownConfusable, KnownEffect, KnownParameter, ParameterKind, UsualOfClass, known_effects,
 };

@@ -327,6 +327,7 @@ mod tests {
         let parameters = parameters.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
         let flight = Flight {
             logged_by: LoggedBy::Vehicle,
+            start_utc_us: None,
             recording: Recording { parameters, ..Recording::default() },
             input: InputFile {
                 path: "log".to_owned(),

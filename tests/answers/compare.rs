@@ -229,6 +229,35 @@ fn cut_propellers_are_found_from_20_mm_on_and_smaller_cuts_get_no_name() {
 }
 
 #[test]
+fn a_flight_that_is_too_short_is_left_out_of_several_and_said() {
+    let Some(shared) = support::shared() else { return };
+    let logs = |names: &[&str]| -> Vec<PathBuf> {
+        names.iter().map(|name| shared.join("onboard/sitl").join(name)).collect()
+    };
+    let request = |before: &[&str], after: &[&str]| CompareRequest {
+        before: logs(before),
+        after: logs(after),
+        transient_s: CompareRequest::TRANSIENT_S,
+        ..CompareRequest::default()
+    };
+    // the aborted flight first: the vehicle is drafted from the first flight that can be used
+    let study = compare(&request(&["ap11.bin", "ap01.bin", "ap02.bin"], &[]), &Silent).unwrap();
+    assert!(study.flights.len() == 2 && !study.is_whole());
+    let [left] = study.left_out.as_slice() else { panic!("{:?}", study.left_out) };
+    assert!(left.path.ends_with("ap11.bin") && left.why.contains("legs of 2 s"), "{left:?}");
+    assert!(study.notes.iter().any(|note| note.is_warning() && note.text.starts_with("left out: ")));
+    let study = compare(&request(&["ap01.bin", "ap11.bin"], &["ap02.bin"]), &Silent).unwrap();
+    assert_eq!(study.groups.unwrap().before, [0]);
+    // none is left on one side, or one alone
+    for (before, after) in
+        [(&["ap01.bin", "ap02.bin"][..], &["ap11.bin"][..]), (&["ap01.bin", "ap11.bin"], &[])]
+    {
+        let refused = compare(&request(before, after), &Silent).unwrap_err().to_string();
+        assert!(refused.contains("ap11.bin: expected at least 6 legs of 2 s"), "{refused}");
+    }
+}
+
+#[test]
 fn a_payload_that_is_dropped_in_a_flight_is_no_change_of_the_vehicle() {
     let Some(shared) = support::shared() else { return };
     let folder = shared.join("onboard/sitl");
@@ -272,7 +301,9 @@ fn an_output_that_left_the_mixer_is_told_with_its_times_and_nothing_hidden_is_se
     }
     let faulty = ["flight_01.bin", "flight_02.bin"].map(|name| folder.join(name));
     let request = CompareRequest { before: faulty.to_vec(), ..CompareRequest::default() };
-    let StudyError::File { why, .. } = compare(&request, &Silent).unwrap_err() else { panic!("no file") };
+    let StudyError::NoBalance { why, .. } = compare(&request, &Silent).unwrap_err() else {
+        panic!("no file")
+    };
     assert!(why.contains("legs of 2 s") && why.contains("output 2 does not follow the controllers"), "{why}");
     let request = mavid::study::ExplainRequest {
         logs: vec![folder.join("flight_01.bin")],

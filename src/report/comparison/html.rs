@@ -3,7 +3,8 @@
 use super::drawing::drawing;
 use super::plots::plots;
 use super::words::{
-    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_from, name, open, returned, sentence, size, value_of,
+    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_from, name, open, returned, sentence, size,
+    smallest_heading, value_of,
 };
 use crate::change::interval_95;
 use crate::diagnose::Owner;
@@ -11,6 +12,7 @@ use crate::report::html::{self, Cell, figure, note, number, paragraph, section, 
 use crate::report::number::{interval, significant, with_error};
 use crate::report::page::page;
 use crate::study::{Change, Changed, CompareStudy};
+use crate::text::capital;
 use maud::{Markup, html};
 
 /// The report: one file, nothing loaded from anywhere.
@@ -81,13 +83,10 @@ fn row_from(study: &CompareStudy, from: usize, change: &Change) -> Vec<Cell> {
 }
 
 fn unseen(study: &CompareStudy) -> Markup {
-    let Some(compared) = &study.compared else { return Markup::default() };
+    let Some(all) = study.least() else { return Markup::default() };
     let rows: Vec<Vec<Cell>> =
-        compared.least.iter().map(|least| vec![text(name(study, least.what)), number(size(least))]).collect();
-    section(
-        "What would have shown",
-        &table("The smallest change that would have been named", &["", "size|"], &rows),
-    )
+        all.iter().map(|least| vec![text(name(study, least.what)), number(size(least))]).collect();
+    section("What would have shown", &table(&capital(smallest_heading(study)), &["", "size|"], &rows))
 }
 
 fn flights(study: &CompareStudy) -> Markup {

@@ -28,7 +28,8 @@ pub struct ComparisonDocument {
     undecided: Option<Vec<UndecidedEntry>>,
     /// full thrust over weight before and after, where it and several parameters say that this is hardly one vehicle; null elsewhere
     other_vehicle: Option<OtherVehicle>,
-    /// the smallest changes that would have been named; null where no groups were given
+    /// the smallest changes that would have been named: between the groups, or without groups in the middle of the row; null where no
+    /// groups were given and something changed
     smallest_changes: Option<Vec<LeastEntry>>,
     /// one entry a flight
     flights: Vec<FlightEntry>,
@@ -39,6 +40,8 @@ pub struct ComparisonDocument {
     parameters: Vec<TrackEntry>,
     /// where along all flights something changed
     history: Vec<StepEntry>,
+    /// flights that were given and cannot be used; they have no place
+    left_out: Vec<LeftOutEntry>,
     /// warnings and remarks, a sentence each, with what they are about
     notes: Vec<String>,
 }
@@ -146,6 +149,14 @@ struct LeastEntry {
     unit: &'static str,
 }
 
+/// A flight that cannot be used.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct LeftOutEntry {
+    path: String,
+    /// what was expected and what came
+    why: String,
+}
+
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct FlightEntry {
     input: InputFile,
@@ -228,8 +239,9 @@ impl ComparisonDocument {
             other_vehicle: compared
                 .and_then(|compared| compared.other_vehicle)
                 .map(|(before, after)| OtherVehicle { before, after }),
-            smallest_changes: compared
-                .map(|compared| compared.least.iter().map(|least| least_entry(study, least)).collect()),
+            smallest_changes: study
+                .least()
+                .map(|all| all.iter().map(|least| least_entry(study, least)).collect()),
             flights: (0..study.flights.len()).map(|place| flight(study, place)).collect(),
             rotors: (0..study.rotors.len()).map(|place| rotor(study, place)).collect(),
             parameters: (0..study.tracks.len()).map(|place| track(study, place)).collect(),
@@ -241,6 +253,11 @@ impl ComparisonDocument {
                     changes: entries(&step.change.changes),
                     as_before: step.as_before.clone(),
                 })
+                .collect(),
+            left_out: study
+                .left_out
+                .iter()
+                .map(|of| LeftOutEntry { path: of.path.clone(), why: of.why.clone() })
                 .collect(),
             notes: study.notes.iter().map(Note::sentence).collect(),
         }

@@ -1,8 +1,8 @@
 //! The page of `compare` for the terminal.
 
 use super::words::{
-    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_from, name, open, returned, sentence, size, spaced,
-    value_of,
+    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_from, name, open, returned, sentence, size,
+    smallest_heading, spaced, value_of,
 };
 use crate::diagnose::Owner;
 use crate::report::number::{significant, with_error};
@@ -16,10 +16,16 @@ pub fn comparison_text(study: &CompareStudy) -> String {
     if let Some(compared) = &study.compared {
         changes(&mut page, study, compared);
     }
+    smallest(&mut page, study);
     flights(&mut page, study);
     rotors(&mut page, study);
     tracks(&mut page, study);
     history(&mut page, study);
+    let warnings: Vec<String> =
+        study.notes.iter().filter(|note| note.is_warning()).map(|note| format!("\n  {note}")).collect();
+    if !warnings.is_empty() {
+        let _ = write!(page, "{}", warnings.concat());
+    }
     page.trim_end().to_owned()
 }
 
@@ -38,8 +44,12 @@ fn changes(page: &mut String, study: &CompareStudy, compared: &Compared) {
             let _ = writeln!(page, "    {}", open(study, of));
         }
     }
-    page.push_str("\n  the smallest change that would have been named\n");
-    for least in &compared.least {
+}
+
+fn smallest(page: &mut String, study: &CompareStudy) {
+    let Some(all) = study.least() else { return };
+    let _ = writeln!(page, "\n  {}", smallest_heading(study));
+    for least in all {
         let _ = writeln!(page, "    {:<32}  {}", name(study, least.what), size(least));
     }
 }

@@ -52,7 +52,9 @@ pub(super) fn answer(study: &CompareStudy) -> String {
             capital(&format!("{} ({between}).", all.join("; ")))
         }
         _ if study.history.is_empty() => {
-            format!("Nothing changed along {} that they could show.", flights(study.flights.len()))
+            let seen = study.least_in_the_middle.as_deref().map(would_have_shown);
+            let seen = seen.map_or_else(String::new, |seen| format!(" From the middle of them on {seen}."));
+            format!("Nothing changed along {} that they could show.{seen}", flights(study.flights.len()))
         }
         _ => {
             let steps = study.history.iter().map(|step| {
@@ -265,13 +267,28 @@ fn unseen(compared: &Compared) -> String {
     } else {
         String::new()
     };
-    let rotor = balance.least.rotors.iter().copied().fold(0.0, f64::max);
-    let centre = compared.least.iter().find(|least| matches!(least.what, Changed::CentreOfMass(_)));
-    let centre = centre.map(size).unwrap_or_default();
+    format!("{by_a_load}{}.", capital(&would_have_shown(&compared.least)))
+}
+
+/// What would have shown of the balance, as a clause.
+fn would_have_shown(all: &[LeastChange]) -> String {
+    let of_rotor = |least: &&LeastChange| matches!(least.what, Changed::Rotor(_));
+    let rotor = all.iter().filter(of_rotor).map(|least| least.size).fold(0.0, f64::max);
+    let centre = all.iter().find(|least| matches!(least.what, Changed::CentreOfMass(_)));
     format!(
-        "{by_a_load}A rotor that gives {} % less thrust would have shown, or a centre of mass {centre} elsewhere.",
-        significant(100.0 * rotor, 2)
+        "a rotor that gives {} % less thrust would have shown, or a centre of mass {} elsewhere",
+        significant(100.0 * rotor, 2),
+        centre.map(size).unwrap_or_default()
     )
+}
+
+/// What the list of smallest changes is.
+pub(super) fn smallest_heading(study: &CompareStudy) -> &'static str {
+    if study.groups.is_some() {
+        "the smallest change that would have been named"
+    } else {
+        "the smallest change that would have been named if it stayed from the middle of the flights on"
+    }
 }
 
 /// The size of a smallest change.

@@ -12,7 +12,7 @@ use crate::report::number::{significant, spoken, with_error};
 use crate::report::page::page;
 use crate::report::quality::data_quality;
 use crate::signals::FilterPair;
-use crate::study::{COMPONENTS, Correlation, IdentifyStudy, RotorsAndMotion};
+use crate::study::{COMPONENTS, Correlation, IdentifyStudy, RotorsAndMotion, lost};
 use crate::vehicle::Anchor;
 use maud::{Markup, html};
 
@@ -59,6 +59,7 @@ pub fn identification_html(study: &IdentifyStudy) -> String {
     let notes = &study.identification.notes;
     let flights = study.inputs.iter().zip(&study.flights);
     let sections = html! {
+        @for said in lost(&study.inputs) { (warning(&said.sentence())) }
         @for said in notes.iter().filter(|note| note.is_warning()) { (warning(&said.to_string())) }
         (against_motion(study))
         (along_the_flight(study))

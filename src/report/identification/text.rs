@@ -1,7 +1,7 @@
 //! The page of `identify` for the terminal.
 
 use crate::estimate::{Finding, LatencyKind, MethodResult, NAMES, theta_of};
-use crate::study::IdentifyStudy;
+use crate::study::{IdentifyStudy, lost};
 use crate::text::with_error;
 use std::fmt::Write;
 
@@ -126,7 +126,7 @@ fn quality_lines(study: &IdentifyStudy) -> String {
         );
     }
     page.push_str(&flight_lines(study.flights.iter().map(|flight| &flight.quality)));
-    for note in &identification.notes {
+    for note in identification.notes.iter().chain(&lost(&study.inputs)) {
         let _ = writeln!(page, "  {note}");
     }
     page

@@ -2,11 +2,11 @@
 
 use super::charts::closed_loop_charts;
 use crate::report::chart::{Bars, inline};
-use crate::report::html::{self, Cell, figure, note, number, section, table, text};
+use crate::report::html::{self, Cell, figure, note, number, section, table, text, warning};
 use crate::report::number::significant;
 use crate::report::page::page;
 use crate::report::quality::data_quality;
-use crate::study::{ErrorTable, Rank, ValidateStudy, ValidatedFlight};
+use crate::study::{ErrorTable, Rank, ValidateStudy, ValidatedFlight, lost};
 use maud::{Markup, html};
 
 /// The report: one file, nothing loaded from anywhere.
@@ -17,6 +17,7 @@ pub fn validation_html(study: &ValidateStudy) -> String {
     let count = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let tags = [count(study.models.len(), "model"), count(study.flights.len(), "flight")];
     let sections = html! {
+        @for said in lost(study.flights.iter().map(|of| &of.input)) { (warning(&said.sentence())) }
         (prediction(study))
         @for of in &study.flights { (flight(of)) }
         (data_quality(study.flights.iter().map(|of| (of.input.path.as_str(), &of.quality))))

@@ -1,7 +1,7 @@
 //! The tables of `validate` for the terminal.
 
 use super::heads::{column_heads, shortened_names};
-use crate::study::{ErrorTable, ValidateStudy};
+use crate::study::{ErrorTable, ValidateStudy, lost};
 use std::fmt::Write;
 
 /// The page for the terminal: each flight's tables.
@@ -15,7 +15,10 @@ pub fn validation_text(study: &ValidateStudy) -> String {
         let tables: Vec<String> = flight.tables.iter().map(error_table_text).collect();
         format!("{}\n\n{}", flight.input.path, tables.join("\n"))
     });
-    let page = format!("{heads}{space}{}", pages.collect::<Vec<_>>().join("\n"));
+    let mut page = format!("{heads}{space}{}", pages.collect::<Vec<_>>().join("\n"));
+    lost(study.flights.iter().map(|flight| &flight.input)).iter().for_each(|note| {
+        let _ = write!(page, "\n  {note}");
+    });
     page.trim_end().to_owned()
 }
 

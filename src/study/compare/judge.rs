@@ -35,10 +35,8 @@ impl Judge<'_> {
     /// `least_sigmas` standard deviations is none.
     #[must_use]
     pub fn history(&self, order: &[usize], least_sigmas: f64) -> Vec<Step<Compared>> {
-        // of so many places one is reached by chance at that many more
-        let beyond = |places: usize| (2.0 * (places.max(1) as f64).ln()).sqrt();
         let borders = order.len().saturating_sub(1);
-        let at_a_border = least_sigmas.max(NAMED_SIGMAS.hypot(beyond(borders)));
+        let at_a_border = least_sigmas.max(at_a_border(order.len()));
         let there_and_back = least_sigmas.max(NAMED_SIGMAS).hypot(beyond(order.len() * borders / 2));
         let judged = |groups: &Groups| {
             let compared = self.compared(&flight_groups(groups, order));
@@ -56,6 +54,19 @@ impl Judge<'_> {
             compared.changes.is_empty() && step.certain().all(|change| compared.would_show(change))
         });
         found
+    }
+
+    /// The smallest changes that the first half of a row (of an odd number one flight less) and the rest of it would have shown: a change
+    /// that stays from the middle on, by the standard deviations that a border of so many flights needs.
+    #[must_use]
+    pub fn least_in_the_middle(&self, order: &[usize]) -> Vec<LeastChange> {
+        let count = order.len();
+        if count < 2 {
+            return Vec::new();
+        }
+        let wider = at_a_border(count) / NAMED_SIGMAS;
+        let compared = self.compared(&flight_groups(&Groups::split(count, count / 2), order));
+        compared.least.into_iter().map(|least| LeastChange { size: wider * least.size, ..least }).collect()
     }
 
     /// The strongest change between the flights before and those after any place of an order: standard deviations, and the flights
@@ -159,6 +170,16 @@ impl Judge<'_> {
         });
         balance.least.rotors.iter().enumerate().map(of_rotor).chain(centre).collect()
     }
+}
+
+/// By chance one of so many places is reached at that many standard deviations more.
+fn beyond(places: usize) -> f64 {
+    (2.0 * (places.max(1) as f64).ln()).sqrt()
+}
+
+/// Standard deviations that a change at one of the borders between so many flights needs.
+fn at_a_border(flights: usize) -> f64 {
+    NAMED_SIGMAS.hypot(beyond(flights.saturating_sub(1)))
 }
 
 /// Groups of places in an order as groups of flights.

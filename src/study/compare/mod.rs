@@ -3,14 +3,15 @@
 mod along;
 mod judge;
 mod motion;
-mod other_flight;
+mod order;
 mod request;
 mod result;
 mod run;
+mod usable;
 
 pub use judge::Judge;
 pub(super) use motion::is_compared;
 pub use request::CompareRequest;
-pub use result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange};
+pub use result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange, LeftOut};
 pub use run::compare;
 pub(super) use run::{UNKNOWN, power_w};

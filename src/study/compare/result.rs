@@ -1,8 +1,8 @@
 //! The result of comparing: every flight, what changed, and what could not have been seen.
 
 use crate::change::{BalanceChange, Groups, Moved, NAMED, Step, Undecided, What};
-use crate::note::Note;
-use crate::study::{InputFile, Track};
+use crate::note::{About, Note};
+use crate::study::{InputFile, StudyError, Track, lost};
 use crate::trim::{Balance, RotorTrack, mean_arm_m};
 use crate::vehicle::Vehicle;
 
@@ -29,8 +29,32 @@ pub struct CompareStudy {
     pub compared: Option<Compared>,
     /// where along all flights something changed
     pub history: Vec<Step<Compared>>,
+    /// the smallest changes that a border in the middle of all flights would have shown, where there are no groups and nothing changed
+    pub least_in_the_middle: Option<Vec<LeastChange>>,
+    /// flights that were given and are not compared
+    pub left_out: Vec<LeftOut>,
     /// what the user should know
     pub notes: Vec<Note>,
+}
+
+/// A flight that cannot be used, where enough others remain.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LeftOut {
+    /// its log
+    pub path: String,
+    /// what was expected and what came
+    pub why: String,
+}
+
+impl LeftOut {
+    pub(super) fn of(error: &StudyError) -> Self {
+        let (path, why) = error.of_log();
+        Self { path, why }
+    }
+
+    pub(super) fn note(&self) -> Note {
+        Note::warning(About::File(self.path.clone()), format!("left out: {}", self.why))
+    }
 }
 
 /// One flight.
@@ -144,6 +168,19 @@ impl CompareStudy {
             Some(compared) => !compared.changes.is_empty() || compared.other_vehicle.is_some(),
             None => !self.history.is_empty(),
         }
+    }
+
+    /// The smallest changes that would have been named: between the groups, or in the middle of a history in which nothing changed.
+    #[must_use]
+    pub fn least(&self) -> Option<&[LeastChange]> {
+        let between = self.compared.as_ref().map(|compared| compared.least.as_slice());
+        between.or(self.least_in_the_middle.as_deref())
+    }
+
+    /// All flights that were given are compared, and nothing of their logs was lost.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.left_out.is_empty() && lost(self.flights.iter().map(|flight| &flight.input)).is_empty()
     }
 
     /// Places of the flights from which on something is otherwise than before.

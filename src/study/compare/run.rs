@@ -2,30 +2,29 @@
 
 use super::judge::Judge;
 use super::motion::{Motion, motion};
-use super::other_flight::refuse_same_flight;
+use super::order::out_of_order;
 use super::request::CompareRequest;
-use super::result::{CompareStudy, Compared, ComparedFlight};
+use super::result::{CompareStudy, Compared, ComparedFlight, LeftOut};
+use super::usable::{Given, Usable};
 use crate::change::{Groups, Step};
 use crate::config::LoadedVehicle;
-use crate::draft::Given;
+use crate::draft::Given as GivenVehicle;
 use crate::estimate::{Contradiction, NAMES, stated};
 use crate::note::{About, Note, said_once};
 use crate::recording::{Quantity, Recording};
-use crate::signals::{
-    ConditionSettings, STEP_FOR_EFFECTS_S, Signals, ThrustPreference, best, other_settings,
-};
+use crate::signals::{Signals, best, other_settings};
 use crate::study::flight::Flight;
-use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, refuse_twins};
+use crate::study::flights::Prepared;
 use crate::study::one_vehicle::{doubt_one_vehicle, refuse_others};
-use crate::study::unflown::unflown_first;
+use crate::study::same_flight::refuse_same_flight;
 use crate::study::vehicle_given::Known;
-use crate::study::{InputFile, Progress, Stage, StudyError, Track, VehicleGiven};
+use crate::study::{InputFile, Progress, Stage, StudyError, Track, VehicleGiven, said_of};
 use crate::text::with_error;
-use crate::trim::{Leg, balance, legs, rotor_tracks};
+use crate::trim::{balance, rotor_tracks};
 use crate::vehicle::Vehicle;
 
 /// A vehicle of which nothing is known: its mass sets a scale that no result shows.
-pub(in crate::study) const UNKNOWN: Given = Given { mass_kg: 1.0, size_m: None, frame: None };
+pub(in crate::study) const UNKNOWN: GivenVehicle = GivenVehicle { mass_kg: 1.0, size_m: None, frame: None };
 /// What is said then.
 const SHARES: &str = "neither mass nor lengths were given: thrusts are compared as shares, lengths in arms";
 
@@ -48,39 +47,22 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         VehicleGiven::Weighed(_) => None,
     };
     progress.stage(Stage::Reading);
-    let paths: Vec<_> = request.before.iter().chain(&request.after).cloned().collect();
-    let mut before = load_all(&request.before, &request.read, &EXPLAINED)?;
-    let mut after = load_all(&request.after, &request.read, &EXPLAINED)?;
-    given.own_units(&mut before);
-    given.own_units(&mut after);
-    let or_unflown = |error| unflown_first(error, &paths, &request.read);
-    let known = given.of_flights(known, &before).map_err(or_unflown)?;
-    let mut notes = known.notes();
-    if request.vehicle.is_none() {
-        notes = vec![Note::remark(About::Vehicle, SHARES)];
-    }
-    let Known { loaded: LoadedVehicle { vehicle, .. }, origin, draft, .. } = known;
-    refuse_twins(before.iter().chain(&after))?;
-    refuse_others(before.iter().chain(&after).flatten())?;
-    notes.extend(doubt_one_vehicle(before.iter().chain(&after).flatten()));
-    refuse_same_flight(&before, &after)?;
-    refuse_single(before.iter().chain(&after))?;
-    progress.stage(Stage::Conditioning);
-    let settings = ConditionSettings {
-        transient_s: Some(request.transient_s),
-        thrust: ThrustPreference::Commands,
-        least_step_s: STEP_FOR_EFFECTS_S,
-        ..ConditionSettings::default()
-    };
-    let mut flights = prepare(before, (&vehicle, &origin), &settings).map_err(or_unflown)?;
-    let first = flights.signals.len();
-    let later = prepare(after, (&vehicle, &origin), &settings).map_err(or_unflown)?;
-    flights.recordings.extend(later.recordings);
-    flights.inputs.extend(later.inputs);
-    flights.signals.extend(later.signals);
+    let logs = Given::load(request, &given)?;
+    refuse_same_flight(logs.groups.iter().flatten())?;
+    refuse_others(logs.each())?;
+    let mut notes = doubt_one_vehicle(logs.each());
+    refuse_single(logs.each())?;
+    let (Usable { flights, legs, starts_utc_us, first, left_out }, known) =
+        logs.conditioned(known, progress)?;
+    notes.splice(0..0, of_vehicle(request, &known));
+    let Known { loaded: LoadedVehicle { vehicle, .. }, draft, .. } = known;
+    notes.extend(left_out.iter().map(LeftOut::note));
+    let paths = flights.inputs.iter().map(|input| input.path.as_str());
+    notes.extend(out_of_order(&starts_utc_us.into_iter().zip(paths).collect::<Vec<_>>(), first));
+    notes.extend(said_of(&flights.inputs));
     notes.extend(other_settings(&flights.recordings));
     notes.extend(doubts(&flights));
-    let balance = balance(&legs_of(&flights, &vehicle)?);
+    let balance = balance(&legs);
     progress.stage(Stage::Explaining);
     let Motion { tracks, reasons, notes: of_motion } = moved(request, &flights, &vehicle, progress);
     notes.extend(of_motion);
@@ -92,7 +74,10 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let count = flights.signals.len();
     let groups = (first < count).then(|| Groups::split(count, first));
     let compared = groups.as_ref().map(|groups| judge.compared(groups));
-    let history = judge.history(&(0..count).collect::<Vec<_>>(), 0.0);
+    let order: Vec<usize> = (0..count).collect();
+    let history = judge.history(&order, 0.0);
+    let is_unchanged = groups.is_none() && history.is_empty();
+    let least_in_the_middle = is_unchanged.then(|| judge.least_in_the_middle(&order));
     if groups.is_none() {
         notes.extend(moved_by_loads(&judge, &flights.inputs, &history));
     }
@@ -107,8 +92,18 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         groups,
         compared,
         history,
+        least_in_the_middle,
+        left_out,
         notes,
     })
+}
+
+/// What is to be known of the vehicle.
+fn of_vehicle(request: &CompareRequest, known: &Known) -> Vec<Note> {
+    match &request.vehicle {
+        None => vec![Note::remark(About::Vehicle, SHARES)],
+        Some(_) => known.notes(),
+    }
 }
 
 /// What the motion says; nothing where it is not compared, with the reason.
@@ -173,26 +168,13 @@ fn each_compared(flights: &Prepared, reasons: Vec<Option<String>>) -> Vec<Compar
 }
 
 /// Two logs of one flight are one flight.
-fn refuse_single<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) -> Result<(), StudyError> {
-    let flights: Vec<&Flight> = logs.flatten().collect();
+fn refuse_single<'a>(flights: impl Iterator<Item = &'a Flight>) -> Result<(), StudyError> {
+    let flights: Vec<&Flight> = flights.collect();
     let [flight] = flights.as_slice() else { return Ok(()) };
     let files: Vec<&str> = flight.input.files().map(|(path, _)| path).collect();
     let why =
         format!("expected at least two flights, but {} are logs of the same flight", files.join(" and "));
     Err(StudyError::Setting { name: "with", why })
-}
-
-/// A flight that ended early because an output left the mixer is told so.
-fn legs_of(flights: &Prepared, vehicle: &Vehicle) -> Result<Vec<Vec<Leg>>, StudyError> {
-    let one = |(input, signals): (&InputFile, &Signals)| {
-        legs(signals, vehicle).map_err(|why| {
-            let warnings = input.notes.iter().filter(|note| note.is_warning());
-            let all: Vec<String> =
-                std::iter::once(why.to_string()).chain(warnings.map(|note| note.text.clone())).collect();
-            StudyError::File { file: input.path.clone(), why: all.join("; ") }
-        })
-    };
-    flights.each().map(one).collect()
 }
 
 /// Mean electrical power in the air, W.

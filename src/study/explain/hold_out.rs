@@ -12,7 +12,8 @@ use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{Empirical, Named, brief};
 use crate::note::{About, Note};
 use crate::signals::{Signals, clock_offset};
-use crate::study::flights::{Prepared, shared};
+use crate::study::flights::Prepared;
+use crate::study::same_flight::shared;
 use crate::study::{Predicted, StudyError};
 
 /// What a law of the rates is.

@@ -9,13 +9,12 @@ use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
 use crate::note::{About, Note, said_once};
 use crate::signals::{ConditionSettings, STEP_FOR_EFFECTS_S, Signals, ThrustPreference, other_settings};
-use crate::study::flights::{
-    EXPLAINED, Prepared, load_all, prepare, prepare_by_motion, refuse_off_mixer, refuse_twins,
-};
+use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, prepare_by_motion, refuse_off_mixer};
 use crate::study::one_vehicle::refuse_other_builds;
+use crate::study::same_flight::{refuse_same_flight, refuse_twins};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
-use crate::study::{Progress, Stage, StudyError};
+use crate::study::{Progress, Stage, StudyError, lost};
 use crate::text;
 use crate::vehicle::Vehicle;
 
@@ -52,6 +51,8 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let mut held = load_all(&request.holdout, &request.read, &EXPLAINED).map_err(of_holdout)?;
     request.vehicle.own_units(&mut held);
     refuse_twins(logs.iter().chain(&held))?;
+    refuse_same_flight(logs.iter())?;
+    refuse_same_flight(held.iter())?;
     refuse_other_builds(logs.iter().chain(&held).flatten())?;
     refuse_off_mixer(logs.iter().chain(&held))?;
     progress.stage(Stage::Conditioning);
@@ -107,13 +108,7 @@ fn of_vehicle(known: &Known) -> Result<Vec<Note>, StudyError> {
 
 /// What is to be known of the recordings: what was lost, what is doubtful, what was left out, what is missing.
 fn of_data(flights: &Prepared, held: &Prepared) -> Vec<Note> {
-    let mut notes = Vec::new();
-    for input in flights.inputs.iter().chain(&held.inputs) {
-        let losses = input.losses();
-        if !losses.is_empty() {
-            notes.push(Note::warning(About::File(input.path.clone()), losses.join("; ")));
-        }
-    }
+    let mut notes = lost(flights.inputs.iter().chain(&held.inputs));
     for (input, signals) in flights.each().chain(held.each()) {
         let about = || About::File(input.path.clone());
         let doubts = signals.quality.notes.iter().filter(|note| note.is_warning());

@@ -9,7 +9,8 @@ use crate::diagnose::holdout::{Explained, HoldoutFit, HoldoutSettings, on_holdou
 use crate::diagnose::{Empirical, ExplainSettings, Explanation, Named, explain};
 use crate::note::Note;
 use crate::signals::{ConditionSettings, ThrustPreference};
-use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, shared};
+use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare};
+use crate::study::same_flight::shared;
 use crate::study::{ExplainRequest, ReadSettings, StudyError};
 use crate::text;
 use crate::vehicle::Vehicle;

@@ -5,8 +5,9 @@ use super::model::{contenders, drafted};
 use super::request::ValidateRequest;
 use super::result::{ValidateStudy, ValidatedFlight};
 use crate::study::flight::Flight;
-use crate::study::flights::{VALIDATED, load_all, ready, refuse_twins};
+use crate::study::flights::{VALIDATED, load_all, ready};
 use crate::study::one_vehicle::refuse_other_builds;
+use crate::study::same_flight::refuse_same_flight;
 use crate::study::unflown::unflown_first;
 use crate::study::{Progress, Stage, StudyError};
 use rayon::prelude::*;
@@ -28,7 +29,7 @@ pub fn validate(request: &ValidateRequest, progress: &dyn Progress) -> Result<Va
         notes.splice(0..0, of_draft);
         models.insert(0, drafted);
     }
-    refuse_twins(logs.iter())?;
+    refuse_same_flight(logs.iter())?;
     refuse_other_builds(logs.iter().flatten())?;
     progress.stage(Stage::Predicting);
     progress.steps(logs.iter().map(Vec::len).sum::<usize>() as u64);
