@@ -12,6 +12,9 @@ use super::trace::Trace;
 use crate::physics::{ActuationLatency, PhysicsError, RotorLag};
 use crate::vehicle::Vehicle;
 
+/// Standard errors that a delay has to have where the motor's own lag is not stated. The usual 95 %.
+const CERTAIN: f64 = 2.0;
+
 /// A lag or delay beyond that of sampling and a fast motor; `None` too where torques are not compared, because the commands
 /// are then logged too seldom to tell.
 pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) -> Option<Named> {
@@ -43,6 +46,10 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     let (own, others) = if is_lag { (against_lag, against_delay) } else { (against_delay, against_lag) };
     // how much of a delay is the motor's own lag is not known of a vehicle that states none
     let stated = is_lag || vehicle.propulsion.mean_time_constant_s().is_some();
+    // the motor's own lag may be all of it
+    if !stated && value < CERTAIN * std {
+        return None;
+    }
     let told_apart = stated && others > TOLD_APART && own < 0.5 * REFUSED;
     let z = (total_s - ordinary_s) / found.latency.std_s.hypot(ORDINARY_STD_S);
     Some(Named {
