@@ -1,6 +1,6 @@
 //! The JSON document of `compare`.
 
-use super::words::{answer, open, rival_name, sentence};
+use super::words::{answer, open, rival_name, sentence, two_vehicles};
 use crate::change::{Moved, Undecided};
 use crate::diagnose::Owner;
 use crate::note::Note;
@@ -28,6 +28,8 @@ pub struct ComparisonDocument {
     undecided: Option<Vec<UndecidedEntry>>,
     /// full thrust over weight before and after, where it and several parameters say that this is hardly one vehicle; null elsewhere
     other_vehicle: Option<OtherVehicle>,
+    /// why the flights may be those of two vehicles, where full thrust over weight alone says so; no change. It is in the answer as well
+    doubt: Option<String>,
     /// the smallest changes that would have been named: between the groups, or without groups in the middle of the row; null where no
     /// groups were given and something changed
     smallest_changes: Option<Vec<LeastEntry>>,
@@ -239,6 +241,7 @@ impl ComparisonDocument {
             other_vehicle: compared
                 .and_then(|compared| compared.other_vehicle)
                 .map(|(before, after)| OtherVehicle { before, after }),
+            doubt: study.lifts_apart.map(|lifts| two_vehicles(study, lifts)),
             smallest_changes: study
                 .least()
                 .map(|all| all.iter().map(|least| least_entry(study, least)).collect()),

@@ -3,7 +3,7 @@
 use crate::change::{Groups, NAMED_SIGMAS, Step, Undecided, What};
 use crate::estimate::NAMES;
 use crate::report::number::{significant, with_error};
-use crate::study::{Change, Changed, CompareStudy, Compared, LeastChange, Track};
+use crate::study::{Change, Changed, CompareStudy, Compared, LeastChange, LiftsApart, Track};
 use crate::text::capital;
 
 /// What the errors of parameters along the flights hold.
@@ -28,8 +28,26 @@ pub(super) fn changed_from(study: &CompareStudy, what: Changed) -> String {
     if from.is_empty() { String::new() } else { format!("changed from {} on", from.join(" and from ")) }
 }
 
-/// The answer in a sentence or two.
+/// The answer in a sentence or two, with what speaks against one vehicle.
 pub(super) fn answer(study: &CompareStudy) -> String {
+    let doubt = study.lifts_apart.map(|lifts| format!(" {}", two_vehicles(study, lifts)));
+    format!("{}{}", what_changed(study), doubt.unwrap_or_default())
+}
+
+/// That full thrust over weight makes two vehicles of the flights, which nothing else tells.
+pub(super) fn two_vehicles(study: &CompareStudy, lifts: LiftsApart) -> String {
+    let [before, after] = [lifts.before, lifts.after].map(|lift| significant(lift, 3));
+    let of = match lifts.from.map(|from| study.flights[from].input.path.as_str()) {
+        None => format!("{before} before and {after} after"),
+        Some(from) => format!("{before} before {from} and {after} from it on"),
+    };
+    format!(
+        "It is doubtful that this is one vehicle: full thrust over weight is {of}, more than a battery or a load changes it, and no \
+         parameter was compared that could tell."
+    )
+}
+
+fn what_changed(study: &CompareStudy) -> String {
     match (&study.compared, &study.groups) {
         (Some(compared), Some(groups)) => {
             let between = format!(

@@ -176,6 +176,56 @@ mod tests {
     }
 
     #[test]
+    fn another_lift_is_a_doubt_where_no_voltage_and_no_parameter_accounts_for_it() {
+        let vehicle = vehicle();
+        let mut balance = balance(&[Vector3::zeros(); 4]);
+        let apart = |balance: &Balance, groups: Option<&Groups>| {
+            Judge { vehicle: &vehicle, balance, tracks: &[], is_known: false }.lifts_apart(groups)
+        };
+        let groups = Groups::split(4, 2);
+        assert_eq!(apart(&balance, Some(&groups)), None);
+        for (flight, lift) in balance.flights.iter_mut().zip([2.4, 2.5, 2.4, 3.5]) {
+            flight.lift = Some((lift, 0.01));
+        }
+        assert_eq!(apart(&balance, Some(&groups)), None);
+        let along = apart(&balance, None).unwrap();
+        assert!(along.from == Some(3) && along.after == 3.5, "{along:?}");
+        balance.flights[2].lift = Some((3.5, 0.01));
+        let between = apart(&balance, Some(&groups)).unwrap();
+        assert!(between.from.is_none() && between.after == 3.5, "{between:?}");
+        // a drained battery
+        for (flight, volts) in balance.flights.iter_mut().zip([10.2, 10.4, 12.4, 12.6]) {
+            flight.voltage_v = Some(volts);
+        }
+        assert_eq!(apart(&balance, Some(&groups)), None);
+    }
+
+    #[test]
+    fn an_unchanged_history_says_what_a_border_in_its_middle_would_have_shown() {
+        let (vehicle, balance) = (vehicle(), balance(&[Vector3::zeros(); 5]));
+        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], is_known: true };
+        let order: Vec<usize> = (0..5).collect();
+        let least = judge.least_in_the_middle(&order);
+        let between = judge.compared(&Groups::split(5, 2)).least;
+        assert!(!least.is_empty() && least.len() == between.len());
+        for (along, between) in least.iter().zip(&between) {
+            // of four borders one is reached by chance more often than one of one
+            assert!(
+                along.what == between.what && along.size > between.size && along.size < 1.2 * between.size
+            );
+        }
+        // a rotor that lost a little more is named, and one that lost less is not
+        for (factor, is_found) in [(1.1, true), (0.9, false)] {
+            let lost = factor * least[0].size / 4.0;
+            let of = &vehicle.rotors[0];
+            let at = (of.position_m - vehicle.body.center_of_mass_m) / mean_arm_m(&vehicle);
+            let lean = lost * Vector3::new(at.x, at.y, of.spin.yaw_sign());
+            let none = Vector3::zeros();
+            assert_eq!(!history(&[none, none, lean, lean, lean]).is_empty(), is_found, "{lost}");
+        }
+    }
+
+    #[test]
     fn a_rotor_and_a_centre_of_mass_that_changed_together_get_no_single_name() {
         let vehicle = vehicle();
         let together = weak(&vehicle, 2) + Vector3::new(-0.09, -0.02, 0.0);

@@ -1,6 +1,6 @@
 //! What changed between groups of flights whose balance and parameters are known.
 
-use super::result::{Change, Changed, Compared, LeastChange};
+use super::result::{Change, Changed, Compared, LeastChange, LiftsApart};
 use crate::change::{
     BalanceChange, Groups, NAMED_SIGMAS, Step, What, find_returns, judge_balance, judge_parameter, steps,
 };
@@ -8,7 +8,7 @@ use crate::diagnose::Need;
 use crate::diagnose::Owner;
 use crate::diagnose::signatures::signature_of;
 use crate::study::Track;
-use crate::trim::{Balance, mean_arm_m};
+use crate::trim::{Balance, FlightBalance, mean_arm_m};
 use crate::vehicle::Vehicle;
 
 /// Full thrust over weight of one group over that of the other from which on, with [`OTHER_PARAMETERS`], this is hardly one vehicle. A
@@ -88,8 +88,7 @@ impl Judge<'_> {
         let mut changes = self.of_balance(&balance);
         let mut least = self.least_of_balance(&balance);
         let mut undecided = Vec::new();
-        let of_vehicle = |track: &Track| track.owner == Owner::Vehicle && !is_of_battery(track);
-        for (place, track) in self.tracks.iter().enumerate().filter(|(_, track)| of_vehicle(track)) {
+        for (place, track) in self.tracks.iter().enumerate().filter(|(_, track)| is_of_vehicle(track)) {
             let Some(judged) = judge_parameter(&track.values, groups, &track.spread) else { continue };
             let (what, unit) = (Changed::Parameter(place), track.unit);
             least.push(LeastChange { what, size: judged.least, unit });
@@ -111,16 +110,44 @@ impl Judge<'_> {
         undecided.sort_by(|(a, _), (b, _)| b.sigmas.total_cmp(&a.sigmas));
         let of_motion = |change: &&Change| matches!(change.what, Changed::Parameter(_));
         let moved = changes.iter().filter(of_motion).count() + undecided.len();
-        let other_vehicle = self.lifts(groups).filter(|(before, after)| {
-            moved >= OTHER_PARAMETERS && before.max(*after) > OTHER_LIFT * before.min(*after)
-        });
+        let other_vehicle = self.lifts(groups).filter(|lifts| moved >= OTHER_PARAMETERS && are_apart(*lifts));
         Compared { balance, changes, undecided, least, other_vehicle }
+    }
+
+    /// Full thrust over weight where it differs by more than one vehicle's does, also for the voltage where all flights have one, and no
+    /// parameter tells whether it is one vehicle: of the groups, or without groups at the place of a row where it differs the most.
+    #[must_use]
+    pub fn lifts_apart(&self, groups: Option<&Groups>) -> Option<LiftsApart> {
+        let at = |groups: &Groups, from: Option<usize>| {
+            let (before, after) = self.lifts(groups).filter(|lifts| are_apart(*lifts))?;
+            let for_voltage = self.lifts_for_voltage(groups).is_none_or(are_apart);
+            let tells = |track: &Track| {
+                is_of_vehicle(track) && judge_parameter(&track.values, groups, &track.spread).is_some()
+            };
+            let is_told = !for_voltage || self.tracks.iter().any(tells);
+            (!is_told).then_some(LiftsApart { before, after, from })
+        };
+        let count = self.balance.flights.len();
+        let along = || (1..count).filter_map(|from| at(&Groups::split(count, from), Some(from)));
+        match groups {
+            Some(groups) => at(groups, None),
+            None => along().max_by(|a, b| a.ratio().total_cmp(&b.ratio())),
+        }
     }
 
     /// Mean full thrust over weight of both groups, where all flights have it.
     fn lifts(&self, groups: &Groups) -> Option<(f64, f64)> {
+        self.means(groups, |flight| Some(flight.lift?.0))
+    }
+
+    /// The same over the square of the voltage, with which a battery's goes, where all flights have both.
+    fn lifts_for_voltage(&self, groups: &Groups) -> Option<(f64, f64)> {
+        self.means(groups, |flight| Some(flight.lift?.0 / flight.voltage_v?.powi(2)))
+    }
+
+    fn means(&self, groups: &Groups, of: impl Fn(&FlightBalance) -> Option<f64>) -> Option<(f64, f64)> {
         let mean = |group: &[usize]| {
-            let each = group.iter().map(|&flight| Some(self.balance.flights[flight].lift?.0));
+            let each = group.iter().map(|&flight| of(&self.balance.flights[flight]));
             Some(each.sum::<Option<f64>>()? / group.len() as f64)
         };
         mean(&groups.before).zip(mean(&groups.after))
@@ -186,6 +213,16 @@ fn at_a_border(flights: usize) -> f64 {
 pub(super) fn flight_groups(groups: &Groups, order: &[usize]) -> Groups {
     let of = |places: &[usize]| places.iter().map(|place| order[*place]).collect();
     Groups { before: of(&groups.before), after: of(&groups.after) }
+}
+
+/// Full thrust over weight of two groups that differs by more than that of one vehicle.
+fn are_apart((before, after): (f64, f64)) -> bool {
+    before.max(after) > OTHER_LIFT * before.min(after)
+}
+
+/// Whether a parameter is the vehicle's, and may have changed.
+fn is_of_vehicle(track: &Track) -> bool {
+    track.owner == Owner::Vehicle && !is_of_battery(track)
 }
 
 /// Whether a parameter tells how thrust follows the voltage: each flight has its own battery, and only one that is drained shows it.

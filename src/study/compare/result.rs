@@ -31,10 +31,30 @@ pub struct CompareStudy {
     pub history: Vec<Step<Compared>>,
     /// the smallest changes that a border in the middle of all flights would have shown, where there are no groups and nothing changed
     pub least_in_the_middle: Option<Vec<LeastChange>>,
+    /// full thrust over weight that says that this may be two vehicles, where no parameter is compared
+    pub lifts_apart: Option<LiftsApart>,
     /// flights that were given and are not compared
     pub left_out: Vec<LeftOut>,
     /// what the user should know
     pub notes: Vec<Note>,
+}
+
+/// Full thrust over weight that differs by more than that of one vehicle does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LiftsApart {
+    /// of the flights before, mean
+    pub before: f64,
+    /// of those after, mean
+    pub after: f64,
+    /// place of the first of these, where no groups were given
+    pub from: Option<usize>,
+}
+
+impl LiftsApart {
+    /// The larger one over the other.
+    pub(super) fn ratio(self) -> f64 {
+        self.before.max(self.after) / self.before.min(self.after)
+    }
 }
 
 /// A flight that cannot be used, where enough others remain.

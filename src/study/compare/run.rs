@@ -78,6 +78,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let history = judge.history(&order, 0.0);
     let is_unchanged = groups.is_none() && history.is_empty();
     let least_in_the_middle = is_unchanged.then(|| judge.least_in_the_middle(&order));
+    let lifts_apart = judge.lifts_apart(groups.as_ref());
     if groups.is_none() {
         notes.extend(moved_by_loads(&judge, &flights.inputs, &history));
     }
@@ -93,6 +94,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         compared,
         history,
         least_in_the_middle,
+        lifts_apart,
         left_out,
         notes,
     })
