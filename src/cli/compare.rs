@@ -1,8 +1,10 @@
 //! Arguments of `mavid compare`.
 
-use super::given::ShapeArgs;
+use super::given::frame;
 use super::recording::ReadArgs;
 use clap::Args;
+use mavid::autopilot::Frame;
+use mavid::draft::Given;
 use mavid::study::{CompareRequest, VehicleGiven};
 use std::path::PathBuf;
 
@@ -21,9 +23,12 @@ pub struct CompareArgs {
     /// in place of --vehicle: mass with battery, kg. The rest comes from the first log's parameters, its flight and rules of thumb
     #[arg(long, value_name = "KG", allow_negative_numbers = true)]
     pub mass: Option<f64>,
-    /// its shape
-    #[command(flatten)]
-    pub shape: ShapeArgs,
+    /// with --mass: distance from motor to motor across the centre, m
+    #[arg(long, value_name = "M", requires = "mass", allow_negative_numbers = true)]
+    pub size: Option<f64>,
+    /// if the first log does not say where the motors are: quadrotor-x, quadrotor-plus, hexarotor-x, ...; also without --mass
+    #[arg(long, value_name = "FRAME", value_parser = frame)]
+    pub frame: Option<&'static Frame>,
     /// compare the balance of the rotors alone, not what the motion shows
     #[arg(long)]
     pub balance_only: bool,
@@ -41,11 +46,13 @@ pub struct CompareArgs {
 impl CompareArgs {
     /// As the study takes them.
     pub fn request(&self) -> CompareRequest {
-        let weighed = || self.mass.map(|mass_kg| VehicleGiven::Weighed(self.shape.given(mass_kg)));
+        let given = |mass_kg| Given { mass_kg, size_m: self.size, frame: self.frame };
+        let weighed = || self.mass.map(|mass_kg| VehicleGiven::Weighed(given(mass_kg)));
         CompareRequest {
             before: self.before.clone(),
             after: self.after.clone(),
             vehicle: self.vehicle.clone().map(VehicleGiven::File).or_else(weighed),
+            frame: self.frame,
             read: self.read.settings(),
             transient_s: self.transient,
             balance_only: self.balance_only,

@@ -60,7 +60,8 @@ impl ShapeArgs {
     }
 }
 
-fn frame(id: &str) -> Result<&'static Frame, String> {
+/// A frame by its name.
+pub(super) fn frame(id: &str) -> Result<&'static Frame, String> {
     let ids = || FRAMES.iter().map(Frame::id).collect::<Vec<_>>().join(", ");
     Frame::of_id(id).ok_or_else(|| format!("expected one of {}", ids()))
 }

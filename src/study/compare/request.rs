@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::autopilot::Frame;
 use crate::study::explain::check_transient;
 use crate::study::{ExplainRequest, ReadSettings, StudyError, VehicleGiven};
 
@@ -14,6 +15,8 @@ pub struct CompareRequest {
     pub after: Vec<PathBuf>,
     /// its file, or its mass and size; `None`: nothing is known but the autopilot's frame, and results are shares
     pub vehicle: Option<VehicleGiven>,
+    /// where the motors are, if neither [`Self::vehicle`] nor the first log says so
+    pub frame: Option<&'static Frame>,
     /// how the recordings are read
     pub read: ReadSettings,
     /// time left out at the beginning of each flight, s

@@ -40,7 +40,10 @@ const UNWEIGHED: &str = "neither a vehicle nor a mass was given";
 pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<CompareStudy, StudyError> {
     let _stage = tracing::info_span!("compare").entered();
     request.check()?;
-    let given = request.vehicle.clone().unwrap_or(VehicleGiven::Weighed(UNKNOWN));
+    let given = request
+        .vehicle
+        .clone()
+        .unwrap_or(VehicleGiven::Weighed(GivenVehicle { frame: request.frame, ..UNKNOWN }));
     let known = given.of_file()?;
     let vehicle_file = match &given {
         VehicleGiven::File(file) => Some(InputFile::of(file)?),
