@@ -20,6 +20,16 @@ pub enum ConfigError {
     /// a table whose columns cannot be read
     #[error(transparent)]
     Table(#[from] CsvError),
+    /// a recording
+    #[error("{}: expected {expected}, got a recording, {came}: give it among the logs", text::path(path))]
+    Recording {
+        /// which file
+        path: PathBuf,
+        /// what it was to be
+        expected: &'static str,
+        /// its format
+        came: &'static str,
+    },
     /// bytes that are no text
     #[error("{}: expected {expected}, got a file that is not text", text::path(path))]
     NoText {

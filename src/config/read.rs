@@ -8,6 +8,7 @@ use super::ConfigError;
 use super::faults::Faults;
 use super::form::{Fault, Read, read_form};
 use super::kind::Kind;
+use crate::log::format_of;
 use crate::text;
 
 /// Bytes of a file: a hundred times what the largest model has. TOML itself goes at most 80 levels deep.
@@ -22,7 +23,18 @@ pub(super) fn read_text(path: &Path, kind: Kind) -> Result<String, ConfigError> 
     let mut bytes = Vec::new();
     // one more than it may have tells that there are more
     File::open(path).and_then(|file| file.take(BYTES_MAX + 1).read_to_end(&mut bytes)).map_err(failed)?;
-    if bytes.len() as u64 > BYTES_MAX {
+    let is_large = bytes.len() as u64 > BYTES_MAX;
+    if is_large || std::str::from_utf8(&bytes).is_err() {
+        let format = format_of(path).ok().filter(|format| !format.takes_columns);
+        if let Some(format) = format {
+            return Err(ConfigError::Recording {
+                path: path.to_owned(),
+                expected: kind.expected(),
+                came: format.name,
+            });
+        }
+    }
+    if is_large {
         return Err(ConfigError::TooLarge {
             path: path.to_owned(),
             expected: kind.expected(),
@@ -102,7 +114,7 @@ fn reason(fault: &Fault, text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{parse_limits, parse_vehicle};
+    use crate::config::{load_vehicle, parse_limits, parse_vehicle};
 
     fn refusal(text: &str) -> String {
         parse_vehicle(text, "v.toml").unwrap_err().to_string()
@@ -112,6 +124,17 @@ mod tests {
     fn a_refusal_says_where_on_one_line() {
         let said = parse_limits("[limits]\n  speed = 2\n", "l.toml").unwrap_err().to_string();
         assert!(said.contains("line 2, column 3 (`speed = 2`): unknown field `speed`"), "{said}");
+    }
+
+    #[test]
+    fn a_recording_is_told_to_be_one() {
+        let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+        for (log, format) in
+            [("px4_flight.ulg", "PX4 log (.ulg)"), ("p01_identify_0_25s.tlog", "telemetry log (.tlog)")]
+        {
+            let said = load_vehicle(&fixtures.join(log)).unwrap_err().to_string();
+            assert!(said.contains(&format!("got a recording, {format}: give it among the logs")), "{said}");
+        }
     }
 
     #[test]

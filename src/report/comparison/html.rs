@@ -66,8 +66,8 @@ fn row(study: &CompareStudy, change: &Change) -> Vec<Cell> {
         let ends = if std > 0.0 { ends() } else { String::new() };
         format!("{}{ends}", with_error(value, std))
     };
-    let parts =
-        change.moved.map_or_else(Default::default, |moved| [of(moved.before), of(moved.after), of(moved.by)]);
+    let none = || ["-"; 3].map(str::to_owned);
+    let parts = change.moved.map_or_else(none, |moved| [of(moved.before), of(moved.after), of(moved.by)]);
     let say: Vec<&str> =
         change.carried_by.iter().map(|&flight| study.flights[flight].input.path.as_str()).collect();
     let mut cells = vec![text(name(study, change.what)), text(change.unit)];

@@ -56,13 +56,17 @@ fn smallest(page: &mut String, study: &CompareStudy) {
 
 fn change_line(page: &mut String, study: &CompareStudy, change: &Change) {
     let of = |(value, std)| with_error(value, std);
-    let [before, after, by] =
-        change.moved.map_or_else(Default::default, |moved| [of(moved.before), of(moved.after), of(moved.by)]);
+    let [before, after, by] = match change.moved {
+        Some(moved) => {
+            [of(moved.before), of(moved.after), format!("{}{}, ", of(moved.by), spaced(change.unit))]
+        }
+        // three components moved, of which none is told alone
+        None => ["-".to_owned(), "-".to_owned(), String::new()],
+    };
     let _ = writeln!(
         page,
-        "    {:<32}  {before:<18}  {after:<18}  {by}{}, {} standard deviations",
+        "    {:<32}  {before:<18}  {after:<18}  {by}{} standard deviations",
         name(study, change.what),
-        spaced(change.unit),
         significant(change.sigmas, 2)
     );
     let say: Vec<&str> =

@@ -235,13 +235,15 @@ pub(super) fn open(study: &CompareStudy, (change, why): &(Change, Undecided)) ->
     } else {
         "most of this error is that of the flights themselves".to_owned()
     };
+    // flights of two vehicles decide nothing
+    let is_one = study.compared.as_ref().is_none_or(|compared| compared.other_vehicle.is_none());
+    let decide =
+        if is_one { format!(" Fly {} on each side to decide.", flights(why.flights)) } else { String::new() };
     format!(
-        "{} moved by {by}{}, {} standard deviations: below the {NAMED_SIGMAS} that make a change; {because}. Fly {} on each side to \
-         decide.",
+        "{} moved by {by}{}, {} standard deviations: below the {NAMED_SIGMAS} that make a change; {because}.{decide}",
         capital(&said(study, change.what)),
         spaced(change.unit),
-        significant(change.sigmas, 2),
-        flights(why.flights)
+        significant(change.sigmas, 2)
     )
 }
 
@@ -311,9 +313,11 @@ pub(super) fn smallest_heading(study: &CompareStudy) -> &'static str {
 
 /// The size of a smallest change.
 pub(super) fn size(least: &LeastChange) -> String {
-    match least.unit {
-        "m" => format!("{} mm", significant(1000.0 * least.size, 2)),
-        "arm" => format!("{} of an arm", significant(least.size, 2)),
-        unit => format!("{}{}", significant(least.size, 2), spaced(unit)),
+    match (least.what, least.unit) {
+        (Changed::Rotor(_), _) => format!("{} of its thrust", significant(least.size, 2)),
+        (_, "m") => format!("{} mm", significant(1000.0 * least.size, 2)),
+        (_, "arm") => format!("{} of an arm", significant(least.size, 2)),
+        // a bare number is said to be one
+        (_, unit) => format!("{} {unit}", significant(least.size, 2)),
     }
 }
