@@ -168,7 +168,7 @@ fn the_command_writes_the_log_and_says_what_it_did() {
     };
     let done = run(&out);
     let said = String::from_utf8(done.stdout).unwrap();
-    assert!(done.status.success() && said.contains("6 messages") && said.contains("Read back"), "{said}");
+    assert!(done.status.success() && said.contains("7 messages") && said.contains("Read back"), "{said}");
     assert_eq!(std::fs::read(&out).unwrap(), redact(&telltale()).unwrap().bytes);
     // what is there stays, unless it may be replaced
     std::fs::write(&out, "mine").unwrap();

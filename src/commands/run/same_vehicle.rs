@@ -5,7 +5,7 @@ use std::path::Path;
 use mavid::autopilot::{Autopilot, Frame};
 use mavid::config::read_vehicle;
 use mavid::fly::PARAMETERS;
-use mavid::text::{self, significant};
+use mavid::text::{self, compact};
 use mavid::vehicle::{Spin, Vehicle};
 
 use super::folder::Folder;
@@ -42,7 +42,7 @@ pub fn same_vehicle(folder: &Folder, args: &RunArgs) -> Result<(), CommandError>
     }
     let size = size_m(&known);
     if let Some(size_m) = args.shape.size.filter(|size_m| (size_m - size).abs() > SAME_SIZE * size) {
-        let size = significant(size, 4);
+        let size = compact(size);
         return refused(&format!(
             "--size: expected the {size} m of {shown}, which is there, got {size_m}: {ANOTHER}"
         ));

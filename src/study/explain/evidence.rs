@@ -1,7 +1,7 @@
 //! What was tried, in the order in which it is told.
 
 use crate::diagnose::{EffectTerm, GyroscopicShare, Tested, refused_by};
-use crate::text::significant;
+use crate::text::compact;
 use crate::vehicle::Vehicle;
 
 use super::ExplainStudy;
@@ -72,9 +72,8 @@ fn form(term: &EffectTerm, vehicle: &Vehicle) -> String {
         let unit = if parameter.unit == "-" { "" } else { parameter.unit };
         match motor {
             Some(index) => Some(vehicle.motor_words(index)),
-            None => (value != 0.0).then(|| {
-                format!("{} {} {unit}", parameter.name, significant(value, 3)).trim_end().to_owned()
-            }),
+            None => (value != 0.0)
+                .then(|| format!("{} {} {unit}", parameter.name, compact(value)).trim_end().to_owned()),
         }
     };
     let slots = 0..term.values.len();
