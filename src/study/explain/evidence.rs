@@ -1,7 +1,7 @@
 //! What was tried, in the order in which it is told.
 
 use crate::diagnose::{EffectTerm, GyroscopicShare, Tested, refused_by};
-use crate::text::compact;
+use crate::text::significant;
 use crate::vehicle::Vehicle;
 
 use super::ExplainStudy;
@@ -72,8 +72,12 @@ fn form(term: &EffectTerm, vehicle: &Vehicle) -> String {
         let unit = if parameter.unit == "-" { "" } else { parameter.unit };
         match motor {
             Some(index) => Some(vehicle.motor_words(index)),
-            None => (value != 0.0)
-                .then(|| format!("{} {} {unit}", parameter.name, compact(value)).trim_end().to_owned()),
+            // three digits, without zeros at the end
+            None if value != 0.0 => {
+                let short: f64 = significant(value, 3).parse().unwrap_or(value);
+                Some(format!("{} {short} {unit}", parameter.name).trim_end().to_owned())
+            }
+            None => None,
         }
     };
     let slots = 0..term.values.len();
