@@ -1,6 +1,7 @@
 //! Flights of logs, whatever their format: read, conditioned, and separated.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use crate::autopilot::VehicleKind;
 use crate::config::{ConfigError, load_csv_mapping};
@@ -238,7 +239,8 @@ fn of_log(flights: Vec<LogFlight>, log: &InputFile, report: &ReadReport) -> Vec<
         let about = || About::File(input.path.clone());
         let told: Vec<Note> = off_mixer.iter().map(|off| Note::warning(about(), off.to_string())).collect();
         input.notes.extend(told);
-        let from_us = (1e6 * flight.part_s.map_or(0.0, |(from_s, _)| from_s)) as u64;
+        let from = flight.part_s.and_then(|(from_s, _)| Duration::try_from_secs_f64(from_s).ok());
+        let from_us = from.and_then(|from| u64::try_from(from.as_micros()).ok()).unwrap_or(0);
         let start_utc_us = report.start_utc_us().map(|start_us| start_us.saturating_add(from_us));
         Flight { logged_by, start_utc_us, recording: flight.recording, input, off_mixer, actuator: None }
     };
