@@ -116,7 +116,7 @@ pub enum StudyError {
         /// that they contradict the vehicle, as the beginning of the sentence; empty where they do not
         mismatch: String,
         /// why
-        source: ExplainError,
+        source: Box<ExplainError>,
     },
 }
 

@@ -192,7 +192,11 @@ impl Task<'_> {
         let apart = if is_short { contradicted(&flights.signals, self.asked.vehicle) } else { Vec::new() };
         let mismatch =
             contradicts_file(&apart).map(|apart| format!("{apart} (is it another vehicle's?); with it "));
-        StudyError::Explain { logs: names(self.asked.logs), mismatch: mismatch.unwrap_or_default(), source }
+        StudyError::Explain {
+            logs: names(self.asked.logs),
+            mismatch: mismatch.unwrap_or_default(),
+            source: Box::new(source),
+        }
     }
 
     fn given(&self, flights: &Prepared, settings: ExplainSettings) -> Given {
