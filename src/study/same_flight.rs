@@ -38,9 +38,14 @@ pub(super) fn refuse_same_flight<'a>(
     logs: impl Iterator<Item = &'a Vec<Flight>> + Clone,
 ) -> Result<(), StudyError> {
     refuse_twins(logs.clone())?;
-    let flights: Vec<&Flight> = logs.flatten().collect();
+    // the flights of one log follow each other
+    let (of_log, flights): (Vec<usize>, Vec<&Flight>) =
+        logs.enumerate().flat_map(|(log, flights)| flights.iter().map(move |flight| (log, flight))).unzip();
     let overlaps: Vec<Overlap> = flights.par_iter().map(|flight| in_the_air(&flight.recording)).collect();
     let is_same = |one: usize, other: usize| {
+        if of_log[one] == of_log[other] {
+            return false;
+        }
         let (own, others) = (&overlaps[one], &overlaps[other]);
         own.share_in(others).max(others.share_in(own)) > MOST_SHARED
             || flights[one].logged_by != flights[other].logged_by
