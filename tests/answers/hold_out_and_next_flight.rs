@@ -337,7 +337,7 @@ fn promise_is_kept(
     let (found, flight) = explained(&vehicles, concealed());
     let settings = NextSettings { starts: 2, moves: 40, ..NextSettings::default() };
     let next = design(&found, std::slice::from_ref(&flight), &vehicles.nominal, &settings, &|| {}).unwrap();
-    assert!(next.limits_are_flown && next.sentence().contains("sigma"));
+    assert!(next.limits_are_flown && next.sentence().contains("standard deviations"));
     let promised = *next.pairs.iter().find(|pair| pair.named == named).unwrap();
     let both = (&vehicles.truth, &vehicles.nominal);
     let (_, then) = flown(both, (concealed(), None), next.trajectory.clone(), (9, 6.0 + next.seconds));
