@@ -146,7 +146,9 @@ impl WeakRows {
         let (force, reference) = (signals.specific_force.as_ref()?, signals.reference.as_ref()?);
         let step_s = signals.grid.step_s;
         let kernel = WeakKernel::new(WEAK_HALF_WIDTH_S, step_s);
-        let rows = |seconds: f64| (seconds / step_s).round() as usize;
+        let rows = |seconds: f64| {
+            (0..signals.grid.count).take_while(|count| (*count as f64 + 0.5) * step_s < seconds).count()
+        };
         let longest = rows(BEHIND_S[BEHIND_S.len() - 1]);
         let within = |center: &usize| {
             signals.usable[center - kernel.half_count..=center + kernel.half_count]
