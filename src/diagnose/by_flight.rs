@@ -173,7 +173,7 @@ pub fn of_one_flight(
 ) -> Vec<FlightParameter> {
     let Ok(trace) = Trace::new(signals, vehicle, settings.half_width_s) else { return Vec::new() };
     let mut terms = of_the_vehicle(&[explanation]);
-    let drags = |term: &EffectTerm| term.signature.role.of_air && term.signature.role.lateral_slope.is_some();
+    let drags = |term: &EffectTerm| term.signature.role.of_air && term.signature.is_drag();
     if !terms.iter().any(drags) {
         let recorded = Recorded::new(vehicle, std::slice::from_ref(&trace));
         // the plainest form of a drag whose size grows with the speed alone

@@ -26,11 +26,6 @@ const STAYS_Z: f64 = 3.0;
 /// A coefficient further than this many standard errors from nothing has a sign: below, it refutes its law. The usual two.
 const CERTAIN: f64 = 2.0;
 
-/// Whether an effect is a law of drag across the rotor axis.
-fn is_law(signature: &Signature) -> bool {
-    signature.role.lateral_slope.is_some()
-}
-
 /// Brings the laws of the drag in line with the reconstructed flight path. Without a drag, or where no noise is fed back, all stays as
 /// the search left it. Laws that are `refused` do not enter. Returns the new model with the values of the flight path where it changed.
 ///
@@ -42,7 +37,7 @@ pub(super) fn settle_laws(
     (found, refused): (&mut Search, &[&'static str]),
 ) -> Result<Option<Base>, PhysicsError> {
     let present = &found.after.base.effects;
-    if !is_fed_back(traces) || !present.iter().any(|term| is_law(term.signature)) {
+    if !is_fed_back(traces) || !present.iter().any(|term| term.signature.is_drag()) {
         return Ok(None);
     }
     let mut best: Option<(f64, Reconstructed)> = None;
@@ -70,7 +65,7 @@ fn with_all_laws(base: &Base, traces: &[Trace], refused: &[&'static str]) -> Vec
     let others = candidates(&base.vehicle, traces, ALL).into_iter().filter_map(|candidate| {
         let [part] = candidate.parts.as_slice() else { return None };
         let is_new = base.effects.iter().all(|present| !present.is(part.signature));
-        (is_new && is_law(part.signature) && !refused.contains(&part.id())).then(|| part.clone())
+        (is_new && part.signature.is_drag() && !refused.contains(&part.id())).then(|| part.clone())
     });
     let mut forms: Vec<EffectTerm> = Vec::new();
     for form in others {
@@ -83,7 +78,7 @@ fn with_all_laws(base: &Base, traces: &[Trace], refused: &[&'static str]) -> Vec
         whole.effects.extend(form);
         let along_axis: Vec<_> =
             base.effects.iter().filter_map(|term| term.signature.role.axial_part_of).collect();
-        for term in whole.effects.iter_mut().filter(|term| is_law(term.signature)) {
+        for term in whole.effects.iter_mut().filter(|term| term.signature.is_drag()) {
             // along the rotor axis it may be the same term as that of another effect
             let elsewhere = along_axis.iter().any(|whole| whole.id() == term.id());
             let axial = term.signature.role.axial.filter(|_| elsewhere);
@@ -111,7 +106,7 @@ struct Law<'a> {
 }
 
 fn laws(told: &Reconstructed) -> impl Iterator<Item = Law<'_>> {
-    let of_law = |(_, term): &(usize, &EffectTerm)| is_law(term.signature);
+    let of_law = |(_, term): &(usize, &EffectTerm)| term.signature.is_drag();
     told.base.effects.iter().enumerate().filter(of_law).map(|(place, term)| {
         let vertical = term.signature.role.vertical;
         let is_across = |slot: &usize| term.is_amount(*slot) && Some(*slot) != vertical;
@@ -175,7 +170,7 @@ mod tests {
 
     /// In proportion to the airspeed, and with its square.
     fn both_laws() -> [&'static Signature; 2] {
-        let laws: Vec<_> = ALL.iter().copied().filter(|signature| is_law(signature)).collect();
+        let laws: Vec<_> = ALL.iter().copied().filter(|signature| signature.is_drag()).collect();
         laws.try_into().expect("two laws")
     }
 

@@ -56,15 +56,11 @@ fn other_laws(flights: &[Trace], last: &[Tested], fitted: &Fitted) -> Vec<Law> {
     laws
 }
 
-fn drags(term: &EffectTerm) -> bool {
-    term.signature.role.lateral_slope.is_some()
-}
-
 /// A drag alone, of a law that the fit does not have.
 fn is_other_law(candidate: &Candidate, fitted: &Fitted) -> bool {
     let [part] = candidate.parts.as_slice() else { return false };
     let is_new = || fitted.base.effects.iter().all(|present| !present.is(part.signature));
-    candidate.through.is_none() && drags(part) && is_new()
+    candidate.through.is_none() && part.signature.is_drag() && is_new()
 }
 
 /// Covariance that the drag laws that a fit does not have may bring into its coefficients; `last` are candidates that were tested on
@@ -72,16 +68,17 @@ fn is_other_law(candidate: &Candidate, fitted: &Fitted) -> bool {
 pub(super) fn of_other_laws(flights: &[Trace], last: &[Tested], fitted: &Fitted) -> DMatrix<f64> {
     let count = fitted.covariance.nrows();
     let mut most: DMatrix<f64> = DMatrix::zeros(count, count);
-    if !fitted.base.effects.iter().any(drags) {
+    if !fitted.base.effects.iter().any(|term| term.signature.is_drag()) {
         return most;
     }
     // a drag along z is told from an inflow by the search
-    let with_air = |term: &EffectTerm| drags(term) || term.signature.role.wind.is_some();
+    let with_air = |term: &EffectTerm| term.signature.is_drag() || term.signature.role.wind.is_some();
     let present = &fitted.base.effects;
     let go_along: Vec<bool> = present.iter().flat_map(|term| vec![with_air(term); term.free.len()]).collect();
     let first = fitted.weighted.nuisances.len().saturating_sub(go_along.len());
-    let is_drag =
-        present.iter().flat_map(|term| term.free.iter().map(|&slot| drags(term) && term.is_amount(slot)));
+    let is_drag = present
+        .iter()
+        .flat_map(|term| term.free.iter().map(|&slot| term.signature.is_drag() && term.is_amount(slot)));
     let drag_columns: Vec<usize> =
         is_drag.enumerate().filter(|(_, is)| *is).map(|(place, _)| first + place).collect();
     let mut widest = 0.0;

@@ -308,7 +308,7 @@ fn within_bounds(
         let (at, present) = (1 + index, &base.effects[place]);
         let (estimate, bound) = (pooled.values[at], present.possible(slot, pooled.values[at], &base.size));
         // a law of the drag that the search took for another one comes out at nothing; other effects are left as they were
-        let may_be_held = present.signature.role.lateral_slope.is_some();
+        let may_be_held = present.signature.is_drag();
         let most = if may_be_held { BEYOND_BOUND * pooled.std(at) } else { 0.0 };
         if (bound - estimate).abs() > most {
             return Err(Kept::Implausible { what: present.id(), value: estimate });

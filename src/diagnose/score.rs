@@ -145,7 +145,7 @@ pub(super) fn test_winds(
         return Vec::new();
     }
     let carried = signatures.iter().filter_map(|signature| signature.role.wind).flat_map(|carried| carried());
-    if present.iter().any(|term| term.signature.role.lateral_slope.is_some()) {
+    if present.iter().any(|term| term.signature.is_drag()) {
         // its columns come through the drag that is there
         let alone = carried.take(1).filter_map(|wind| {
             let candidate = Candidate::alone(wind.term);

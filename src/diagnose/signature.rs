@@ -74,6 +74,12 @@ impl Signature {
         self.role.latency.is_none() && self.effect.hooks().iter().any(alters)
     }
 
+    /// Whether it is a law of the drag across the rotor axis.
+    #[must_use]
+    pub fn is_drag(&self) -> bool {
+        self.role.lateral_slope.is_some()
+    }
+
     /// Name and value of each parameter at an ordinary size on this vehicle; `None` where no size is stated.
     #[must_use]
     pub fn usual_values(&self, vehicle: &Vehicle) -> Option<Vec<(&'static str, f64)>> {

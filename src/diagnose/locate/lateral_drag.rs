@@ -39,7 +39,7 @@ fn mean_of_axes(along: &[Vec<(f64, f64)>]) -> (f64, f64) {
 
 /// Whether the model has a drag along both body axes. Along an axis without one, what is left contains the drag itself.
 pub(super) fn is_known_across(fitted: &Fitted) -> bool {
-    let drags = || fitted.base.effects.iter().filter(|term| term.signature.role.lateral_slope.is_some());
+    let drags = || fitted.base.effects.iter().filter(|term| term.signature.is_drag());
     ACROSS.into_iter().all(|slot| drags().any(|term| acts_along(term, slot)))
 }
 
