@@ -1,12 +1,13 @@
 //! Lower bounds of the standard errors: the accuracy of the laws themselves, which the statistics of one flight do not contain.
 
 use super::base::{Base, follows_force, turns_about_z};
-use super::channels::Nuisance;
+use super::channels::{Channels, Nuisance};
 use super::fit::Fitted;
 use super::signature::EffectTerm;
 use crate::estimate::INERTIA_ENTRIES;
 use crate::physics::Parameter;
 use crate::vehicle::{Guessed, Vehicle};
+use nalgebra::DVectorView;
 
 /// Relative standard error of the mass that the thrust law adds: of 20 flights of both autopilots' simulators 16 were within 0.2 %,
 /// four within 0.4 %.
@@ -66,22 +67,23 @@ pub(super) fn add_slope(fitted: &mut Fitted) {
     }
 }
 
-/// The force of all laws of the drag along an axis of the body (`slot`) over that of one of them, whose coefficient has the place `index`;
-/// 1 of any other effect. What the form of the whole is wrong by, one of several laws takes: a linear and a quadratic drag have nearly
-/// the same force at the speeds of one flight.
-fn together(fitted: &Fitted, slot: usize, index: usize) -> f64 {
-    let first = fitted.rows.nuisances.len();
+/// The force of all laws of the drag along a body axis over that of one of them; 1 of any other effect. `place` is that of its
+/// coefficient among those of all effects, `axis` its slot. What the form of the whole is wrong by, one of several laws takes: a linear
+/// and a quadratic drag have nearly the same force at the speeds of one flight.
+fn together(fitted: &Fitted, axis: usize, place: usize) -> f64 {
     let slots = fitted.base.effects.iter().flat_map(|term| term.free.iter().map(move |&slot| (term, slot)));
-    let force = |(place, (term, of)): (usize, (&EffectTerm, usize))| {
-        let is_of_drag = of == slot && slot < 3 && term.signature.role.lateral_slope.is_some();
-        let column = fitted.rows.effects.get(place).filter(|_| is_of_drag)?;
-        let size = column[slot].iter().map(|value| value * value).sum::<f64>().sqrt();
-        Some((place, size * term.values[of].abs()))
+    // root of the sum of squares over the rows, N
+    let force = |((term, slot), column): ((&EffectTerm, usize), &Channels)| {
+        let is_along = slot == axis && axis < 3 && term.signature.is_drag();
+        if is_along {
+            term.values[slot].abs() * DVectorView::from_slice(&column[axis], column[axis].len()).norm()
+        } else {
+            0.0
+        }
     };
-    let forces: Vec<(usize, f64)> = slots.enumerate().filter_map(force).collect();
-    let own = forces.iter().find(|(place, _)| first + place == index).map_or(0.0, |(_, force)| *force);
-    let all: f64 = forces.iter().map(|(_, force)| force).sum();
-    if own > 0.0 { all / own } else { 1.0 }
+    let forces: Vec<f64> = slots.zip(&fitted.rows.effects).map(force).collect();
+    let own = forces.get(place).copied().unwrap_or(0.0);
+    if own > 0.0 { forces.iter().sum::<f64>() / own } else { 1.0 }
 }
 
 /// Adds the errors of the laws to those of a fit's mass, moments of inertia and sizes of effects.
@@ -95,7 +97,7 @@ pub(super) fn add_floors(fitted: &mut Fitted) {
             if term.is_amount(slot) && fitted.covariance[(index, index)] > 0.0 {
                 let on_scale = term.parameter(slot).is_some_and(|of| follows_force(of.unit));
                 let guess = term.parameter(slot).map_or(0.0, |of| guessed(&fitted.base.vehicle, of));
-                let form = FORM * together(fitted, slot, index);
+                let form = FORM * together(fitted, slot, index - fitted.rows.nuisances.len());
                 let law = if on_scale { form.hypot(scale) } else { form }.hypot(guess);
                 fitted.covariance[(index, index)] += (law * term.from_nothing(slot)).powi(2);
             }

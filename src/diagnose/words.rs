@@ -31,11 +31,17 @@ fn common(parameters: &[&NamedParameter]) -> Option<(f64, f64)> {
     (alike && weight.is_finite()).then(|| (mean, weight.powf(-0.5)))
 }
 
+/// The parameters with the unit of the first one.
+fn of_first_unit(named: &Named) -> Vec<&NamedParameter> {
+    let unit = named.parameters.first().map(|first| first.unit);
+    named.parameters.iter().filter(|p| Some(p.unit) == unit).collect()
+}
+
 /// One number if the axes agree within two standard errors, otherwise the least and the greatest.
 #[must_use]
 pub fn range(named: &Named) -> String {
-    let Some(first) = named.parameters.first() else { return String::new() };
-    let same: Vec<&NamedParameter> = named.parameters.iter().filter(|p| p.unit == first.unit).collect();
+    let same = of_first_unit(named);
+    let Some(first) = same.first() else { return String::new() };
     let unit = spoken(first.unit);
     if let Some((mean, std)) = common(&same) {
         return format!("{} {unit}", plain(mean, std));
@@ -49,8 +55,7 @@ pub fn range(named: &Named) -> String {
 /// Value and standard error of [`range`]: of the common value, otherwise of the largest one.
 #[must_use]
 pub fn largest(named: &Named) -> Option<(f64, f64)> {
-    let first = named.parameters.first()?;
-    let same: Vec<&NamedParameter> = named.parameters.iter().filter(|p| p.unit == first.unit).collect();
+    let same = of_first_unit(named);
     common(&same).or_else(|| {
         let most = same.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))?;
         Some((most.value, most.std))

@@ -1,7 +1,6 @@
 //! The parameters of a vehicle that a first description of it needs.
 
 use std::collections::{BTreeMap, BTreeSet};
-
 use std::time::{Duration, Instant};
 
 use super::{Flow, OnboardError, Session};

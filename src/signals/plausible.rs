@@ -157,26 +157,28 @@ fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Op
     (0..AXIS_NAMES.len()).find_map(|axis| {
         let changed = DVector::from_vec(centred(&column(&changed, axis)));
         let alike = alone(&columns, &changed)?;
-        let best = (0..AXIS_NAMES.len()).max_by(|&a, &b| alike[a].abs().total_cmp(&alike[b].abs()))?;
-        let wrong = alike[best].abs() > ALIKE && alike[best].abs() > alike[axis] + APART;
-        let others = (0..AXIS_NAMES.len()).filter(|other| *other != axis);
-        let beside = others.max_by(|&a, &b| alike[a].abs().total_cmp(&alike[b].abs()))?;
-        if !wrong && alike[beside].abs() > ALIKE {
-            return Some(format!(
-                "the body turns about {} as if by the rotors' torque about {} as well (partial correlation {:.2}; {:.2} with that about \
-                 {}): expected the rotors at the vehicle file's places, not turned about the vertical",
-                AXIS_NAMES[axis], AXIS_NAMES[beside], alike[beside].abs(), alike[axis], AXIS_NAMES[axis]
-            ));
-        }
-        wrong.then(|| {
-            let sign = if alike[best] < 0.0 { "-" } else { "" };
+        let (best, beside) = (strongest(alike, |_| true)?, strongest(alike, |other| other != axis)?);
+        let told = |other: usize, too: &str, expected: &str| {
+            let sign = if alike[other] < 0.0 { "-" } else { "" };
             format!(
-                "the body turns about {} as if by the rotors' torque about {sign}{} (partial correlation {:.2}; \
-                 {:.2} with that about {}): expected the rotors in the vehicle file's order, at its places and turning its way",
-                AXIS_NAMES[axis], AXIS_NAMES[best], alike[best].abs(), alike[axis], AXIS_NAMES[axis]
+                "the body turns about {} as if by the rotors' torque about {sign}{}{too} (partial correlation {:.2}; {:.2} with that \
+                 about {}): expected the rotors {expected}",
+                AXIS_NAMES[axis], AXIS_NAMES[other], alike[other].abs(), alike[axis], AXIS_NAMES[axis]
             )
-        })
+        };
+        if alike[best].abs() > ALIKE && alike[best].abs() > alike[axis] + APART {
+            Some(told(best, "", "in the vehicle file's order, at its places and turning its way"))
+        } else if alike[beside].abs() > ALIKE {
+            Some(told(beside, " as well", "at the vehicle file's places, not turned about the vertical"))
+        } else {
+            None
+        }
     })
+}
+
+/// The axis of the largest absolute correlation among some.
+fn strongest(alike: [f64; 3], among: impl Fn(usize) -> bool) -> Option<usize> {
+    (0..alike.len()).filter(|axis| among(*axis)).max_by(|&a, &b| alike[a].abs().total_cmp(&alike[b].abs()))
 }
 
 /// Partial correlation of `values` with each of the first three columns, without the part of all other columns; 0 for a

@@ -107,10 +107,8 @@ pub(super) fn load_all(
     read: &ReadSettings,
     most: &Hold,
 ) -> Result<Vec<Vec<Flight>>, StudyError> {
-    match load_each(logs, read, most)? {
-        (_, refused) if !refused.is_empty() => refused.into_iter().next().map_or(Ok(Vec::new()), Err),
-        (logs, _) => Ok(logs),
-    }
+    let (flown, refused) = load_each(logs, read, most)?;
+    refused.into_iter().next().map_or(Ok(flown), Err)
 }
 
 /// The same of the logs in which there is a flight, and why there is none in the others.

@@ -1,6 +1,6 @@
 //! Where along a row of flights the vehicle changed, beside a load that one of them had.
 
-use super::judge::{Judge, flight_groups};
+use super::judge::{Judge, beyond, flight_groups};
 use super::result::{Changed, Compared};
 use crate::change::{Groups, NAMED_SIGMAS, Step, What};
 use std::cmp::Reverse;
@@ -61,8 +61,7 @@ impl Judge<'_> {
         if !(3..=MOST_ALONE).contains(&count) {
             return Vec::new();
         }
-        let pairs = (count * (count - 1) / 2) as f64;
-        let least = least_sigmas.max(NAMED_SIGMAS).hypot((2.0 * pairs.ln()).sqrt());
+        let least = least_sigmas.max(NAMED_SIGMAS).hypot(beyond(count * (count - 1) / 2));
         let of_flight = |later: usize| {
             let against = |earlier: usize| {
                 let groups = Groups { before: vec![earlier], after: vec![later] };

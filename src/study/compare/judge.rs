@@ -199,8 +199,8 @@ impl Judge<'_> {
     }
 }
 
-/// By chance one of so many places is reached at that many standard deviations more.
-fn beyond(places: usize) -> f64 {
+/// Standard deviations that chance reaches at one of so many places: the root of twice their logarithm.
+pub(super) fn beyond(places: usize) -> f64 {
     (2.0 * (places.max(1) as f64).ln()).sqrt()
 }
 

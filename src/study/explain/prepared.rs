@@ -158,8 +158,9 @@ impl Task<'_> {
                 (None, None) => {
                     // one that came back as a part of what stays has its name
                     unsure.retain(|(id, _)| study.effects.iter().all(|named| named.id != *id));
-                    let names: Vec<String> = unsure.into_iter().map(|(_, name)| name).collect();
-                    study.short.iter_mut().for_each(|short| short.unsure.clone_from(&names));
+                    if let Some(short) = &mut study.short {
+                        short.unsure = unsure.into_iter().map(|(_, name)| name).collect();
+                    }
                     return Ok((study, notes));
                 }
             };
