@@ -8,6 +8,9 @@ use crate::vehicle::Vehicle;
 /// The rotors of the vehicle file are not those of the autopilot.
 const OTHER_ROTORS: &str = "the rotors of the vehicle file contradict the autopilot's parameters";
 
+/// Streams that do not go together, or not with the rotors; which, is a warning.
+const CONTRADICTION: &str = "the recorded motion does not go with the rotors of the vehicle file, or recorded streams contradict each other (see the warnings)";
+
 /// Flights of one answer that are of two vehicles.
 pub(super) const TWO_VEHICLES: &str =
     "the flights given together differ by more than flights of one vehicle do";
@@ -27,17 +30,11 @@ pub(super) fn doubts<'a>(
     if flights.iter().copied().any(other_rotors) {
         doubts.push(OTHER_ROTORS.to_owned());
     }
-    // what was expected is for the warnings
-    let contradicting = flights.iter().flat_map(|quality| &quality.notes);
-    let mut contradicting = contradicting.filter(|note| note.about == About::Contradiction);
-    doubts.extend(contradicting.next().map(|note| before_expected(&note.text).to_owned()));
+    if flights.iter().flat_map(|quality| &quality.notes).any(|note| note.about == About::Contradiction) {
+        doubts.push(CONTRADICTION.to_owned());
+    }
     let odd = vehicle.implausible();
     // questions are for the warnings
     doubts.extend(odd.iter().map(|odd| format!("implausible vehicle data, {}", odd.trim_end_matches('?'))));
     doubts
-}
-
-/// A sentence without what was expected instead.
-fn before_expected(text: &str) -> &str {
-    text.split_once(": expected").map_or(text, |(before, _)| before)
 }
