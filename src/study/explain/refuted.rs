@@ -1,5 +1,6 @@
 //! Names that flights which were not used refute.
 
+use crate::diagnose::called;
 use crate::note::{About, Note};
 use crate::text::significant;
 
@@ -58,11 +59,15 @@ pub(super) struct Unshown {
     pub(super) halves: bool,
     /// by how much errors over 0.5 s on the flight itself are smaller with it, mean over the quantities, %
     pub(super) worth_percent: f64,
+    /// another law of the drag that is known better, where that is why it leaves
+    pub(super) beside: Option<&'static str>,
 }
 
 impl Unshown {
     pub(super) fn note(&self) -> Note {
-        let why = if self.halves {
+        let why = if let Some(other) = self.beside {
+            format!("it cannot be told from {}, which is known better", called(other))
+        } else if self.halves {
             format!(
                 "with it, errors over 0.5 s on the flight itself are only {} % smaller in the mean",
                 significant(self.worth_percent.max(0.0), 2)

@@ -4,7 +4,7 @@ use super::refuted::Unshown;
 use super::result::ExplainStudy;
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{ByPart, Named, Trace, brief, by_part};
+use crate::diagnose::{ByPart, Named, Trace, brief, by_part, known_to};
 
 /// Least share by which errors over 0.5 s have to be smaller with an effect, mean over the quantities, %. On the data that an effect
 /// was fitted to they are smaller even where it is worth nothing. Set by judgement.
@@ -30,7 +30,7 @@ impl ExplainStudy {
             let worth_percent = better_without.map_or(f64::INFINITY, |better| -better);
             let unshown = !halves || worth_percent < LEAST_WORTH_PERCENT;
             let name = brief(named, &self.given.vehicle, true);
-            unshown.then_some(Unshown { id: named.id, name, halves, worth_percent })
+            unshown.then_some(Unshown { id: named.id, name, halves, worth_percent, beside: None })
         };
         let names = || self.explanation.named.iter().filter(is_judged);
         let least = names()
@@ -38,21 +38,18 @@ impl ExplainStudy {
             .min_by(|(_, a), (_, b)| a.worth_percent.total_cmp(&b.worth_percent));
         let (named, unshown) = least?;
         // of two laws of the drag, which are nearly one force, the one that is known worse goes first
-        let drags = |named: &&Named| signature_of(named.id).is_some_and(|of| of.role.lateral_slope.is_some());
-        if !drags(&named) {
-            return Some(unshown);
-        }
-        let worst = names().filter(drags).max_by(|a, b| relative_std(a).total_cmp(&relative_std(b)));
-        let other = worst.filter(|worst| worst.id != named.id);
+        let drags = |named: &&Named| signature_of(named.id).is_some_and(Signature::is_drag);
+        let uncertainty = |named: &Named| known_to(named).unwrap_or(f64::INFINITY);
+        let worst = names().filter(drags).max_by(|a, b| uncertainty(a).total_cmp(&uncertainty(b)));
+        let other = worst.filter(|worst| drags(&named) && worst.id != named.id);
         Some(match other {
-            Some(other) => Unshown { id: other.id, name: brief(other, &self.given.vehicle, true), ..unshown },
+            Some(other) => Unshown {
+                id: other.id,
+                name: brief(other, &self.given.vehicle, true),
+                beside: Some(named.id),
+                ..unshown
+            },
             None => unshown,
         })
     }
-}
-
-/// Standard error over the size of the parameter of an effect that is known best.
-fn relative_std(named: &Named) -> f64 {
-    let sizes = named.parameters.iter().filter(|of| of.unit != "-" && of.std > 0.0);
-    sizes.map(|of| of.std / of.value.abs()).fold(f64::INFINITY, f64::min)
 }
