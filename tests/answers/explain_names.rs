@@ -125,3 +125,30 @@ fn a_low_ceiling_is_named() {
     let named = found.named.iter().find(|named| named.id == "ceiling_effect").unwrap();
     assert!((value(named, "height") - 2.35).abs() < 0.15, "{named:?}");
 }
+
+#[test]
+fn the_first_rotor_keeps_its_number() {
+    let found =
+        explained(6, &[("weak_rotor", &[("rotor", 0.0), ("factor", 0.93)])], RandomTrajectory::default());
+    assert_eq!((found.verdict, ids(&found)), (Verdict::Explained, vec!["weak_rotor"]));
+    assert_eq!(value(&found.named[0], "rotor"), 0.0);
+    assert!(is_near(value(&found.named[0], "factor"), 0.93, 0.01));
+}
+
+#[test]
+fn what_the_form_of_two_laws_of_the_drag_may_be_wrong_by_is_in_each_of_them() {
+    let drag: Sizes = &[("dx", 0.8), ("dy", 0.8), ("dz", 0.8)];
+    let square: Sizes = &[("cx", 0.3), ("cy", 0.3), ("cz", 0.3)];
+    let found =
+        explained(4, &[("linear_drag", drag), ("quadratic_drag", square)], RandomTrajectory::default());
+    let named = |id: &str| {
+        found.named.iter().find(|named| named.id == id).unwrap_or_else(|| panic!("{:?}", ids(&found)))
+    };
+    for (id, parameter) in [("linear_drag", "dx"), ("quadratic_drag", "cx")] {
+        let named = named(id);
+        let found = named.parameters.iter().find(|known| known.name == parameter).unwrap();
+        // alone each has 2 % of itself at the least
+        assert!(found.std > 0.025 * found.value, "{id}: {found:?}");
+        assert!(holds(named, parameter, if id == "linear_drag" { 0.8 } else { 0.3 }, 0.0), "{id}: {found:?}");
+    }
+}

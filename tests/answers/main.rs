@@ -26,3 +26,4 @@ mod reconstruction;
 mod validate_command;
 mod velocity_error;
 mod weighed_vehicle;
+mod wrong_rotors;
