@@ -319,6 +319,7 @@ fn flight_fit(
         steps: Vec::new(),
         last: Vec::new(),
         by_wider_window: [f64::NAN; 3],
+        paths: Vec::new(),
     };
     reconstruct(std::slice::from_ref(signals), traces, (forms, &mut found), None)?;
     let by_instruments = if is_fed_back(traces) {

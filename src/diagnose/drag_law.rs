@@ -23,6 +23,8 @@ use crate::stats::normal_deviate;
 const ENTERS_Z: f64 = NAME_Z + 1.0;
 /// Normal deviate that a law needs to stay. As of any effect beside the others.
 const STAYS_Z: f64 = 3.0;
+/// Normal deviate from which on the other forms of a law are tried. They push nearly alike, and where one shows nothing none enters.
+const SHOWS_Z: f64 = 2.0;
 /// A coefficient further than this many standard errors from nothing has a sign: below, it refutes its law. The usual two.
 const CERTAIN: f64 = 2.0;
 
@@ -49,6 +51,9 @@ pub(super) fn settle_laws(
         let z = laws(&told).filter(is_new).map(|law| law.z).fold(0.0, f64::max);
         if best.as_ref().is_none_or(|(most, _)| z > *most) {
             best = Some((z, told));
+        }
+        if z < SHOWS_Z {
+            break;
         }
     }
     let Some((_, told)) = best else { return Ok(None) };

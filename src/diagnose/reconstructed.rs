@@ -16,7 +16,7 @@ use crate::physics::{
     Airframe, Condition, Hook, Input, MAX_ROTORS, PhysicsError, Rotors, State, effects_wrench,
 };
 use crate::reconstruction::{
-    Fit, FitError, KnownLag, Problem, ReconstructionError, Term, fit, fit_mode, force_problem,
+    Fit, FitError, KnownLag, Path, Problem, ReconstructionError, Term, fit, fit_mode, force_problem,
 };
 use crate::signals::{Signals, ThrustSource};
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -55,7 +55,8 @@ pub(super) fn reconstruct(
     start: Option<&Base>,
 ) -> Result<bool, PhysicsError> {
     let flights = Flights { signals, latency_std_s: found.latency.std_s, forms };
-    match flights.sizes(traces, &found.after, start.unwrap_or(&found.after.base))? {
+    let paths = &mut found.paths;
+    match flights.sizes(traces, &found.after, start.unwrap_or(&found.after.base), paths)? {
         Ok(after) => {
             found.after = after;
             Ok(true)
@@ -119,9 +120,13 @@ impl Reconstructed {
 }
 
 /// The estimates of another model of the same flights; `None` where they allow none.
-pub(super) fn reconstructed_with(signals: &[Signals], found: &Search, base: Base) -> Option<Reconstructed> {
+pub(super) fn reconstructed_with(
+    signals: &[Signals],
+    found: &mut Search,
+    base: Base,
+) -> Option<Reconstructed> {
     let flights = Flights { signals, latency_std_s: found.latency.std_s, forms: Forms::Chosen };
-    let (base, terms, pooled) = flights.estimated(&found.after, base).ok()?;
+    let (base, terms, pooled) = flights.estimated(&found.after, base, &mut found.paths).ok()?;
     plausible_scale(pooled.values[0]).ok()?;
     Some(Reconstructed { base, terms, pooled })
 }
@@ -156,15 +161,22 @@ impl Flights<'_> {
         traces: &[Trace],
         fitted: &Fitted,
         start: &Base,
+        paths: &mut Vec<Path>,
     ) -> Result<Result<Fitted, Kept>, PhysicsError> {
-        match self.estimated(fitted, start.clone()) {
+        match self.estimated(fitted, start.clone(), paths) {
             Ok((base, terms, pooled)) => replaced(traces, (fitted, base), &terms, &pooled),
             Err(why) => Ok(Err(why)),
         }
     }
 
-    /// The base in the forms that the forces show, its effects as terms, and their values; the latency is that of the fit.
-    fn estimated(&self, fitted: &Fitted, mut base: Base) -> Result<(Base, Vec<Term>, PooledEstimate), Kept> {
+    /// The base in the forms that the forces show, its effects as terms, and their values; the latency is that of the fit. It begins at
+    /// the `paths` of the flights, where an estimate with other effects left some, and leaves its own.
+    fn estimated(
+        &self,
+        fitted: &Fitted,
+        mut base: Base,
+        paths: &mut Vec<Path>,
+    ) -> Result<(Base, Vec<Term>, PooledEstimate), Kept> {
         let mut open = base.clone();
         for present in &mut open.effects {
             open_form(present);
@@ -175,27 +187,29 @@ impl Flights<'_> {
         }
         let has_forms = open.effects.iter().any(|present| present.signature.role.with_speed.is_some());
         if has_forms && self.forms == Forms::Chosen {
-            let pooled = self.pooled_over_flights(fitted, &open, &terms, fit_mode)?;
+            let pooled = self.pooled_over_flights((fitted, &open), &terms, fit_mode, paths)?;
             choose_forms(&mut base, &terms, &pooled);
         }
         let terms = self::terms(&base).ok_or(Kept::OtherKind)?;
-        let pooled = self.pooled_over_flights(fitted, &base, &terms, fit)?;
+        let pooled = self.pooled_over_flights((fitted, &base), &terms, fit, paths)?;
         Ok((base, terms, pooled))
     }
 
     fn pooled_over_flights(
         &self,
-        fitted: &Fitted,
-        base: &Base,
+        (fitted, base): (&Fitted, &Base),
         terms: &[Term],
         estimate: Estimate,
+        paths: &mut Vec<Path>,
     ) -> Result<PooledEstimate, Kept> {
-        let one = |signals: &Signals| {
+        let one = |(index, signals): (usize, &Signals)| {
             let lag = known_lag(fitted, signals, self.latency_std_s);
-            fitted_flight((signals, base, lag), terms, estimate)
+            fitted_flight((signals, base, lag), terms, estimate, paths.get(index))
         };
-        let fits: Vec<Fit> = self.signals.par_iter().map(one).collect::<Result<_, _>>()?;
-        PooledEstimate::of(&fits, terms).ok_or(Kept::Singular)
+        let fits: Vec<Fit> = self.signals.par_iter().enumerate().map(one).collect::<Result<_, _>>()?;
+        let pooled = PooledEstimate::of(&fits, terms).ok_or(Kept::Singular);
+        *paths = fits.into_iter().map(|fit| fit.path).collect();
+        pooled
     }
 }
 
@@ -254,13 +268,14 @@ fn fitted_flight(
     (signals, base, lag): (&Signals, &Base, KnownLag),
     terms: &[Term],
     estimate: Estimate,
+    path: Option<&Path>,
 ) -> Result<Fit, ReconstructionError> {
     let base = base.on(&signals.own);
     let mut terms = terms.to_vec();
     for (term, own) in terms.iter_mut().zip(&base.effects).filter(|(term, _)| term.free.is_empty()) {
         term.values.clone_from(&own.values);
     }
-    let problem = force_problem(signals, &base.vehicle, lag, terms)?;
+    let problem = force_problem(signals, &base.vehicle, lag, terms)?.from_path(path);
     let free: Vec<usize> = (0..problem.unknowns.len()).collect();
     Ok(estimate(problem, &free)?)
 }

@@ -4,6 +4,7 @@ use super::candidates::Candidate;
 use super::evidence::Evidence;
 use super::fit::Fitted;
 use super::latency::LatencyFinding;
+use crate::reconstruction::Path;
 
 /// A candidate with its evidence.
 #[derive(Debug, Clone)]
@@ -58,4 +59,6 @@ pub struct Search {
     /// Ixx, Iyy, Izz of the rigid body alone by a window of twice the width, as shares of those by the usual one; NaN before the model is
     /// refined, and where either has none
     pub by_wider_window: [f64; 3],
+    /// of each flight, once its forces were estimated with it
+    pub(super) paths: Vec<Path>,
 }

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, SVector};
 use super::arrow::{Normal, Reduced, Rows, by_states, rows_of, spread};
 use super::blocks::{Block, Pair, STATE, WIDTH};
 use super::places::{BASE, SCALE};
-use super::problem::{Problem, Unknown};
+use super::problem::{Path, Problem, Unknown};
 use super::residuals::Group;
 
 /// Blocks of time over which scores are summed for standard errors.
@@ -15,6 +15,8 @@ const ROUNDS: usize = 14;
 /// Round from which on noise levels stay. The last rounds need a criterion that does not change, or they would not
 /// converge.
 const LEARNED_UNTIL: usize = 9;
+/// Round that a fit begins with where it begins at the path of another one: levels are learned three times more.
+const FROM_PATH: usize = 6;
 /// A step smaller than this share of every standard error ends the fit.
 const SMALL: f64 = 0.01;
 /// A fit whose last step was larger than this many standard errors has not converged.
@@ -41,6 +43,8 @@ pub struct Fit {
     pub covariance: DMatrix<f64>,
     /// of the free ones, by the scatter of the scores over blocks of time
     pub robust: DMatrix<f64>,
+    /// where a fit with other effects may begin
+    pub path: Path,
     unknowns: Vec<Unknown>,
     rows: Vec<Rows>,
     reduced: Reduced,
@@ -73,17 +77,22 @@ struct Iterate<'a> {
     problem: Problem,
     free: &'a [usize],
     theta: Vec<f64>,
+    first_round: usize,
 }
 
 impl<'a> Iterate<'a> {
-    fn new(problem: Problem, free: &'a [usize]) -> Self {
-        let theta = problem.unknowns.iter().map(|unknown| unknown.mean).collect();
-        Self { problem, free, theta }
+    fn new(mut problem: Problem, free: &'a [usize]) -> Self {
+        let mut theta: Vec<f64> = problem.unknowns.iter().map(|unknown| unknown.mean).collect();
+        let Some(path) = problem.path.take() else { return Self { problem, free, theta, first_round: 0 } };
+        theta.iter_mut().zip(&path.theta).for_each(|(value, found)| *value = *found);
+        problem.states = path.states;
+        problem.groups.iter_mut().zip(path.sigma).for_each(|(group, sigma)| group.sigma = sigma);
+        Self { problem, free, theta, first_round: FROM_PATH }
     }
 
     /// To the joint mode, with noise levels that are learned on the way.
     fn mode(&mut self) -> Result<(), FitError> {
-        for round in 0..ROUNDS {
+        for round in self.first_round..ROUNDS {
             let turn = self.linearised()?;
             self.moved(&turn);
             if round > 1 && round < LEARNED_UNTIL {
@@ -105,10 +114,14 @@ impl<'a> Iterate<'a> {
 
     fn finished(self) -> Result<Fit, FitError> {
         let Turn { rows, reduced, covariance, .. } = self.linearised()?;
-        let Self { problem, free, theta } = self;
+        let Self { problem, free, theta, .. } = self;
         let robust = DMatrix::zeros(0, 0);
-        let Problem { time_s, groups, unknowns, .. } = problem;
-        let mut fit = Fit { time_s, theta, free: free.to_vec(), covariance, robust, unknowns, rows, reduced };
+        let Problem { time_s, states, groups, unknowns, .. } = problem;
+        let sigma = groups.iter().map(|group| group.sigma).collect();
+        let path =
+            Path { time_s: time_s.clone(), states, sigma, theta: theta.iter().take(BASE).copied().collect() };
+        let mut fit =
+            Fit { time_s, theta, free: free.to_vec(), covariance, robust, path, unknowns, rows, reduced };
         let scores = fit.scores(&groups, free);
         fit.robust = &fit.covariance * scores.tr_mul(&scores) * &fit.covariance * small_sample();
         Ok(fit)

@@ -99,6 +99,7 @@ pub fn force_problem(
         time_s: cells.time_s.clone(),
         states: states.collect(),
         groups: groups(&flight),
+        path: None,
         unknowns,
         process: 0,
     })

@@ -24,6 +24,6 @@ pub use error::ReconstructionError;
 pub use fit::{BLOCKS, Fit, FitError, fit, fit_mode};
 pub use force_problem::{KnownLag, force_problem};
 pub use forces::Term;
-pub use problem::{Problem, Unknown};
+pub use problem::{Path, Problem, Unknown};
 pub use receiver::velocity_error_m_s;
 pub use residuals::{Group, Residuals, Row};
