@@ -5,9 +5,10 @@
 
 use super::nominal::Nominal;
 use super::result::{Estimated, Finding, finding};
-use super::weak::solve_weak;
+use super::weak::{WeakEstimate, solve_weak};
 use super::weak_flights::WeakFlights;
 use crate::note::{About, Note};
+use crate::regression::WeakRows;
 use crate::signals::{Signals, WEAK_HALF_WIDTH_S};
 use crate::vehicle::{Guessed, Vehicle};
 
@@ -31,10 +32,11 @@ fn share_about_z(flights: &[Signals], vehicle: &Vehicle) -> Option<(f64, f64)> {
     let estimated = Estimated::of(&found).with_wider_window(by_wider_window);
     let is_determined =
         |index: usize| matches!(finding(&estimated, &nominal, index), Finding::Determined { .. });
-    let Estimated { theta, covariance, .. } = &estimated;
+    let across_is_determined = is_determined(1) && is_determined(4);
+    weak.rows.iter_mut().for_each(without_gyroscopic_torque);
+    let WeakEstimate { theta, covariance, .. } = solve_weak(&weak.rows, &nominal.theta)?;
     let (across, about) = (theta[1] + theta[4], theta[6]);
     let relative_about = covariance[(6, 6)].max(0.0).sqrt() / about;
-    let across_is_determined = is_determined(1) && is_determined(4);
     tracing::debug!(
         share = about / across,
         relative_about,
@@ -49,6 +51,17 @@ fn share_about_z(flights: &[Signals], vehicle: &Vehicle) -> Option<(f64, f64)> {
         + covariance[(6, 6)] / about.powi(2)
         - 2.0 * (covariance[(1, 6)] + covariance[(4, 6)]) / (across * about);
     Some((about / across, variance.max(0.0).sqrt()))
+}
+
+/// Takes the part of the moments of inertia in the gyroscopic torque out of the regressor. A simulator may not have this torque, and then
+/// it says that izz is near ixx and iyy, whatever turns the vehicle about z.
+fn without_gyroscopic_torque(rows: &mut WeakRows) {
+    for phi in rows.regressor.iter_mut().flatten() {
+        // torque about x, y, z, and the moments about the two other axes
+        for (channel, moments) in [(1, [4, 6]), (2, [1, 6]), (3, [1, 4])] {
+            moments.into_iter().for_each(|moment| phi[(channel, moment)] = 0.0);
+        }
+    }
 }
 
 /// The vehicle with another torque per thrust, and a note on it, where that is guessed and no body could have the izz which the flights
@@ -90,37 +103,92 @@ pub fn torque_by_motion(flights: &[Signals], vehicle: &Vehicle) -> Option<(Vehic
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
+    use crate::physics::{ActiveEffect, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
     use crate::signals::{ConditionSettings, condition};
     use crate::simulate::{
         FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight,
     };
     use crate::vehicle::Guess;
+    use nalgebra::Vector3;
 
-    #[test]
-    fn a_guess_that_no_body_allows_is_corrected_and_another_one_stays() {
+    /// Takes the gyroscopic torque out.
+    #[derive(Debug)]
+    struct NoGyroscopicTorque;
+
+    const fn moment(name: &'static str) -> Parameter {
+        Parameter { name, unit: "kg m^2", bounds: Bounds::of(0.0, 1.0) }
+    }
+
+    const MOMENTS: &[Parameter] = &[moment("ixx"), moment("iyy"), moment("izz")];
+
+    impl Effect for NoGyroscopicTorque {
+        fn id(&self) -> &'static str {
+            "no_gyroscopic_torque"
+        }
+
+        fn sentence(&self) -> &'static str {
+            "The simulator has no gyroscopic torque."
+        }
+
+        fn equation(&self) -> &'static str {
+            "`tau = w x J w`"
+        }
+
+        fn parameters(&self) -> &'static [Parameter] {
+            MOMENTS
+        }
+
+        fn hooks(&self) -> &'static [Hook] {
+            &[Hook::Wrench]
+        }
+
+        fn wrench(&self, at: &Condition, _: &Rotors, own: &mut Own, sum: &mut Wrench) {
+            let rates_rad_s = at.state.rates_rad_s;
+            let momentum = rates_rad_s.component_mul(&Vector3::from_column_slice(own.parameters));
+            sum.torque_nm += rates_rad_s.cross(&momentum);
+        }
+    }
+
+    /// What is made of a torque per thrust of `factor` times the true one, and the true one, m.
+    fn corrected(truth: fn(&mut Truth), factor: f64, is_guess: bool) -> (Option<(Vehicle, Note)>, f64) {
         let pair = random_vehicle(31);
         let trajectory = RandomTrajectory::default().draw(3101).unwrap();
         let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
         let settings = FlightSettings { seed: 31, ..FlightSettings::default() };
-        let truth = Truth::clean(pair.truth.clone());
-        let flight = simulate_flight(truth, &pair.nominal, &reference, &settings).unwrap();
-        let guessed = |factor: f64, is_guess: bool| {
-            let mut vehicle = pair.nominal.clone();
-            vehicle.propulsion.torque_per_thrust_m *= factor;
-            let guess = Guess { of: Guessed::TorqueRatio, relative: 0.45, why: String::new() };
-            vehicle.guesses = if is_guess { vec![guess] } else { Vec::new() };
-            let signals = condition(&flight.recording, &vehicle, &ConditionSettings::default()).unwrap();
-            torque_by_motion(&[signals], &vehicle)
-        };
-        let truth_m = pair.truth.propulsion.torque_per_thrust_m;
-        let (corrected, note) = guessed(3.0, true).unwrap();
-        let ratio = corrected.propulsion.torque_per_thrust_m / truth_m;
+        let mut flown = Truth::clean(pair.truth.clone());
+        truth(&mut flown);
+        let flight = simulate_flight(flown, &pair.nominal, &reference, &settings).unwrap();
+        let mut vehicle = pair.nominal.clone();
+        vehicle.propulsion.torque_per_thrust_m *= factor;
+        let guess = Guess { of: Guessed::TorqueRatio, relative: 0.45, why: String::new() };
+        vehicle.guesses = if is_guess { vec![guess] } else { Vec::new() };
+        let signals = condition(&flight.recording, &vehicle, &ConditionSettings::default()).unwrap();
+        (torque_by_motion(&[signals], &vehicle), pair.truth.propulsion.torque_per_thrust_m)
+    }
+
+    #[test]
+    fn a_guess_that_no_body_allows_is_corrected_and_another_one_stays() {
+        let (found, truth_m) = corrected(|_| (), 3.0, true);
+        let (corrected_to, note) = found.unwrap();
+        let ratio = corrected_to.propulsion.torque_per_thrust_m / truth_m;
         // the guess itself is another opinion
         assert!((0.7..1.8).contains(&ratio), "{ratio}");
-        assert!((0.1..RELATIVE).contains(&corrected.guesses[0].relative), "{:?}", corrected.guesses);
+        assert!((0.1..RELATIVE).contains(&corrected_to.guesses[0].relative), "{:?}", corrected_to.guesses);
         assert!(note.text.contains("the inertia about z would be"), "{}", note.text);
-        assert_eq!(guessed(1.0, true), None);
+        assert_eq!(corrected(|_| (), 1.0, true).0, None);
         // what is stated is not touched
-        assert_eq!(guessed(3.0, false), None);
+        assert_eq!(corrected(|_| (), 3.0, false).0, None);
+    }
+
+    #[test]
+    fn a_simulator_without_gyroscopic_torque_does_not_hide_a_guess_that_no_body_allows() {
+        let without = |truth: &mut Truth| {
+            let moments = truth.vehicle.body.inertia_kg_m2.diagonal();
+            truth.effects.push(ActiveEffect::new(&NoGyroscopicTorque, moments.as_slice()).unwrap());
+        };
+        let (found, truth_m) = corrected(without, 3.0, true);
+        let ratio = found.unwrap().0.propulsion.torque_per_thrust_m / truth_m;
+        assert!((0.7..1.8).contains(&ratio), "{ratio}");
+        assert_eq!(corrected(without, 1.0, true).0, None);
     }
 }
