@@ -8,6 +8,9 @@ pub enum RedactError {
     /// not one of the formats
     #[error("expected a .tlog, .ulg or .bin recording, found a file that begins with {0}")]
     Unknown(String),
+    /// no bytes
+    #[error("expected a .tlog, .ulg or .bin recording, got an empty file: nothing was recorded into it")]
+    Empty,
     /// nothing of it could be read
     #[error("expected messages of {format}, found none in {bytes} bytes")]
     Nothing {

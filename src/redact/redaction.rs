@@ -24,6 +24,9 @@ type Walk = fn(&[u8], &mut Pass) -> Vec<u8>;
 /// # Errors
 /// [`RedactError`] where it is no such log, or where the redacted log still holds something.
 pub fn redact(log: &[u8]) -> Result<Redacted, RedactError> {
+    if log.is_empty() {
+        return Err(RedactError::Empty);
+    }
     let (format, walk): (&'static str, Walk) = if ulog::is_one(log) {
         ("ULog", ulog::walk)
     } else if dataflash::is_one(log) {
