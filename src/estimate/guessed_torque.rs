@@ -1,6 +1,6 @@
-//! A guessed torque per thrust, held against the motion.
+//! The torque per thrust, guessed or stated, held against the motion.
 //!
-//! The motion about z tells only the ratio of izz to the rotors' torque, so with a torque that is guessed too large izz is too large as well.
+//! The motion about z tells only the ratio of izz to the rotors' torque, so with a torque that is too large izz is too large as well.
 //! No body has more of it than ixx + iyy, which the thrusts tell.
 
 use super::nominal::Nominal;
@@ -10,7 +10,7 @@ use super::weak_flights::WeakFlights;
 use crate::note::{About, Note};
 use crate::regression::WeakRows;
 use crate::signals::{Signals, WEAK_HALF_WIDTH_S};
-use crate::vehicle::{Guessed, Vehicle};
+use crate::vehicle::{Guess, Guessed, Vehicle};
 
 /// izz over ixx + iyy of multirotors: 1 of a flat one, 0.8 to 0.96 of those with a body, less of tall ones.
 const USUAL_SHARE: f64 = 0.85;
@@ -18,8 +18,10 @@ const USUAL_SHARE: f64 = 0.85;
 const RELATIVE: f64 = 0.2;
 /// Largest relative standard error of izz with which the motion tells anything of the torque.
 const LARGEST_STD: f64 = 0.15;
-/// Standard errors from which on the motion excludes a guess. The usual three.
+/// Standard errors from which on the motion excludes a torque per thrust. The usual three.
 const CERTAIN: f64 = 3.0;
+/// Least share, beside these, at which it excludes one that is stated: stated arms and thrusts are wrong by up to a tenth each. Set by judgement.
+const STATED_SHARE: f64 = 1.25;
 
 /// izz over ixx + iyy as the rigid body alone shows it with the stated torque per thrust (-), and the standard error of its logarithm. `None`
 /// where the flights do not determine ixx, iyy, or leave izz open.
@@ -33,7 +35,7 @@ fn share_about_z(flights: &[Signals], vehicle: &Vehicle) -> Option<(f64, f64)> {
     let is_determined =
         |index: usize| matches!(finding(&estimated, &nominal, index), Finding::Determined { .. });
     let across_is_determined = is_determined(1) && is_determined(4);
-    weak.rows.iter_mut().for_each(without_gyroscopic_torque);
+    weak.rows.iter_mut().for_each(WeakRows::leave_out_gyroscopic_torque);
     let WeakEstimate { theta, covariance, .. } = solve_weak(&weak.rows, &nominal.theta)?;
     let (across, about) = (theta[1] + theta[4], theta[6]);
     let relative_about = covariance[(6, 6)].max(0.0).sqrt() / about;
@@ -53,50 +55,49 @@ fn share_about_z(flights: &[Signals], vehicle: &Vehicle) -> Option<(f64, f64)> {
     Some((about / across, variance.max(0.0).sqrt()))
 }
 
-/// Takes the part of the moments of inertia in the gyroscopic torque out of the regressor. A simulator may not have this torque, and then
-/// it says that izz is near ixx and iyy, whatever turns the vehicle about z.
-fn without_gyroscopic_torque(rows: &mut WeakRows) {
-    for phi in rows.regressor.iter_mut().flatten() {
-        // torque about x, y, z, and the moments about the two other axes
-        for (channel, moments) in [(1, [4, 6]), (2, [1, 6]), (3, [1, 4])] {
-            moments.into_iter().for_each(|moment| phi[(channel, moment)] = 0.0);
-        }
-    }
-}
-
-/// The vehicle with another torque per thrust, and a note on it, where that is guessed and no body could have the izz which the flights
-/// show with it. `None` where it is no guess, where the flights do not determine the moments, and where they do not exclude it.
+/// The vehicle with another torque per thrust, and a note on it, where no body could have the izz which the flights show with that of the
+/// file. The note is a warning where that was stated, not guessed. `None` where the flights do not determine the moments, and where they do
+/// not exclude it.
 #[must_use]
 pub fn torque_by_motion(flights: &[Signals], vehicle: &Vehicle) -> Option<(Vehicle, Note)> {
     let guess = vehicle.guessed(Guessed::TorqueRatio);
-    if guess <= 0.0 {
-        return None;
-    }
+    let is_stated = guess <= 0.0;
     let (share, std) = share_about_z(flights, vehicle)?;
     let std = std.hypot(vehicle.guessed(Guessed::Arms));
-    let is_excluded = share.ln() > CERTAIN * std;
+    let least = if is_stated { STATED_SHARE.ln() } else { 0.0 };
+    let is_excluded = share.ln() > least.max(CERTAIN * std);
     if !is_excluded {
         return None;
     }
-    // two opinions of the logarithm of its factor: the guess, and the motion with the usual flatness
+    // two opinions of the logarithm of its factor: the guess, and the motion with the usual flatness; what is stated and excluded is none
     let by_motion = (USUAL_SHARE / share).ln();
-    let (weight_of_guess, weight) = (guess.powi(-2), RELATIVE.hypot(std).powi(-2));
+    let weight_of_guess = if is_stated { 0.0 } else { guess.powi(-2) };
+    let weight = RELATIVE.hypot(std).powi(-2);
     let factor = (by_motion * weight / (weight + weight_of_guess)).exp();
     let left = (weight + weight_of_guess).sqrt().recip();
     let mut corrected = vehicle.clone();
     corrected.propulsion.torque_per_thrust_m *= factor;
-    let why = "from the rotors' radius, the motion and the usual flatness of a multirotor";
-    for guess in corrected.guesses.iter_mut().filter(|guess| guess.of == Guessed::TorqueRatio) {
-        (guess.relative, guess.why) = (left, why.to_owned());
-    }
+    let (whose, why) = if is_stated {
+        ("stated", "from the motion and the usual flatness of a multirotor")
+    } else {
+        ("guessed", "from the rotors' radius, the motion and the usual flatness of a multirotor")
+    };
+    corrected.guesses.retain(|guess| guess.of != Guessed::TorqueRatio);
+    corrected.guesses.push(Guess { of: Guessed::TorqueRatio, relative: left, why: why.to_owned() });
     let text = format!(
-        "with the guessed torque per thrust of {:.4} m, the inertia about z would be {share:.1} times what a body with this ixx and iyy can \
+        "with the {whose} torque per thrust of {:.4} m, the inertia about z would be {share:.1} times what a body with this ixx and iyy can \
          have: {:.4} m +- {:.0} % is taken, {why}",
         vehicle.propulsion.torque_per_thrust_m,
         corrected.propulsion.torque_per_thrust_m,
         100.0 * left
     );
-    Some((corrected, Note::remark(About::Vehicle, text)))
+    let note = if is_stated {
+        let ask = "; is torque_ratio wrong in the vehicle file, or are the rotors' places?";
+        Note::warning(About::Contradiction, text + ask)
+    } else {
+        Note::remark(About::Vehicle, text)
+    };
+    Some((corrected, note))
 }
 
 #[cfg(test)]
@@ -108,7 +109,6 @@ mod tests {
     use crate::simulate::{
         FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight,
     };
-    use crate::vehicle::Guess;
     use nalgebra::Vector3;
 
     /// Takes the gyroscopic torque out.
@@ -176,8 +176,20 @@ mod tests {
         assert!((0.1..RELATIVE).contains(&corrected_to.guesses[0].relative), "{:?}", corrected_to.guesses);
         assert!(note.text.contains("the inertia about z would be"), "{}", note.text);
         assert_eq!(corrected(|_| (), 1.0, true).0, None);
-        // what is stated is not touched
-        assert_eq!(corrected(|_| (), 3.0, false).0, None);
+        assert!(!note.is_warning());
+    }
+
+    #[test]
+    fn a_stated_torque_that_no_body_allows_is_corrected_with_a_warning_and_a_possible_one_stays() {
+        let (found, truth_m) = corrected(|_| (), 3.0, false);
+        let (corrected_to, note) = found.unwrap();
+        let ratio = corrected_to.propulsion.torque_per_thrust_m / truth_m;
+        assert!((0.7..1.3).contains(&ratio), "{ratio}");
+        assert!(corrected_to.guessed(Guessed::TorqueRatio) > 0.15);
+        assert!(note.is_warning() && note.text.contains("is torque_ratio wrong"), "{}", note.text);
+        for factor in [0.3, 1.0, 1.1] {
+            assert_eq!(corrected(|_| (), factor, false).0, None, "{factor}");
+        }
     }
 
     #[test]

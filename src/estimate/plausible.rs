@@ -135,16 +135,28 @@ pub fn contradictions(
     of_thrust.into_iter().chain(of_body).collect()
 }
 
-/// The flights whose masses or moments of inertia contradict those of the first one, each by its rows alone.
+/// The flights whose masses or moments of inertia contradict those of the first one, each by its rows alone, with the gyroscopic torque and
+/// without it: where a flight does not turn, that torque alone tells izz, and simulators may lack it.
 #[must_use]
 pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<FlightApart> {
     if flights.len() < 2 {
         return Vec::new();
     }
-    let alone = |rows| solve_weak(std::slice::from_ref(rows), nominal);
-    let each: Vec<Option<Estimated>> =
-        flights.iter().map(|rows| alone(rows).map(|found| Estimated::of(&found))).collect();
-    flights_apart(&each)
+    let alone =
+        |rows: &WeakRows| solve_weak(std::slice::from_ref(rows), nominal).map(|found| Estimated::of(&found));
+    let each: Vec<Option<Estimated>> = flights.iter().map(alone).collect();
+    let mut apart = flights_apart(&each);
+    if !apart.is_empty() {
+        let without = |rows: &WeakRows| {
+            let mut rows = rows.clone();
+            rows.leave_out_gyroscopic_torque();
+            alone(&rows)
+        };
+        let each: Vec<Option<Estimated>> = flights.iter().map(without).collect();
+        let too = flights_apart(&each);
+        apart.retain(|of| too.iter().any(|other| other.flight == of.flight));
+    }
+    apart
 }
 
 /// A flight whose mass or moments of inertia are further from those of the first flight than flights of one vehicle are, by its

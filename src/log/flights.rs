@@ -26,6 +26,19 @@ pub struct Hold {
     pub seconds: f64,
     /// stamps and values; each takes eight bytes
     pub numbers: usize,
+    /// s that are held in any case, with up to [`DENSE`] times the numbers: a dense log of one flight is not long
+    pub short_s: f64,
+}
+
+/// How many times more numbers a short flight may have. At 1 kHz, streams have four to eight times as many as at the usual rates.
+const DENSE: usize = 4;
+
+impl Hold {
+    /// Whether so much is held.
+    fn holds(&self, seconds: f64, numbers: usize) -> bool {
+        let most = if seconds <= self.short_s { DENSE * self.numbers } else { self.numbers };
+        seconds <= self.seconds && numbers <= most
+    }
 }
 
 /// What is recorded in some seconds.
@@ -135,7 +148,7 @@ impl Cells {
         let undivided = live.first().is_none_or(|span| span.0 <= whole.0 && span.1 >= whole.1);
         let spans = if undivided { vec![whole] } else { self.off_the_ground(live) };
         let (seconds, numbers) = self.held(&spans);
-        match (undivided, seconds <= most.seconds && numbers <= most.numbers) {
+        match (undivided, most.holds(seconds, numbers)) {
             (true, true) => None,
             (false, true) => Some(Plan { spans_s: spans, left_out_s: 0.0 }),
             (_, false) => Some(self.bounded(&spans, most)),
@@ -181,7 +194,7 @@ impl Cells {
                 let end_s = cell.end_s().min(to_s);
                 held_s += end_s - kept_to_s;
                 held += cell.numbers;
-                if held_s > most.seconds || held > most.numbers {
+                if !most.holds(held_s, held) {
                     break;
                 }
                 kept_to_s = end_s;

@@ -60,6 +60,19 @@ pub struct WeakRows {
     pub runs: Vec<std::ops::Range<usize>>,
 }
 
+impl WeakRows {
+    /// Takes the part of the moments of inertia in the gyroscopic torque out of the regressor. A simulator may not have this torque, and then
+    /// it says that izz is near ixx and iyy, whatever turns the vehicle about z.
+    pub fn leave_out_gyroscopic_torque(&mut self) {
+        for phi in self.regressor.iter_mut().flatten() {
+            // torque about x, y, z, and the moments about the two other axes
+            for (channel, moments) in [(1, [4, 6]), (2, [1, 6]), (3, [1, 4])] {
+                moments.into_iter().for_each(|moment| phi[(channel, moment)] = 0.0);
+            }
+        }
+    }
+}
+
 impl WeakMotion {
     /// From what was measured.
     #[must_use]

@@ -63,7 +63,7 @@ fn on_this_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
 fn screened(log: &[u8], settings: &ScreenSettings) -> Result<Screening, LogError> {
     let Bounds { bytes, numbers, .. } = settings.bounds;
     let used = log.get(..bytes).unwrap_or(log);
-    let hold = Hold { seconds: MOST_S, numbers };
+    let hold = Hold { seconds: MOST_S, numbers, short_s: 0.0 };
     let input = Input::Bytes { name: "the log", bytes: used };
     let OpenedFlights { flights, report } = open_flights(input, &OpenOptions::default(), &hold)?;
     let mut screening = Screening { format: report.format, ..Screening::default() };

@@ -16,7 +16,7 @@ use crate::signals::{
     ConditionSettings, ReportedState, Signals, adopt_in_flight_parameters, outputs_off_mixer,
 };
 use crate::text;
-use crate::vehicle::{Guessed, Vehicle};
+use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
 use rayon::prelude::*;
 
@@ -27,12 +27,14 @@ use super::{InputFile, StudyError};
 /// Stamps and values of one log that are searched for effects. Memory and time grow with them: a log of an on-board profile holds
 /// more of them a second than telemetry.
 const SEARCHED: usize = 1_500_000;
+/// s of a log that are used however densely it is logged: an identification flight and a half.
+const SHORT_S: f64 = 150.0;
 /// What is identified of one log.
-pub(super) const IDENTIFIED: Hold = Hold { seconds: 1800.0, numbers: SEARCHED };
+pub(super) const IDENTIFIED: Hold = Hold { seconds: 1800.0, numbers: SEARCHED, short_s: SHORT_S };
 /// What is validated with of one log: no effects are searched.
-pub(super) const VALIDATED: Hold = Hold { seconds: 1800.0, numbers: 2 * SEARCHED };
+pub(super) const VALIDATED: Hold = Hold { seconds: 1800.0, numbers: 2 * SEARCHED, short_s: SHORT_S };
 /// What is explained of one log.
-pub(super) const EXPLAINED: Hold = Hold { seconds: 480.0, numbers: SEARCHED };
+pub(super) const EXPLAINED: Hold = Hold { seconds: 480.0, numbers: SEARCHED, short_s: SHORT_S };
 /// How logs are read.
 #[derive(Debug, Clone, Default)]
 pub struct ReadSettings {
@@ -232,7 +234,8 @@ fn of_log(flights: Vec<LogFlight>, log: &InputFile, report: &ReadReport) -> Vec<
             input.notes.clear();
         }
         if let Some((from_s, to_s)) = flight.part_s {
-            input.path = format!("{}, flight {} of {of} ({from_s:.0} to {to_s:.0} s)", log.path, index + 1);
+            input.path =
+                format!("{}, flight {} of {of} ({:.0} to {to_s:.0} s)", log.path, index + 1, from_s.max(0.0));
         }
         let about = || About::File(input.path.clone());
         let told: Vec<Note> = off_mixer.iter().map(|off| Note::warning(about(), off.to_string())).collect();
@@ -264,21 +267,22 @@ pub(super) fn prepare(
     Ok(prepared)
 }
 
-/// The same. Where the motion excludes a torque per thrust that is only guessed, the vehicle with another one, a note on it, and the flights
-/// prepared for that.
+/// The same. Where the motion excludes the torque per thrust, the vehicle with another one, a note on it, and the flights prepared for that.
+/// What contradicts them is also in their quality.
 pub(super) fn prepare_by_motion(
     logs: Vec<Vec<Flight>>,
     (vehicle, file): (&Vehicle, &Path),
     settings: &ConditionSettings,
 ) -> Result<(Prepared, Option<(Vehicle, Note)>), StudyError> {
-    let again = (vehicle.guessed(Guessed::TorqueRatio) > 0.0).then(|| logs.clone());
-    let prepared = prepare(logs, (vehicle, file), settings)?;
-    match again.zip(torque_by_motion(&prepared.signals, vehicle)) {
-        None => Ok((prepared, None)),
-        Some((logs, (corrected, note))) => {
-            Ok((prepare(logs, (&corrected, file), settings)?, Some((corrected, note))))
-        }
+    let prepared = prepare(logs.clone(), (vehicle, file), settings)?;
+    let Some((corrected, note)) = torque_by_motion(&prepared.signals, vehicle) else {
+        return Ok((prepared, None));
+    };
+    let mut prepared = prepare(logs, (&corrected, file), settings)?;
+    if note.about == About::Contradiction {
+        prepared.signals.iter_mut().for_each(|signals| signals.quality.notes.push(note.clone()));
     }
+    Ok((prepared, Some((corrected, note))))
 }
 
 /// The flights of one log that can be made ready. Of several flights one that cannot is left out, and noted with the first

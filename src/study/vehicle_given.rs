@@ -40,7 +40,7 @@ impl From<PathBuf> for VehicleGiven {
 }
 
 /// What is kept of a log from which a vehicle is drafted: hover shows in minutes.
-const DRAFTED_FROM: Hold = Hold { seconds: 600.0, numbers: 4_000_000 };
+const DRAFTED_FROM: Hold = Hold { seconds: 600.0, numbers: 4_000_000, short_s: 0.0 };
 
 /// The vehicle of a study.
 #[derive(Debug)]

@@ -13,7 +13,7 @@ use serde_json::Value;
 use support::{header, heartbeat, record, v2};
 
 /// What is kept of a log here.
-const MOST: Hold = Hold { seconds: 1200.0, numbers: 1_000_000 };
+const MOST: Hold = Hold { seconds: 1200.0, numbers: 1_000_000, short_s: 0.0 };
 
 fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
@@ -110,7 +110,7 @@ fn flights_far_apart_are_flights_of_their_own_whatever_lies_between() {
 
 #[test]
 fn margins_in_which_nothing_is_recorded_are_nothing_that_is_left_out() {
-    let most = Hold { seconds: 480.0, numbers: 3_000_000 };
+    let most = Hold { seconds: 480.0, numbers: 3_000_000, short_s: 0.0 };
     for count in [3_u8, 4, 8, 12] {
         let spans: Vec<(f64, f64)> =
             (0..count).map(|day| 86_400.0 * f64::from(day)).map(|from_s| (from_s, from_s + 20.0)).collect();

@@ -208,20 +208,25 @@ fn flights_are_the_same_whether_all_of_the_log_was_held_or_not() {
         table.push_str(&format!("{time_s},{},{},0.1,0.5,{armed}\n", time_s.sin(), time_s.cos()));
     }
     let bytes = Input::Bytes { name: "table", bytes: table.as_bytes() };
-    let most = Hold { seconds: 1e6, numbers: 60_000 };
+    let most = Hold { seconds: 1e6, numbers: 60_000, short_s: 0.0 };
     let held = open_flights(bytes, &OpenOptions::default(), &most).unwrap();
     let whole = log::open(bytes, &OpenOptions::default()).unwrap();
     assert_eq!(held.flights, Flights::of(whole.recording, &most));
     let (from_s, to_s) = held.flights.flights[0].part_s.unwrap();
     assert!((280.0..=300.0).contains(&from_s) && (360.0..=380.0).contains(&to_s), "{from_s} to {to_s}");
 
-    let least = Hold { seconds: 1e6, numbers: 20_000 };
+    let least = Hold { seconds: 1e6, numbers: 20_000, short_s: 0.0 };
     let left = open_flights(bytes, &OpenOptions::default(), &least).unwrap();
     let [loss @ Loss::NotHeld { seconds }] = left.report.losses.as_slice() else {
         panic!("{:?}", left.report.losses)
     };
     assert!(*seconds > 10.0 && *seconds == left.flights.left_out_s && loss.first().is_none());
     assert!(loss.to_string().contains("s of flight at the end are left out"), "{loss}");
+
+    // a short flight is held whole
+    let short = Hold { short_s: 120.0, ..least };
+    let kept = open_flights(bytes, &OpenOptions::default(), &short).unwrap();
+    assert_eq!((kept.flights, kept.report.losses.len()), (held.flights, 0));
 }
 
 #[test]

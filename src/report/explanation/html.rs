@@ -168,7 +168,7 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
         .into_iter()
         .map(|of| {
             // both are of the same flights and err alike: their difference errs by no more than this
-            let std = of.before.std.hypot(of.after.std);
+            let std = of.before.own_std().hypot(of.after.own_std());
             let known = of.not_determined.is_none() && of.before.std > 0.0;
             let moved = (of.after.value - of.before.value) / std.max(f64::MIN_POSITIVE);
             vec![

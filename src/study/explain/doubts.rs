@@ -1,6 +1,7 @@
 //! Why an explanation is doubtful.
 
-use super::result::{BodyParameter, ExplainStudy};
+use super::body::BodyParameter;
+use super::result::ExplainStudy;
 use super::short::Short;
 use crate::diagnose::Named;
 use crate::diagnose::locate::Redness;

@@ -2,6 +2,7 @@
 
 mod along;
 mod along_flights;
+mod body;
 mod doubts;
 mod evidence;
 mod figures;
@@ -27,6 +28,7 @@ mod worth;
 mod worth_measured;
 
 pub use along_flights::AlongFlights;
+pub use body::{BodyParameter, Estimate};
 pub use evidence::{Tried, TriedAs};
 pub use figures::{AxisResidual, Figures, Followed, Harmonics, Heat, LeftAlongTime, RecordedAndSimulated};
 pub use located::{AxisShare, Field, Located, StateShare};
@@ -37,7 +39,7 @@ pub use predicted::{Predicted, QUANTITIES};
 pub use readers::for_readers;
 pub use refuted::Refuted;
 pub use request::ExplainRequest;
-pub use result::{AxisFit, BodyParameter, Estimate, ExplainStudy, Given};
+pub use result::{AxisFit, ExplainStudy, Given};
 pub use run::explain;
 pub use validation_data::ValidationData;
 pub use worth::Worth;

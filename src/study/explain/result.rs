@@ -1,6 +1,7 @@
 //! The result of explaining: what went in, what was found, and what shows it.
 
 use super::along_flights::AlongFlights;
+use super::body::{BodyParameter, Estimate};
 use super::located::Located;
 use super::not_determined::{BY_CONTROL, KEPT};
 use super::predicted::Predicted;
@@ -95,35 +96,6 @@ pub struct ExplainStudy {
     pub along: Option<AlongFlights>,
     /// the flights that were explained as the weak form sees them
     pub(super) traces: Vec<Trace>,
-}
-
-/// A parameter with its standard error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
-    /// in the parameter's unit
-    pub value: f64,
-    /// standard error; NaN where there is none
-    pub std: f64,
-}
-
-/// Mass or an entry of the inertia.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BodyParameter {
-    /// as in JSON
-    pub name: &'static str,
-    /// SI
-    pub unit: &'static str,
-    /// as the vehicle file states it
-    pub nominal: f64,
-    /// of the rigid body alone
-    pub before: Estimate,
-    /// of the final model
-    pub after: Estimate,
-    /// known beforehand: the vehicle was weighed
-    pub weighed: bool,
-    /// why the final value is no estimate: these flights do not determine it, and the model keeps a value for
-    /// simulations
-    pub not_determined: Option<String>,
 }
 
 /// What is left of the equation of one axis, root mean square.
@@ -245,9 +217,11 @@ impl ExplainStudy {
     /// Mass and inertia of a fit with their standard errors.
     fn estimates(&self, fitted: &Fitted) -> [Estimate; THETA] {
         let (values, of) = (theta_of(&fitted.base.vehicle.body), self.on_scale(fitted));
-        std::array::from_fn(|index| Estimate {
-            value: values[index],
-            std: of.covariance[(index, index)].max(0.0).sqrt().hypot(of.moved_by_curve(index)),
+        let nominal = Nominal::of(&self.given.vehicle);
+        std::array::from_fn(|index| {
+            let of_guesses = (nominal.guessed(index) * values[index]).hypot(of.moved_by_curve(index));
+            let std = of.covariance[(index, index)].max(0.0).sqrt().hypot(of_guesses);
+            Estimate { value: values[index], std, of_guesses }
         })
     }
 

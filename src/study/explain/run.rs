@@ -70,7 +70,8 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
             draft.origins.push(why.text.clone());
         }
         vehicle = corrected;
-        notes.push(why);
+        // a warning is among those of the recordings
+        notes.extend(Some(why).filter(|why| !why.is_warning()));
     }
     let mut held = prepare(held, (&vehicle, &origin), &settings).map_err(of_holdout)?;
     refuse_shared(&flights, &held)?;

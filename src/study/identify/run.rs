@@ -9,7 +9,7 @@ use crate::diagnose::joint::{RequestedEffects, identify_jointly};
 use crate::signals::{ConditionSettings, Signals, other_settings};
 use crate::study::explain::{Asked, ExplainRequest};
 use crate::study::flight::Flight;
-use crate::study::flights::{IDENTIFIED, Prepared, load_all, names, prepare};
+use crate::study::flights::{IDENTIFIED, Prepared, load_all, names, prepare, prepare_by_motion};
 use crate::study::one_vehicle::refuse_other_builds;
 use crate::study::same_flight::refuse_same_flight;
 use crate::study::unflown::unflown_first;
@@ -33,25 +33,39 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     refuse_same_flight(logs.iter())?;
     refuse_other_builds(logs.iter().flatten())?;
     let or_unflown = |error| unflown_first(error, &request.logs, &request.read);
-    let known = request.vehicle.of_flights(known, &logs).map_err(or_unflown)?;
+    let mut known = request.vehicle.of_flights(known, &logs).map_err(or_unflown)?;
     let mut notes = known.notes();
     notes.iter().for_each(|note| progress.note(note));
     progress.stage(Stage::Identifying);
+    let beside = request.conditioning_beside();
+    let by_motion = prepare_by_motion(logs.clone(), (&known.loaded.vehicle, known.origin.as_path()), &beside);
+    let (prepared, corrected) = by_motion
+        .map_err(|error| error.to_string())
+        .map_or_else(|error| (Err(error), None), |(flights, corrected)| (Ok(flights), corrected));
+    let mut contradiction = None;
+    if let Some((corrected, why)) = corrected {
+        known.loaded.vehicle = corrected;
+        progress.note(&why);
+        // a warning is in the quality of the flights
+        if why.is_warning() {
+            contradiction = Some(why);
+        } else {
+            notes.push(why);
+        }
+    }
     let with = wanted.map(|wanted| with_effects(request, (&logs, &known), &wanted));
     let with = with.transpose().map_err(or_unflown)?;
     let vehicle = (&known.loaded.vehicle, known.origin.as_path());
-    let beside = request.conditioning_beside();
     let asked = Asked {
         vehicle: &known.loaded.vehicle,
         notes: &[],
         logs: &request.logs,
         transient_s: beside.transient_s.unwrap_or(ExplainRequest::TRANSIENT_S),
     };
-    let found = prepare(logs.clone(), vehicle, &beside)
-        .map_err(|error| error.to_string())
-        .and_then(|flights| found_beside(flights, asked, progress));
-    let Prepared { recordings, signals, inputs, .. } =
+    let found = prepared.and_then(|flights| found_beside(flights, asked, progress));
+    let Prepared { recordings, mut signals, inputs, .. } =
         prepare(logs, vehicle, &request.conditioning()).map_err(or_unflown)?;
+    signals.iter_mut().for_each(|signals| signals.quality.notes.extend(contradiction.clone()));
     let apart = other_settings(&recordings);
     apart.iter().for_each(|note| progress.note(note));
     notes.extend(apart);
