@@ -151,8 +151,10 @@ fn found(
     let is_either = matches!(best.what, What::Rotor(_))
         && of_both.is_some_and(|other| other + OF_BOTH * PRICE < cost + APART);
     let fits = best.left <= FITS && !is_either;
-    // where a battery or a load sits is the flight's own; it does not turn the vehicle
-    let about_z = if best.what == What::CentreOfMass { by.z.powi(2) / variances.z } else { 0.0 };
+    // where a battery or a load sits is the flight's own; it does not turn the vehicle, and what certainly turns is no load alone
+    let turned = by.z.powi(2) / variances.z;
+    let by_a_load = best.what == What::CentreOfMass && (fits || turned < NAMED);
+    let about_z = if by_a_load { turned } else { 0.0 };
     if (best.what == What::CentreOfMass || !fits) && beyond_load - about_z < NAMED {
         return None;
     }

@@ -20,7 +20,8 @@ const MOST_THERE_AND_BACK: usize = 60;
 
 /// The steps of a row of flights, in order: the strongest divides the row, and its parts are searched as the whole was. `judge` gives
 /// what changed between two groups and how strong that is; `None` where nothing did. In a part that no step divides, flights in
-/// its middle may differ from those on both sides: there are many more places for that, so it needs a strength of `there_and_back`.
+/// its middle may differ from those on both sides: there are many more places for that, so it needs a strength of `there_and_back`. In the
+/// end each step is judged by the flights between its neighbours, where these show it.
 pub fn steps<T>(
     flights: usize,
     judge: &impl Fn(&Groups) -> Option<(f64, T)>,
@@ -29,6 +30,15 @@ pub fn steps<T>(
     let mut found = Vec::new();
     search(0, flights, (judge, there_and_back), &mut found);
     found.sort_by_key(|step: &Step<T>| step.from);
+    let borders: Vec<usize> =
+        std::iter::once(0).chain(found.iter().map(|step| step.from)).chain([flights]).collect();
+    for (place, step) in found.iter_mut().enumerate() {
+        let part = |part: usize| (borders[part]..borders[part + 1]).collect();
+        let groups = Groups { before: part(place), after: part(place + 1) };
+        if let Some((_, change)) = judge(&groups).filter(|_| groups != step.groups) {
+            (step.groups, step.change) = (groups, change);
+        }
+    }
     found
 }
 
@@ -78,6 +88,9 @@ fn search<T>(
         let back = Groups { before: own(), after: (to..end).collect() };
         found.extend(step(from, there, Groups { before: others(), after: own() }));
         found.extend(step(to, back, Groups { before: own(), after: others() }));
+        for (first, end) in [(first, from), (from, to), (to, end)] {
+            search(first, end, (judge, there_and_back), found);
+        }
     }
 }
 

@@ -47,6 +47,13 @@ pub(super) fn turns_about_z(name: &str, unit: &str) -> bool {
 }
 
 impl Base {
+    /// Takes a wind out of a model without an effect of the air, through which alone it acts.
+    pub(super) fn drop_wind_alone(&mut self) {
+        if self.effects.iter().all(|term| !term.signature.role.of_air) {
+            self.effects.retain(|term| term.signature.role.wind.is_none());
+        }
+    }
+
     /// Steady wind of the model in the world frame (NWU), m/s; zero where it has none.
     pub(super) fn wind_m_s(&self) -> Vector3<f64> {
         let wind = self.effects.iter().find(|term| term.signature.role.wind.is_some());

@@ -20,6 +20,8 @@ pub(super) fn prune(
 ) -> Result<(Fitted, bool, f64, LatencyFinding), PhysicsError> {
     let mut index = after.rows.nuisances.len();
     let mut kept: Vec<EffectTerm> = Vec::new();
+    // two laws of the drag hide each other: the stronger one is judged again without the other
+    let mut law: Option<(f64, usize, &EffectTerm)> = None;
     let mut dropped = false;
     for present in &after.base.effects {
         let mut pruned = present.clone();
@@ -39,11 +41,20 @@ pub(super) fn prune(
         index += present.free.len();
         if strength > KEPT {
             kept.push(pruned);
+        } else if present.signature.is_drag() && law.is_none_or(|(most, ..)| strength > most) {
+            law = Some((strength, kept.len(), present));
         }
+    }
+    let laws = after.base.effects.iter().filter(|term| term.signature.is_drag()).count();
+    if let Some((_, place, law)) =
+        law.filter(|_| laws > 1 && kept.iter().all(|term| !term.signature.is_drag()))
+    {
+        kept.insert(place, law.clone());
     }
     dropped |= kept.len() < after.base.effects.len();
     let before_s = after.base.latency.total_s();
-    let base = Base { effects: kept, ..after.base.clone() };
+    let mut base = Base { effects: kept, ..after.base.clone() };
+    base.drop_wind_alone();
     // several of a long flight at a time take much memory
     drop(after);
     let newton = if is_delay(base.latency, &base.vehicle) { Newton::Delay } else { Newton::Free };

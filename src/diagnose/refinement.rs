@@ -56,9 +56,7 @@ pub(super) fn refine(
             effect = found.after.base.effects[place].id(),
             "effect is not certain with what is left over"
         );
-        let mut base = found.after.base.clone();
-        base.effects.remove(place);
-        found.after = fit(traces, base, Newton::Held)?;
+        found.after = fit(traces, without(&found.after.base, |of| of == place), Newton::Held)?;
         pace.again();
     }
     // which law a drag follows says nothing of whether it is there
@@ -151,11 +149,17 @@ fn leave_out_unnamed(
     if !leaves.contains(&true) {
         return Ok(false);
     }
-    let mut base = fitted.base.clone();
-    let mut each = leaves.into_iter();
-    base.effects.retain(|_| !each.next().unwrap_or(false));
-    found.after = fit(traces, base, Newton::Held)?;
+    found.after = fit(traces, without(&fitted.base, |place| leaves[place]), Newton::Held)?;
     Ok(true)
+}
+
+/// A model without some of its effects.
+fn without(base: &Base, leaves: impl Fn(usize) -> bool) -> Base {
+    let mut left = base.clone();
+    let mut places = 0..;
+    left.effects.retain(|_| places.next().is_some_and(|place| !leaves(place)));
+    left.drop_wind_alone();
+    left
 }
 
 /// Which effects of a fit get no name: those of ordinary size, the least certain of those that are not certain, those that the

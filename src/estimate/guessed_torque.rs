@@ -20,8 +20,8 @@ const RELATIVE: f64 = 0.2;
 const LARGEST_STD: f64 = 0.15;
 /// Standard errors from which on the motion excludes a torque per thrust. The usual three.
 const CERTAIN: f64 = 3.0;
-/// Least share, beside these, at which it excludes one that is stated: stated arms and thrusts are wrong by up to a tenth each. Set by judgement.
-const STATED_SHARE: f64 = 1.25;
+/// Least share, beside these, at which it excludes one that is stated: stated arms are wrong by some percent. Set by judgement.
+const STATED_SHARE: f64 = 1.1;
 
 /// izz over ixx + iyy as the rigid body alone shows it with the stated torque per thrust (-), and the standard error of its logarithm. `None`
 /// where the flights do not determine ixx, iyy, or leave izz open.

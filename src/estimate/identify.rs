@@ -70,6 +70,8 @@ pub struct Identification {
     pub explained: Vec<f64>,
     /// m/s^2, vertical specific force of the accelerometer minus that of the kinematics, for each flight
     pub accelerometer_bias: Vec<Option<f64>>,
+    /// flights whose rigid body alone contradicts that of the first one
+    pub apart: Vec<FlightApart>,
     /// reasons for missing methods, and other remarks
     pub notes: Vec<Note>,
 }
@@ -124,7 +126,6 @@ pub fn identify(
     let best = Recommendation::weak(whole(&plain), &nominal);
     methods.push(MethodResult::new(Method::Weak, &whole(&plain), &nominal));
     let apart = disagreeing(&weak.rows, &nominal.theta);
-    notes.extend(apart.iter().map(|flight| Note::warning(About::Estimate, flight.told())));
     let by_commands = |signals: &Signals| signals.quality.thrust_source == ThrustSource::Command;
     notes.extend(flights.iter().any(by_commands).then(|| Note::remark(About::Actuators, BY_COMMANDS)));
     Ok(Identification {
@@ -142,6 +143,7 @@ pub fn identify(
         residual_channels: plain.channels.clone(),
         explained: plain.explained.clone(),
         accelerometer_bias: weak.accelerometer_bias,
+        apart,
         notes,
     })
 }

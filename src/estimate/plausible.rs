@@ -81,9 +81,12 @@ impl Contradiction {
 impl Contradiction {
     /// Whether it is of the moment of inertia about z, which is only known with the rotors' torque.
     fn is_about_z(&self) -> bool {
-        self.name == NAMES[6]
+        self.name == ABOUT_Z
     }
 }
+
+/// The moment that goes with the rotors' torque.
+const ABOUT_Z: &str = NAMES[6];
 
 /// Several of them in one clause.
 #[must_use]
@@ -135,28 +138,16 @@ pub fn contradictions(
     of_thrust.into_iter().chain(of_body).collect()
 }
 
-/// The flights whose masses or moments of inertia contradict those of the first one, each by its rows alone, with the gyroscopic torque and
-/// without it: where a flight does not turn, that torque alone tells izz, and simulators may lack it.
+/// The flights whose masses or moments of inertia contradict those of the first one, each by its rows alone.
 #[must_use]
 pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<FlightApart> {
     if flights.len() < 2 {
         return Vec::new();
     }
-    let alone =
-        |rows: &WeakRows| solve_weak(std::slice::from_ref(rows), nominal).map(|found| Estimated::of(&found));
-    let each: Vec<Option<Estimated>> = flights.iter().map(alone).collect();
-    let mut apart = flights_apart(&each);
-    if !apart.is_empty() {
-        let without = |rows: &WeakRows| {
-            let mut rows = rows.clone();
-            rows.leave_out_gyroscopic_torque();
-            alone(&rows)
-        };
-        let each: Vec<Option<Estimated>> = flights.iter().map(without).collect();
-        let too = flights_apart(&each);
-        apart.retain(|of| too.iter().any(|other| other.flight == of.flight));
-    }
-    apart
+    let alone = |rows| solve_weak(std::slice::from_ref(rows), nominal);
+    let each: Vec<Option<Estimated>> =
+        flights.iter().map(|rows| alone(rows).map(|found| Estimated::of(&found))).collect();
+    flights_apart(&each)
 }
 
 /// A flight whose mass or moments of inertia are further from those of the first flight than flights of one vehicle are, by its
@@ -209,7 +200,7 @@ impl FlightApart {
 }
 
 /// The flights whose estimates alone are further from the first one's than those of one vehicle are. A moment of inertia counts only where
-/// the rigid body explains the torque in both flights.
+/// the rigid body explains the torque in both flights, and izz not alone: it goes with the law of the rotors' torque.
 #[must_use]
 pub fn flights_apart(flights: &[Option<Estimated>]) -> Vec<FlightApart> {
     let Some(of_first) = flights.first().and_then(Option::as_ref) else { return Vec::new() };
@@ -229,6 +220,9 @@ pub fn flights_apart(flights: &[Option<Estimated>]) -> Vec<FlightApart> {
         let theta = &flight.theta;
         let all: Vec<(usize, f64)> =
             [0, 1, 4, 6].into_iter().filter_map(|index| far(flight, index)).collect();
+        if all.iter().all(|(index, _)| NAMES[*index] == ABOUT_Z) {
+            return None;
+        }
         let (index, sigma) = *all.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let name = if index == 0 { "a mass".to_owned() } else { format!("an {}", NAMES[index]) };
         let unit = UNITS[index];

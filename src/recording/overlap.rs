@@ -6,10 +6,15 @@ use super::stream::Stream;
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
 
-/// Samples in a row that are the same in both only if they were recorded once: sensors are noisy.
-const RUN: usize = 6;
+/// Samples in a row that are the same in both only if they were recorded once: sensors are noisy. Telemetry rounds body rates to a thousandth
+/// of a rad/s, and six in a row of a calm flight were found in another one by chance.
+const RUN: usize = 10;
 /// Sensors whose noise makes every sample another.
 const NOISY: [Quantity; 2] = [Quantity::AngularRate, Quantity::SpecificForce];
+
+/// Flights that go on for so long after the last sample that both hold are two, s: a simulator repeats the noise of its sensors from its
+/// start, and two of its flights may begin alike.
+const PARTED_S: f64 = 5.0;
 
 /// Most samples of a stream that are looked for in another recording, spread evenly over it.
 const LOOKED_FOR: usize = 4096;
@@ -26,8 +31,23 @@ pub struct Overlap {
 struct Sensor {
     /// of all times, in ascending order
     known: Vec<u64>,
-    /// of each stream, of the times that count: at most [`LOOKED_FOR`]
-    counted: Vec<Vec<u64>>,
+    /// of each stream, of the times that count, with these in s: at most [`LOOKED_FOR`]
+    counted: Vec<Vec<(f64, u64)>>,
+}
+
+impl Sensor {
+    fn holds(&self, run: u64) -> bool {
+        self.known.binary_search(&run).is_ok()
+    }
+
+    /// Seconds that count after the last sample that the other one holds as well; of several streams the least.
+    fn after_shared_with(&self, other: &Self) -> f64 {
+        let after = |of: &Vec<(f64, u64)>| {
+            let last_s = of.iter().rev().find(|(_, run)| other.holds(*run))?.0;
+            Some(of.last()?.0 - last_s)
+        };
+        self.counted.iter().filter_map(after).fold(f64::INFINITY, f64::min)
+    }
 }
 
 impl Overlap {
@@ -39,8 +59,8 @@ impl Overlap {
             for stream in streams(recording, quantity) {
                 let of_stream: Vec<(f64, u64)> = runs(stream).collect();
                 sensor.known.extend(of_stream.iter().map(|(_, run)| run));
-                let counted: Vec<u64> =
-                    of_stream.iter().filter(|(time_s, _)| counts(*time_s)).map(|(_, run)| *run).collect();
+                let counted: Vec<(f64, u64)> =
+                    of_stream.into_iter().filter(|(time_s, _)| counts(*time_s)).collect();
                 let every = counted.len().div_ceil(LOOKED_FOR).max(1);
                 sensor.counted.push(counted.into_iter().step_by(every).collect());
             }
@@ -51,13 +71,15 @@ impl Overlap {
     }
 
     /// Share (0..1) of its samples that count that the other recording holds as well, in the same order with the same values, whatever
-    /// their times; of several streams the largest. 0 where neither body rates nor specific force are in both.
+    /// their times; of several streams the largest. 0 where neither body rates nor specific force are in both, and where both begin alike
+    /// and part then.
     #[must_use]
     pub fn share_in(&self, other: &Self) -> f64 {
         let of_sensor = |(own, other): (&Sensor, &Sensor)| {
-            let share = |runs: &Vec<u64>| {
-                let same = runs.iter().filter(|run| other.known.binary_search(run).is_ok()).count();
-                if runs.is_empty() { 0.0 } else { same as f64 / runs.len() as f64 }
+            let goes_on_s = own.after_shared_with(other).min(other.after_shared_with(own));
+            let share = |runs: &Vec<(f64, u64)>| {
+                let same = runs.iter().filter(|(_, run)| other.holds(*run)).count();
+                if runs.is_empty() || goes_on_s > PARTED_S { 0.0 } else { same as f64 / runs.len() as f64 }
             };
             own.counted.iter().map(share).fold(0.0, f64::max)
         };
@@ -110,6 +132,26 @@ mod tests {
         assert!((half - 0.5).abs() < 0.01, "{half}");
         assert_eq!(share(&recording(2000, 2500, 0.0)), 0.0);
         assert_eq!(share(&Recording::default()), 0.0);
+    }
+
+    #[test]
+    fn flights_that_begin_alike_and_part_are_two() {
+        let begin = recording(0, 300, 0.0);
+        let with = |from: u32| {
+            let mut all = begin.clone();
+            let rest = recording(from, from + 1000, 3.0 - 0.01 * f64::from(from));
+            for (key, stream) in &mut all.streams {
+                let rest = &rest.streams[key];
+                stream.time_s.extend(&rest.time_s);
+                stream.values.extend(&rest.values);
+            }
+            Overlap::of(&all, |_| true)
+        };
+        let (one, other) = (with(2000), with(5000));
+        assert_eq!((one.share_in(&other), other.share_in(&one)), (0.0, 0.0));
+        // what ends where both do is a part
+        let part = Overlap::of(&begin, |_| true);
+        assert!(part.share_in(&one) == 1.0 && one.share_in(&part) > 0.2);
     }
 
     #[test]

@@ -12,6 +12,12 @@ use nalgebra::{DMatrix, DVector, Vector3};
 /// Time over which rotations and torques are compared, s. Shorter windows hold the noise of differences, longer ones
 /// average the motion away.
 const WINDOW_S: f64 = 0.1;
+/// Time over which changes of position are compared with the velocity, s. Over shorter ones a position shows its resolution.
+const TRAVEL_S: f64 = 1.0;
+/// Least number of such windows. They overlap by half, so five are apart.
+const LEAST_TRAVELS: usize = 10;
+/// Least rms of such a change that is compared, m. A receiver's position wanders by less in a second.
+const TRAVELLED_M: f64 = 0.05;
 /// Least absolute correlation of two series that belong together, or of one with the wrong sign. Only a flight with
 /// little noise tells signs and order; with a smaller one a sound log could be contradicted.
 const ALIKE: f64 = 0.6;
@@ -34,12 +40,13 @@ const LEAST: usize = 40;
 
 /// Notes on streams that contradict each other.
 pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<Note> {
-    let spans = windows(signals);
+    let spans = windows(signals, WINDOW_S);
     if spans.len() < LEAST {
         return Vec::new();
     }
     let mut units = rates(signals, &spans);
     units.extend(forces(signals, vehicle.gravity_m_s2, &spans));
+    units.extend(positions(signals));
     // torque beside rates that are none says nothing
     if units.is_empty() {
         units.extend(torques(signals, vehicle, &spans));
@@ -48,9 +55,9 @@ pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<Note> {
 }
 
 /// First and last instants of the usable windows, in order.
-fn windows(signals: &Signals) -> Vec<(usize, usize)> {
+fn windows(signals: &Signals, window_s: f64) -> Vec<(usize, usize)> {
     let mut length = 2;
-    while (length as f64 + 0.5) * signals.grid.step_s < WINDOW_S {
+    while (length as f64 + 0.5) * signals.grid.step_s < window_s {
         length += 1;
     }
     (0..signals.usable.len().saturating_sub(length))
@@ -132,6 +139,41 @@ fn forces(signals: &Signals, gravity_m_s2: f64, spans: &[(usize, usize)]) -> Vec
             )
         })
         .collect()
+}
+
+/// Changes of the position against the velocity.
+fn positions(signals: &Signals) -> Vec<String> {
+    let (Some(position), Some(velocity)) = (&signals.position, &signals.velocity) else { return Vec::new() };
+    let spans = windows(signals, TRAVEL_S);
+    let changed: Vec<Vector3<f64>> =
+        spans.iter().map(|&(first, last)| position[last] - position[first]).collect();
+    let travelled: Vec<Vector3<f64>> = spans
+        .iter()
+        .map(|&(first, last)| mean(&velocity[first..=last]) * ((last - first) as f64 * signals.grid.step_s))
+        .collect();
+    let mut out = Vec::new();
+    for (axis, name) in ["north", "west", "up"].iter().enumerate() {
+        let (changed, travelled) = (column(&changed, axis), column(&travelled, axis));
+        let alike = likeness(&changed, &travelled);
+        // what is alike to this degree and on one scale has no other ratio
+        let ratio = rms(&changed) / rms(&travelled);
+        if spans.len() < LEAST_TRAVELS
+            || rms(&changed).max(rms(&travelled)) < TRAVELLED_M
+            || alike.abs() < ALIKE
+        {
+            continue;
+        }
+        if !(1.0 / RATIO..=RATIO).contains(&ratio) {
+            out.push(format!(
+                "the position {name} changes by {ratio:.3} times what the velocity says: expected positions in m and velocities in m/s"
+            ));
+        } else if alike < 0.0 {
+            out.push(format!(
+                "the position {name} changes in the opposite direction of the velocity: expected both in north, west, up"
+            ));
+        }
+    }
+    out
 }
 
 /// Torque of the rotors about each axis against the change of the body rates, with columns for the aerodynamic torques

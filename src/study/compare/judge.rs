@@ -14,6 +14,8 @@ use crate::vehicle::Vehicle;
 /// Full thrust over weight of one group over that of the other from which on, with [`OTHER_PARAMETERS`], this is hardly one vehicle. A
 /// battery takes a tenth of it, a load that leaves room to fly a fifth. Set by judgement.
 const OTHER_LIFT: f64 = 1.3;
+/// A centre of mass that moved along one axis has moved along the other from so many standard errors on. The usual two.
+const STAYED: f64 = 2.0;
 /// Parameters that moved by more than chance then.
 const OTHER_PARAMETERS: usize = 2;
 
@@ -172,12 +174,18 @@ impl Judge<'_> {
         let sigmas = found.strength.sqrt();
         match found.what {
             Some(What::Rotor(rotor)) => vec![change(Changed::Rotor(rotor), found.factor, "-", sigmas)],
-            Some(What::CentreOfMass) => [0, 1]
-                .map(|axis: usize| {
+            Some(What::CentreOfMass) => {
+                let along = |axis: usize| {
                     let moved = balance.moved[axis].times(arm);
                     change(Changed::CentreOfMass(axis), Some(moved), length, moved.sigmas().abs())
-                })
-                .to_vec(),
+                };
+                // the axis along which it stayed is no change
+                let mut axes = [0, 1].map(along);
+                axes.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
+                let [first, second] = axes;
+                let second = Some(second).filter(|of| of.sigmas >= STAYED);
+                std::iter::once(first).chain(second).collect()
+            }
             Some(What::YawTorque) => vec![change(Changed::YawTorque, Some(balance.moved[2]), "-", sigmas)],
             None => vec![change(Changed::Balance, None, "-", sigmas)],
         }

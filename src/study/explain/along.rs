@@ -1,14 +1,12 @@
 //! Several flights: what they have in common, what is each one's own, and which flights carry a name.
 
-use super::along_flights::AlongFlights;
+use super::along_flights::{AlongFlights, is_of_one_flight};
 use super::readers::for_readers;
 use super::result::ExplainStudy;
-use crate::diagnose::Need;
-use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::{is_irregular, signature_of};
 use crate::diagnose::{
-    Apart, ExplainSettings, Explanation, Named, Owner, Verdict, apart, each_with_model_of_all, explain,
-    own_wind, relative_to_air,
+    Apart, ExplainSettings, Explanation, Named, Owner, Verdict, apart, called, each_with_model_of_all,
+    explain, own_wind, relative_to_air,
 };
 use crate::note::{About, Note};
 use crate::recording::Quantity;
@@ -122,6 +120,15 @@ impl ExplainStudy {
         self.effects = for_readers(&self.explanation.named, self.explanation.airspeed_m_s);
         self.tell_payloads(flights);
         along.of_one_flight = self.names_of_one_flight(flights, alone, !along.sized_by.is_empty());
+        for named in &self.explanation.named {
+            if let Some(flight) = along.flight_with_alone(named.id) {
+                let text = format!(
+                    "{} is this flight's alone: the model of the vehicle is without it",
+                    called(named.id)
+                );
+                self.notes.push(Note::remark(About::File(self.given.inputs[flight].path.clone()), text));
+            }
+        }
         self.along = Some(along);
     }
 
@@ -185,14 +192,6 @@ fn logged_apart(flights: &[Signals]) -> bool {
         .map(period_s)
         .fold((f64::INFINITY, 0.0_f64), |(least, most), period_s| (least.min(period_s), most.max(period_s)));
     most > APART * least
-}
-
-/// Whether one flight of a vehicle may have an effect and the others not. What acts on the vehicle in every flight is told by all of them
-/// together, and a substitute of it that one flight has alone is no name.
-fn is_of_one_flight(signature: &Signature) -> bool {
-    let role = &signature.role;
-    let by_voltage = signature.needs.contains(&Need::Voltage);
-    by_voltage || role.moment.is_some() || role.hangs_below || role.of_the_loading || role.which.is_some()
 }
 
 /// The flights that tell the size of a name that differs between the flights: of what is each flight's own the one that shows it the

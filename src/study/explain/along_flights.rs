@@ -1,6 +1,8 @@
 //! What several flights have in common, and what is each one's own.
 
-use crate::diagnose::{Named, Owner};
+use crate::diagnose::signature::Signature;
+use crate::diagnose::signatures::signature_of;
+use crate::diagnose::{Named, Need, Owner};
 use crate::estimate::NAMES;
 use crate::study::Track;
 use crate::study::track::CARRIES;
@@ -47,6 +49,17 @@ impl AlongFlights {
         }
     }
 
+    /// The flight which alone of several has an effect that a vehicle may have in one flight and not in the others: a load, a rotor that is
+    /// weak, what follows the battery.
+    #[must_use]
+    pub fn flight_with_alone(&self, id: &str) -> Option<usize> {
+        let of_one = || signature_of(id).is_some_and(is_of_one_flight);
+        let differs = self.sized_by.iter().any(|(of, _)| *of == id);
+        let (_, carriers) = self.carried_by.iter().find(|(of, _)| *of == id)?;
+        let [flight] = carriers.as_deref()? else { return None };
+        (differs && of_one()).then_some(*flight)
+    }
+
     /// Whether a flight, fitted with the effects that were found, has the moments of inertia of the first one within their errors.
     pub(super) fn has_inertia_of_first(&self, flight: usize) -> bool {
         let mut moments = self
@@ -70,4 +83,12 @@ impl AlongFlights {
         let of = self.sized_by.iter().find(|(id, _)| track.effect == Some(id));
         of.map(|(_, flights)| flights.as_slice())
     }
+}
+
+/// Whether one flight of a vehicle may have an effect and the others not. What acts on the vehicle in every flight is told by all of them
+/// together, and a substitute of it that one flight has alone is no name.
+pub(super) fn is_of_one_flight(signature: &Signature) -> bool {
+    let role = &signature.role;
+    let by_voltage = signature.needs.contains(&Need::Voltage);
+    by_voltage || role.moment.is_some() || role.hangs_below || role.of_the_loading || role.which.is_some()
 }

@@ -293,14 +293,17 @@ impl ExplainStudy {
         })
     }
 
-    /// Effects for the model file: those that were found, and a latency that was named.
+    /// Effects for the model file: those that were found, and a latency that was named. What one of several flights has alone is not the
+    /// vehicle's.
     #[must_use]
     pub fn effects_of_model(&self) -> Vec<ActiveEffect> {
         let mut effects = Vec::new();
         if self.verdict() == Verdict::Unexplained {
             return effects;
         }
-        effects.extend(self.found());
+        let of_one =
+            |id: &str| self.along.as_ref().is_some_and(|along| along.flight_with_alone(id).is_some());
+        effects.extend(self.found().into_iter().filter(|active| !of_one(active.effect().id())));
         if self.latency_named() {
             let latency = self.explanation.search.after.base.latency_effects();
             effects.extend(latency.iter().filter_map(|l| ActiveEffect::new(l.effect(), &l.values).ok()));

@@ -2,6 +2,8 @@
 
 use super::joint_estimate::{Found, joint_estimate, without_inertia, without_undetermined};
 use crate::diagnose::joint::JointEstimate;
+use crate::diagnose::signature::Signature;
+use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{CHANNEL_NAMES, GyroscopicShare, TorqueLaw};
 use crate::estimate::{
     Contradiction, EstimateError, Identification, IdentifySettings, Method, MethodResult, Nominal,
@@ -113,8 +115,6 @@ impl IdentifyStudy {
         found: &Result<Found, String>,
     ) -> Result<Self, EstimateError> {
         let mut identification = identify(&flights, &vehicle, settings)?;
-        // flights apart are all that it warns of
-        let disagree = identification.notes.iter().any(Note::is_warning);
         let (mut effects, mut turned_by_control) = (Vec::new(), false);
         let (mut gyroscopic, mut torque_law, mut undetermined) = (None, None, Vec::new());
         match found.as_ref().map(|found| joint_estimate(found, &vehicle)) {
@@ -130,6 +130,9 @@ impl IdentifyStudy {
             }
             Err(why) => rigid_body_alone(&mut identification, &vehicle, why),
         }
+        let thrust_differs = effects.iter().any(|id| signature_of(id).is_some_and(Signature::alters_thrust));
+        let disagree = identification.apart.iter().any(|flight| flight.is_other_vehicle(thrust_differs));
+        identification.notes.extend(identification.apart.iter().map(|flight| flight.note(thrust_differs)));
         identification.best.result.emit();
         let scale = apply_anchor(&mut identification, &vehicle);
         let joint = |result: &&mut MethodResult| result.method == Method::Joint;
