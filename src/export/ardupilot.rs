@@ -227,10 +227,11 @@ fn reference_rate(source: &mut Source<'_>, drag: &RotorDrag, arms_m: &[Vector3<f
         // its drag at the hubs cannot be less than all of it, and there is no damping below none
         source.note(format!(
             "all of the simulator's drag acts at its hubs, the model's in part only, and that damps the rotation more than in the model: \
-             by {:.3}, {:.3}, {:.3} 1/s about x, y, z. No refRotRate takes this away, so it is 0 (none)",
+             by {:.3}, {:.3}, {:.3} 1/s about x, y, z (less where that is negative). No refRotRate takes this away, so it is 0 (none)",
             -rates.x, -rates.y, -rates.z
         ));
-    } else if rates.iter().any(|rate| (rate - mean).abs() > 0.05 * mean.max(LEAST_DAMPING_1_S)) {
+    } else if mean > 0.0 && rates.iter().any(|rate| (rate - mean).abs() > 0.05 * mean.max(LEAST_DAMPING_1_S))
+    {
         source.note(format!(
             "the simulator damps all axes alike beside the drag at its hubs: refRotRate is from the mean of {:.3}, {:.3}, {:.3} 1/s",
             rates.x, rates.y, rates.z

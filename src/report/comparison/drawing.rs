@@ -18,6 +18,22 @@ fn changes(study: &CompareStudy) -> impl Iterator<Item = &crate::study::Change> 
     study.compared.iter().chain(along).flat_map(|compared| &compared.changes)
 }
 
+/// What the drawing shows.
+pub(super) fn caption(study: &CompareStudy) -> String {
+    let marks: Vec<Mark> = (0..study.vehicle.rotors.len()).filter_map(|place| mark(study, place)).collect();
+    let mut words = vec!["From above, forward upwards."];
+    if marks.iter().any(|mark| mark.is_filled) {
+        words.push("Filled: the rotor that changed, with its thrust for the same command over that before.");
+    }
+    if marks.iter().any(|mark| !mark.is_filled) {
+        words.push("Ringed: a rotor that may be the cause instead.");
+    }
+    if marks.is_empty() && !of_centre(study) {
+        words.push("No rotor is known to have changed.");
+    }
+    words.join(" ")
+}
+
 fn mark(study: &CompareStudy, place: usize) -> Option<Mark> {
     if changes(study).any(|change| change.what == Changed::Rotor(place)) {
         Some(Mark { colour: MEANT, is_filled: true, words: factor(study, place) })

@@ -1,6 +1,6 @@
 //! `report.html` of `compare`: each section is one function, and one call in [`comparison_html`].
 
-use super::drawing::drawing;
+use super::drawing::{caption, drawing};
 use super::plots::plots;
 use super::words::{
     FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_from, name, open, returned, sentence, size,
@@ -39,8 +39,7 @@ pub fn comparison_html(study: &CompareStudy) -> String {
 }
 
 fn vehicle(study: &CompareStudy) -> Markup {
-    let caption = "From above, forward upwards. Filled: the rotor that changed, with its thrust for the same command over that before.";
-    section("The vehicle", &figure(&drawing(study), caption))
+    section("The vehicle", &figure(&drawing(study), &caption(study)))
 }
 
 fn changed(study: &CompareStudy) -> Markup {

@@ -55,27 +55,33 @@ impl Judge<'_> {
 
     /// Flights that differ from every earlier one, each alone against each: what a pair of flights shows, a row of them does not lose.
     /// There are as many places for it as pairs, so it has to be more certain. The change is that against the flight which
-    /// differs the least.
+    /// differs the least. Once the vehicle changed, a flight that differs from the one before it, and not from all, went back.
     pub(super) fn each_alone(&self, order: &[usize], least_sigmas: f64) -> Vec<Step<Compared>> {
         let count = order.len();
         if !(3..=MOST_ALONE).contains(&count) {
             return Vec::new();
         }
         let least = least_sigmas.max(NAMED_SIGMAS).hypot(beyond(count * (count - 1) / 2));
-        let of_flight = |later: usize| {
-            let against = |earlier: usize| {
-                let groups = Groups { before: vec![earlier], after: vec![later] };
-                let change = self.compared(&flight_groups(&groups, order));
-                let step = Step { from: later, groups, change, as_before: Vec::new() };
-                (step.change.beside_a_load() >= least).then_some(step)
-            };
-            let each = (0..later).map(against).collect::<Option<Vec<_>>>()?;
+        let against = |later: usize, earlier: usize| {
+            let groups = Groups { before: vec![earlier], after: vec![later] };
+            let change = self.compared(&flight_groups(&groups, order));
+            let step = Step { from: later, groups, change, as_before: Vec::new() };
+            (step.change.beside_a_load() >= least).then_some(step)
+        };
+        let new = |later: usize| {
+            let each = (0..later).map(|earlier| against(later, earlier)).collect::<Option<Vec<_>>>()?;
             let least = each.iter().min_by(|a, b| a.change.strongest().total_cmp(&b.change.strongest()))?;
             let mut step = least.clone();
             each.iter().for_each(|other| add_rivals(&mut step.change, &other.change));
             Some(step)
         };
-        (1..count).filter_map(of_flight).collect()
+        let mut found: Vec<Step<Compared>> = Vec::new();
+        for later in 1..count {
+            let back = || against(later, later - 1).filter(|_| !found.is_empty());
+            let step = new(later).or_else(back);
+            found.extend(step);
+        }
+        found
     }
 }
 

@@ -46,11 +46,12 @@ impl Judge<'_> {
             (strongest >= at_a_border).then_some((strongest, compared))
         };
         let found = steps(order.len(), &judged, there_and_back);
-        let mut found = if found.is_empty() {
-            self.each_alone(order, least_sigmas)
-        } else {
-            self.beside_loads(found, order, least_sigmas)
-        };
+        let mut found = self.beside_loads(found, order, least_sigmas);
+        let alone = self.each_alone(order, least_sigmas);
+        let is_known = |from: usize| found.iter().any(|step| step.from == from);
+        let new: Vec<Step<Compared>> = alone.into_iter().filter(|step| !is_known(step.from)).collect();
+        found.extend(new);
+        found.sort_by_key(|step| step.from);
         find_returns(order.len(), &mut found, &|groups, step: &Compared| {
             let compared = self.compared(&flight_groups(groups, order));
             compared.changes.is_empty() && step.certain().all(|change| compared.would_show(change))
