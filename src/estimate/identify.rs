@@ -5,7 +5,7 @@ use super::guessed_curve::{GuessedCurve, MovedByCurve, moved_by_curve};
 use super::method::Method;
 use super::nominal::Nominal;
 use super::paper_runs::PaperRuns;
-use super::plausible::{FlightApart, disagreeing};
+use super::plausible::FlightApart;
 use super::recommend::Recommendation;
 use super::recursive::History;
 use super::result::{Estimated, MethodResult};
@@ -125,7 +125,7 @@ pub fn identify(
     let mut methods = paper.results(&whole(&plain));
     let best = Recommendation::weak(whole(&plain), &nominal);
     methods.push(MethodResult::new(Method::Weak, &whole(&plain), &nominal));
-    let apart = disagreeing(&weak.rows, &nominal.theta);
+    let apart = weak.flights_apart(&nominal.theta, settings.weak_half_width_s);
     let by_commands = |signals: &Signals| signals.quality.thrust_source == ThrustSource::Command;
     notes.extend(flights.iter().any(by_commands).then(|| Note::remark(About::Actuators, BY_COMMANDS)));
     Ok(Identification {
@@ -186,7 +186,7 @@ pub fn contradicting_flights(flights: &[Signals], vehicle: &Vehicle) -> Vec<Flig
     let nominal = Nominal::of(vehicle);
     let mut weak = WeakFlights::from(flights, vehicle, WEAK_HALF_WIDTH_S);
     weak.compensate(&nominal.theta, vehicle);
-    disagreeing(&weak.rows, &nominal.theta)
+    weak.flights_apart(&nominal.theta, WEAK_HALF_WIDTH_S)
 }
 
 /// How far mass and inertia move with one standard error of a guessed thrust curve; `None` where it is no guess, or nothing can

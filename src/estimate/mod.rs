@@ -45,8 +45,8 @@ pub use problem::{Channel, Problem, SCORE_LAGS, Solution};
 pub use recommend::Recommendation;
 pub use recursive::{History, PAPER_SIGMA, PaperEstimate, gradient_descent, least_squares};
 pub use result::{
-    Estimated, Finding, LARGEST_RELATIVE_STD, MethodResult, POOR, Parameter, RIGID_BODY_ALONE, finding,
-    size_of,
+    Estimated, Finding, LARGEST_RELATIVE_STD, MethodResult, POOR, Parameter, RIGID_BODY_ALONE,
+    depends_on_band, finding, size_of,
 };
 pub use theta::{
     INERTIA_ENTRIES, MOMENTS, NAMES, THETA, Theta, ThetaCovariance, UNITS, inertia_of, scale_of, theta_of,

@@ -1,11 +1,9 @@
 //! Checks of implausible results: another vehicle, a wrong unit, two vehicles at once.
 
 use super::result::{Estimated, Finding, MethodResult};
-use super::theta::{NAMES, Theta, UNITS, theta_of};
+use super::theta::{NAMES, UNITS, theta_of};
 use super::thrust_scale::ThrustScale;
-use super::weak::solve_weak;
 use crate::note::{About, Note};
-use crate::regression::WeakRows;
 use crate::vehicle::{Guessed, Vehicle};
 
 /// Largest ratio of an identified mass or thrust to that of the vehicle file, or its inverse, without a warning.
@@ -138,18 +136,6 @@ pub fn contradictions(
     of_thrust.into_iter().chain(of_body).collect()
 }
 
-/// The flights whose masses or moments of inertia contradict those of the first one, each by its rows alone.
-#[must_use]
-pub fn disagreeing(flights: &[WeakRows], nominal: &Theta) -> Vec<FlightApart> {
-    if flights.len() < 2 {
-        return Vec::new();
-    }
-    let alone = |rows| solve_weak(std::slice::from_ref(rows), nominal);
-    let each: Vec<Option<Estimated>> =
-        flights.iter().map(|rows| alone(rows).map(|found| Estimated::of(&found))).collect();
-    flights_apart(&each)
-}
-
 /// A flight whose mass or moments of inertia are further from those of the first flight than flights of one vehicle are, by its
 /// estimate alone.
 #[derive(Debug, Clone, PartialEq)]
@@ -200,13 +186,14 @@ impl FlightApart {
 }
 
 /// The flights whose estimates alone are further from the first one's than those of one vehicle are. A moment of inertia counts only where
-/// the rigid body explains the torque in both flights, and izz not alone: it goes with the law of the rotors' torque.
+/// the rigid body explains the torque in both flights at all frequencies, and izz not alone: it goes with the law of the rotors' torque.
 #[must_use]
 pub fn flights_apart(flights: &[Option<Estimated>]) -> Vec<FlightApart> {
     let Some(of_first) = flights.first().and_then(Option::as_ref) else { return Vec::new() };
     let first = &of_first.theta;
     let far = |flight: &Estimated, index: usize| {
-        if !(of_first.explains(index) && flight.explains(index)) {
+        let tells = |of: &Estimated| of.explains(index) && of.is_of_all_bands(index);
+        if !(tells(of_first) && tells(flight)) {
             return None;
         }
         let theta = &flight.theta;

@@ -239,11 +239,16 @@ fn unexplained(estimated: &Estimated, index: usize) -> Option<String> {
 }
 
 /// The reason if the inertia about one of the parameter's axes depends on the window.
+/// Whether a moment of inertia depends on the band of frequencies, by its ratio (-) from a window of twice the width: the torque then answers
+/// the motion (feedback control). NaN says nothing.
+#[must_use]
+pub fn depends_on_band(ratio: f64) -> bool {
+    ratio.is_finite() && !(1.0 / LARGEST_WINDOW_FACTOR..=LARGEST_WINDOW_FACTOR).contains(&ratio)
+}
+
 fn of_feedback(estimated: &Estimated, index: usize) -> Option<String> {
     let ratios = estimated.by_wider_window?;
-    let outside =
-        |axis: usize| !(1.0 / LARGEST_WINDOW_FACTOR..=LARGEST_WINDOW_FACTOR).contains(&ratios[axis]);
-    axes_of(index).iter().find(|axis| ratios[**axis].is_finite() && outside(**axis)).map(|axis| {
+    axes_of(index).iter().find(|axis| depends_on_band(ratios[**axis])).map(|axis| {
         let name = ["x", "y", "z"][*axis];
         format!(
             "a window of twice the width gives {:.2} times the inertia about {name}: it depends on the band of frequencies, so \

@@ -1,8 +1,10 @@
 //! Flights as rows of the weak form, with their commands' latency taken out.
 
 use super::compensate::{as_stated, compensation, take_out};
+use super::plausible::{FlightApart, flights_apart};
+use super::result::Estimated;
 use super::theta::Theta;
-use super::weak::{Latency, WeakEstimate, latency};
+use super::weak::{Latency, WeakEstimate, latency, solve_weak};
 use super::window::by_wider_window;
 use crate::physics::ActuationLatency;
 use crate::regression::{WeakMotion, WeakRows, weak_rows};
@@ -63,6 +65,28 @@ impl WeakFlights {
         }
         self.refresh();
         (Some(found), compensation)
+    }
+
+    /// The flights whose masses or moments of inertia contradict those of the first one, each by its rows alone.
+    pub(super) fn flights_apart(&self, nominal: &Theta, half_width_s: f64) -> Vec<FlightApart> {
+        if self.rows.len() < 2 {
+            return Vec::new();
+        }
+        let alone = |rows: &WeakRows| solve_weak(std::slice::from_ref(rows), nominal);
+        let found: Vec<Option<WeakEstimate>> = self.rows.iter().map(alone).collect();
+        let each: Vec<Option<Estimated>> =
+            found.iter().map(|found| found.as_ref().map(Estimated::of)).collect();
+        if flights_apart(&each).is_empty() {
+            return Vec::new();
+        }
+        // the wider window costs as much again
+        let assessed = |(signals, found): (&Signals, &Option<WeakEstimate>)| {
+            let found = found.as_ref()?;
+            let window = (half_width_s, self.gravity_m_s2);
+            let wider = by_wider_window(std::slice::from_ref(signals), (found, nominal), window);
+            Some(Estimated::of(found).with_wider_window(wider))
+        };
+        flights_apart(&self.signals.iter().zip(&found).map(assessed).collect::<Vec<_>>())
     }
 
     /// Moments of inertia by a window of twice the width, as shares of those of `narrow`.

@@ -26,7 +26,7 @@ pub struct Hold {
     pub seconds: f64,
     /// stamps and values; each takes eight bytes
     pub numbers: usize,
-    /// s that are held in any case, with up to [`DENSE`] times the numbers: a dense log of one flight is not long
+    /// s that are held in any case, with up to four times the numbers: a dense log of one flight is not long
     pub short_s: f64,
 }
 

@@ -9,7 +9,7 @@ use crate::diagnose::channels::{AXES, CHANNEL_NAMES, CHANNELS, Nuisance};
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::fit::{Fitted, evaluate};
 use crate::diagnose::signature::EffectTerm;
-use crate::estimate::{INERTIA_ENTRIES, NAMES, UNITS};
+use crate::estimate::{INERTIA_ENTRIES, NAMES, UNITS, depends_on_band, inertia_by_wider_window};
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
 
@@ -31,8 +31,14 @@ pub(super) fn judged(
     let identified = &explanation.search.after;
     let is_one_model = of_each.iter().all(|of| std::ptr::eq(of.explanation, explanation));
     let mut all: Vec<Agreement> = Vec::new();
-    for (own, of) in weak.own.iter().zip(of_each) {
-        let found = agreements(own, &of.explanation.search.after);
+    for ((own, of), ready) in weak.own.iter().zip(of_each).zip(ready) {
+        let model = &of.explanation.search;
+        let mut found = agreements(own, &model.after);
+        keep_of_all_bands(&mut found, || {
+            let of_flight =
+                inertia_by_wider_window(std::slice::from_ref(ready.flight.signals), &own.base.vehicle);
+            [of_flight, model.by_wider_window]
+        });
         if is_one_model {
             let (pairs, alone) = matched(found, all);
             all = pairs.into_iter().map(|(one, all)| pooled(all, &one)).chain(alone).collect();
@@ -108,8 +114,13 @@ pub fn differing(
             identified_std: first.held_out_std,
             ..own
         });
-        let differs = |pair: &Agreement| pair.differs() && !pair.is_by_a_load();
-        let different: Vec<String> = pairs.filter(differs).map(|pair| described(&pair)).collect();
+        let mut pairs: Vec<Agreement> = pairs.collect();
+        keep_of_all_bands(&mut pairs, || {
+            [&flights[0], flight]
+                .map(|of| inertia_by_wider_window(std::slice::from_ref(of.signals), &shared.base.vehicle))
+        });
+        let differs = |pair: &&Agreement| pair.differs() && !pair.is_by_a_load();
+        let different: Vec<String> = pairs.iter().filter(differs).map(described).collect();
         if !different.is_empty() {
             return Ok(Some(format!(
                 "{} and {} differ by more than flights of one vehicle do (another vehicle or battery), so the \
@@ -121,6 +132,21 @@ pub fn differing(
         }
     }
     Ok(None)
+}
+
+/// Moments of inertia that depend on the band of frequencies in either of both sides, by their ratios from a window of twice the width
+/// (Ixx, Iyy, Izz), are not compared. The ratios are asked for where a moment differs.
+fn keep_of_all_bands(found: &mut [Agreement], ratios: impl FnOnce() -> [[f64; 3]; 2]) {
+    if !found.iter().any(|of| of.is_of_inertia() && of.differs()) {
+        return;
+    }
+    let ratios = ratios();
+    for (axis, moment) in [1, 4, 6].into_iter().enumerate() {
+        if ratios.iter().any(|of| depends_on_band(of[axis])) {
+            let same = |of: &&mut Agreement| of.name == NAMES[moment];
+            found.iter_mut().filter(same).for_each(|of| of.relevance = None);
+        }
+    }
 }
 
 /// The reason why the held-out flights are not of the identified vehicle.
