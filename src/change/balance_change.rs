@@ -153,7 +153,7 @@ fn found(
     let fits = best.left <= FITS && !is_either;
     // where a battery or a load sits is the flight's own; it does not turn the vehicle, and what certainly turns is no load alone
     let turned = by.z.powi(2) / variances.z;
-    let by_a_load = best.what == What::CentreOfMass && (fits || turned < NAMED);
+    let by_a_load = best.what == What::CentreOfMass && turned < NAMED;
     let about_z = if by_a_load { turned } else { 0.0 };
     if (best.what == What::CentreOfMass || !fits) && beyond_load - about_z < NAMED {
         return None;
@@ -174,7 +174,8 @@ fn found(
         // the thrust has to act where the centre of mass went
         offset: (fits && best.what == What::CentreOfMass).then(|| [amounts[0], amounts[1]]),
         rivals: near,
-        strength: strength - best.left,
+        // of what has no name a load may make a part
+        strength: if fits { strength - best.left } else { (strength - best.left).min(beyond_load) },
         carried_by: Vec::new(),
     })
 }

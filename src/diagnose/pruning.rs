@@ -25,11 +25,12 @@ pub(super) fn prune(
     let mut dropped = false;
     for present in &after.base.effects {
         let mut pruned = present.clone();
-        let mut strength = 0.0;
+        let (mut strength, mut most) = (0.0, 0.0);
         for (place, &slot) in present.free.iter().enumerate() {
             let std = after.covariance[(index + place, index + place)].max(0.0).sqrt();
             let z = present.away_from_nothing(slot, std).abs();
             let amount = present.is_amount(slot);
+            most = f64::max(most, if amount { z } else { 0.0 });
             if amount && z < PRUNED {
                 pruned.values[slot] = present.nothing_at(slot);
                 pruned.free.retain(|free| *free != slot);
@@ -41,8 +42,8 @@ pub(super) fn prune(
         index += present.free.len();
         if strength > KEPT {
             kept.push(pruned);
-        } else if present.signature.is_drag() && law.is_none_or(|(most, ..)| strength > most) {
-            law = Some((strength, kept.len(), present));
+        } else if present.signature.is_drag() && law.is_none_or(|(other, ..)| most > other) {
+            law = Some((most, kept.len(), present));
         }
     }
     let laws = after.base.effects.iter().filter(|term| term.signature.is_drag()).count();

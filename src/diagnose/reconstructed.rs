@@ -55,10 +55,10 @@ pub(super) fn reconstruct(
     start: Option<&Base>,
 ) -> Result<bool, PhysicsError> {
     let flights = Flights { signals, latency_std_s: found.latency.std_s, forms };
-    let paths = &mut found.paths;
-    match flights.sizes(traces, &found.after, start.unwrap_or(&found.after.base), paths)? {
+    let mut paths = found.paths.clone();
+    match flights.sizes(traces, &found.after, start.unwrap_or(&found.after.base), &mut paths)? {
         Ok(after) => {
-            found.after = after;
+            (found.after, found.paths) = (after, paths);
             Ok(true)
         }
         Err(why) => {
@@ -126,8 +126,10 @@ pub(super) fn reconstructed_with(
     base: Base,
 ) -> Option<Reconstructed> {
     let flights = Flights { signals, latency_std_s: found.latency.std_s, forms: Forms::Chosen };
-    let (base, terms, pooled) = flights.estimated(&found.after, base, &mut found.paths).ok()?;
+    let mut paths = found.paths.clone();
+    let (base, terms, pooled) = flights.estimated(&found.after, base, &mut paths).ok()?;
     plausible_scale(pooled.values[0]).ok()?;
+    found.paths = paths;
     Some(Reconstructed { base, terms, pooled })
 }
 
@@ -185,12 +187,18 @@ impl Flights<'_> {
         if terms.iter().all(|term| term.free.is_empty()) {
             return Err(Kept::NoForce);
         }
+        let mut opened: Option<PooledEstimate> = None;
         let has_forms = open.effects.iter().any(|present| present.signature.role.with_speed.is_some());
         if has_forms && self.forms == Forms::Chosen {
             let pooled = self.pooled_over_flights((fitted, &open), &terms, fit_mode, paths)?;
             choose_forms(&mut base, &terms, &pooled);
+            opened = Some(pooled);
         }
-        let terms = self::terms(&base).ok_or(Kept::OtherKind)?;
+        let of_open = terms;
+        let mut terms = self::terms(&base).ok_or(Kept::OtherKind)?;
+        if let Some(pooled) = &opened {
+            begin_at(&mut terms, &of_open, pooled);
+        }
         let pooled = self.pooled_over_flights((fitted, &base), &terms, fit, paths)?;
         Ok((base, terms, pooled))
     }
@@ -215,6 +223,19 @@ impl Flights<'_> {
 
 /// A fit of states and parameters.
 type Estimate = fn(Problem, &[usize]) -> Result<Fit, FitError>;
+
+/// Free values of effects at those that another fit of the same effects found.
+fn begin_at(terms: &mut [Term], opened: &[Term], pooled: &PooledEstimate) {
+    let mut first = 1;
+    for (term, open) in terms.iter_mut().zip(opened) {
+        for &slot in &term.free {
+            if let Some(place) = open.free.iter().position(|free| *free == slot) {
+                term.values[slot] = pooled.values[first + place];
+            }
+        }
+        first += open.free.len();
+    }
+}
 
 /// The effects of the model with those of their parameters free that the forces tell; `None` where one of them has states or
 /// changes what sensors show.
@@ -275,9 +296,13 @@ fn fitted_flight(
     for (term, own) in terms.iter_mut().zip(&base.effects).filter(|(term, _)| term.free.is_empty()) {
         term.values.clone_from(&own.values);
     }
-    let problem = force_problem(signals, &base.vehicle, lag, terms)?.from_path(path);
-    let free: Vec<usize> = (0..problem.unknowns.len()).collect();
-    Ok(estimate(problem, &free)?)
+    let problem = || force_problem(signals, &base.vehicle, lag, terms.clone());
+    let begun = problem()?.from_path(path);
+    let free: Vec<usize> = (0..begun.unknowns.len()).collect();
+    match estimate(begun, &free) {
+        Err(_) if path.is_some() => Ok(estimate(problem()?, &free)?),
+        found => Ok(found?),
+    }
 }
 
 /// A value of the reconstruction: its place among the effects and its slot, where it stands in [`PooledEstimate`], the value.

@@ -16,6 +16,8 @@ use crate::vehicle::{Guess, Guessed, Vehicle};
 const USUAL_SHARE: f64 = 0.85;
 /// Its scatter, relative standard error: it becomes that of the torque per thrust.
 const RELATIVE: f64 = 0.2;
+/// Relative standard error that the sampling of commands adds to a ratio of moments: it moves each of them by some percent.
+const OF_SAMPLING: f64 = 0.04;
 /// Largest relative standard error of izz with which the motion tells anything of the torque.
 const LARGEST_STD: f64 = 0.15;
 /// Standard errors from which on the motion excludes a torque per thrust. The usual three.
@@ -35,7 +37,7 @@ fn share_about_z(flights: &[Signals], vehicle: &Vehicle) -> Option<(f64, f64)> {
     let is_determined =
         |index: usize| matches!(finding(&estimated, &nominal, index), Finding::Determined { .. });
     let across_is_determined = is_determined(1) && is_determined(4);
-    weak.rows.iter_mut().for_each(WeakRows::leave_out_gyroscopic_torque);
+    weak.rows.iter_mut().for_each(WeakRows::free_gyroscopic_torque);
     let WeakEstimate { theta, covariance, .. } = solve_weak(&weak.rows, &nominal.theta)?;
     let (across, about) = (theta[1] + theta[4], theta[6]);
     let relative_about = covariance[(6, 6)].max(0.0).sqrt() / about;
@@ -63,7 +65,7 @@ pub fn torque_by_motion(flights: &[Signals], vehicle: &Vehicle) -> Option<(Vehic
     let guess = vehicle.guessed(Guessed::TorqueRatio);
     let is_stated = guess <= 0.0;
     let (share, std) = share_about_z(flights, vehicle)?;
-    let std = std.hypot(vehicle.guessed(Guessed::Arms));
+    let std = std.hypot(vehicle.guessed(Guessed::Arms)).hypot(OF_SAMPLING);
     let least = if is_stated { STATED_SHARE.ln() } else { 0.0 };
     let is_excluded = share.ln() > least.max(CERTAIN * std);
     if !is_excluded {

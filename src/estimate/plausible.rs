@@ -225,7 +225,9 @@ pub fn flights_apart(flights: &[Option<Estimated>]) -> Vec<FlightApart> {
                 first[index]
             ),
             mass_factor,
-            by_moments: all.iter().any(|(index, _)| *index > 0 && unlike_mass(*index)),
+            by_moments: all
+                .iter()
+                .any(|(index, _)| *index > 0 && NAMES[*index] != ABOUT_Z && unlike_mass(*index)),
         })
     };
     flights.iter().enumerate().skip(1).filter_map(told).collect()

@@ -20,6 +20,8 @@ const DAMPING: usize = THETA + 5;
 pub(super) const JITTER: usize = THETA + 8;
 const HEAVE: usize = THETA + 9;
 const CURVATURE: usize = THETA + 12;
+/// Gyroscopic torques with coefficients of their own, the last columns.
+const GYROSCOPIC: usize = 3;
 /// Standard deviations of the priors of the drag along body z per mass, 1/s, and of its force by a wind per mass,
 /// m/s^2. Rotors have 0.3 to 0.6 1/s (inflow), and identification flights are rarely flown in more than 5 m/s of
 /// wind. Wider priors cost precision of the mass, narrower ones bias it in wind.
@@ -165,14 +167,15 @@ pub fn latency(flights: &[WeakRows], start: &Theta) -> Option<Latency> {
 /// Stacks the flights into one problem; columns are not scaled here (the solver scales them).
 fn assemble(flights: &[WeakRows], theta: &Theta, curvature: bool) -> Problem {
     let rows: usize = flights.iter().map(|flight| flight.time_s.len()).sum();
-    let columns = if curvature { CURVATURE + 1 } else { CURVATURE };
+    let is_free = flights.iter().any(|flight| !flight.gyroscopic.is_empty());
+    let columns = CURVATURE + usize::from(curvature) + if is_free { GYROSCOPIC } else { 0 };
     let theta = theta.map(|value| if value.is_finite() { value } else { 0.0 });
     let mut channels = Vec::new();
     for channel in 0..CHANNELS {
         if !is_measured(flights, channel) {
             continue;
         }
-        let x = design(flights, &theta, channel, (rows, columns));
+        let x = design((flights, curvature), &theta, channel, (rows, columns));
         let y = DVector::from_iterator(
             rows,
             flights.iter().flat_map(|flight| flight.output.iter().map(|output| output[channel])),
@@ -195,7 +198,7 @@ pub(super) fn priors(mass_kg: f64) -> Vec<(usize, f64)> {
 }
 
 fn design(
-    flights: &[WeakRows],
+    (flights, curvature): (&[WeakRows], bool),
     theta: &Theta,
     channel: usize,
     (rows, columns): (usize, usize),
@@ -220,11 +223,18 @@ fn design(
             continue;
         }
         x[(row, LATENCY)] = dot_row(first, channel, theta);
-        if columns > CURVATURE {
+        if curvature {
             x[(row, CURVATURE)] = dot_row(second, channel, theta);
         }
         x[(row, TRIM + channel - 1)] = 1.0;
         x[(row, DAMPING + channel - 1)] = rate[channel - 1];
+    }
+    let mut first = 0;
+    for flight in flights.iter().filter(|_| channel > 0) {
+        for (row, gyroscopic) in flight.gyroscopic.iter().enumerate() {
+            x[(first + row, columns - GYROSCOPIC + channel - 1)] = gyroscopic[channel - 1];
+        }
+        first += flight.time_s.len();
     }
     x
 }

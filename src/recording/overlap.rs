@@ -12,9 +12,11 @@ const RUN: usize = 10;
 /// Sensors whose noise makes every sample another.
 const NOISY: [Quantity; 2] = [Quantity::AngularRate, Quantity::SpecificForce];
 
-/// Flights that go on for so long after the last sample that both hold are two, s: a simulator repeats the noise of its sensors from its
-/// start, and two of its flights may begin alike.
+/// Flights that go on for so long after the last sample that both hold are two, s, if they have less than [`ALIKE_AT_FIRST`] in common: a
+/// simulator repeats the noise of its sensors from its start, and two of its flights may begin alike.
 const PARTED_S: f64 = 5.0;
+/// See [`PARTED_S`]. A takeoff is less of a flight.
+const ALIKE_AT_FIRST: f64 = 0.2;
 
 /// Most samples of a stream that are looked for in another recording, spread evenly over it.
 const LOOKED_FOR: usize = 4096;
@@ -79,7 +81,8 @@ impl Overlap {
             let goes_on_s = own.after_shared_with(other).min(other.after_shared_with(own));
             let share = |runs: &Vec<(f64, u64)>| {
                 let same = runs.iter().filter(|(_, run)| other.holds(*run)).count();
-                if runs.is_empty() || goes_on_s > PARTED_S { 0.0 } else { same as f64 / runs.len() as f64 }
+                let share = if runs.is_empty() { 0.0 } else { same as f64 / runs.len() as f64 };
+                if goes_on_s > PARTED_S && share < ALIKE_AT_FIRST { 0.0 } else { share }
             };
             own.counted.iter().map(share).fold(0.0, f64::max)
         };
@@ -136,10 +139,10 @@ mod tests {
 
     #[test]
     fn flights_that_begin_alike_and_part_are_two() {
-        let begin = recording(0, 300, 0.0);
+        let begin = recording(0, 200, 0.0);
         let with = |from: u32| {
             let mut all = begin.clone();
-            let rest = recording(from, from + 1000, 3.0 - 0.01 * f64::from(from));
+            let rest = recording(from, from + 1000, 2.0 - 0.01 * f64::from(from));
             for (key, stream) in &mut all.streams {
                 let rest = &rest.streams[key];
                 stream.time_s.extend(&rest.time_s);
@@ -151,7 +154,7 @@ mod tests {
         assert_eq!((one.share_in(&other), other.share_in(&one)), (0.0, 0.0));
         // what ends where both do is a part
         let part = Overlap::of(&begin, |_| true);
-        assert!(part.share_in(&one) == 1.0 && one.share_in(&part) > 0.2);
+        assert!(part.share_in(&one) == 1.0 && one.share_in(&part) > 0.1);
     }
 
     #[test]

@@ -56,17 +56,25 @@ pub struct WeakRows {
     pub heave: Vec<Vector3<f64>>,
     /// `K` of what the commands' jitter adds if the rotors follow all of it (N, N m); zero where unknown
     pub jitter: Vec<Vector4<f64>>,
+    /// what the gyroscopic torques about body x, y and z have coefficients of their own on, `K(w_y w_z)`, `K(w_z w_x)`, `K(w_x w_y)`,
+    /// (rad/s)^2; empty where they are those of the moments of inertia
+    pub gyroscopic: Vec<Vector3<f64>>,
     /// rows without a break between them
     pub runs: Vec<std::ops::Range<usize>>,
 }
 
 impl WeakRows {
-    /// Takes the part of the moments of inertia in the gyroscopic torque out of the regressor. A simulator may not have this torque, and then
-    /// it says that izz is near ixx and iyy, whatever turns the vehicle about z.
-    pub fn leave_out_gyroscopic_torque(&mut self) {
+    /// Gives the gyroscopic torques coefficients of their own in place of differences of the moments of inertia. A simulator may not have these
+    /// torques, and then they say that izz is near ixx and iyy, whatever turns the vehicle about z.
+    pub fn free_gyroscopic_torque(&mut self) {
+        // torque about x, y, z, and the moments about the two other axes: the first of them with a positive sign
+        const OTHERS: [(usize, [usize; 2]); 3] = [(1, [6, 4]), (2, [1, 6]), (3, [4, 1])];
+        let of = |phi: &SMatrix<f64, 4, 7>| {
+            Vector3::from(OTHERS.map(|(channel, [moment, _])| phi[(channel, moment)]))
+        };
+        self.gyroscopic = self.regressor[0].iter().map(of).collect();
         for phi in self.regressor.iter_mut().flatten() {
-            // torque about x, y, z, and the moments about the two other axes
-            for (channel, moments) in [(1, [4, 6]), (2, [1, 6]), (3, [1, 4])] {
+            for (channel, moments) in OTHERS {
                 moments.into_iter().for_each(|moment| phi[(channel, moment)] = 0.0);
             }
         }

@@ -46,11 +46,11 @@ pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<Note> {
     }
     let mut units = rates(signals, &spans);
     units.extend(forces(signals, vehicle.gravity_m_s2, &spans));
-    units.extend(positions(signals));
     // torque beside rates that are none says nothing
     if units.is_empty() {
         units.extend(torques(signals, vehicle, &spans));
     }
+    units.extend(positions(signals));
     units.into_iter().map(|text| Note::warning(About::Contradiction, text)).collect()
 }
 
@@ -153,7 +153,8 @@ fn positions(signals: &Signals) -> Vec<String> {
         .collect();
     let mut out = Vec::new();
     for (axis, name) in ["north", "west", "up"].iter().enumerate() {
-        let (changed, travelled) = (column(&changed, axis), column(&travelled, axis));
+        // a climb rate has a bias
+        let (changed, travelled) = (centred(&column(&changed, axis)), centred(&column(&travelled, axis)));
         let alike = likeness(&changed, &travelled);
         // what is alike to this degree and on one scale has no other ratio
         let ratio = rms(&changed) / rms(&travelled);

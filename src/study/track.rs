@@ -178,6 +178,15 @@ impl Track {
         of
     }
 
+    /// Whether the value of these flights is certainly another one than that of the others.
+    #[must_use]
+    pub(super) fn differs_from_others(&self, flights: &[usize]) -> bool {
+        let others: Vec<usize> = (0..self.values.len()).filter(|flight| !flights.contains(flight)).collect();
+        let (with, without) = (self.only(flights).pooled(), self.only(&others).pooled());
+        with.zip(without)
+            .is_some_and(|(with, without)| (with.0 - without.0).abs() > CARRIES * with.1.hypot(without.1))
+    }
+
     /// How far a flight's value is from that of no effect, in its standard errors.
     #[must_use]
     pub fn strength(&self, flight: usize) -> f64 {

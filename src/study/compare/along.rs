@@ -53,6 +53,28 @@ impl Judge<'_> {
         out
     }
 
+    /// The steps of a row, judged again where a new step (of those that begin at `added`) is their neighbour: what it took with it is none.
+    pub(super) fn beside_new(
+        &self,
+        found: Vec<Step<Compared>>,
+        added: &[usize],
+        order: &[usize],
+    ) -> Vec<Step<Compared>> {
+        let borders: Vec<usize> =
+            std::iter::once(0).chain(found.iter().map(|step| step.from)).chain([order.len()]).collect();
+        let part = |place: usize| (borders[place]..borders[place + 1]).collect();
+        let judged = |(place, step): (usize, Step<Compared>)| {
+            let is_new = |border: usize| added.contains(&border);
+            if is_new(step.from) || !(is_new(borders[place]) || is_new(borders[place + 2])) {
+                return Some(step);
+            }
+            let groups = Groups { before: part(place), after: part(place + 1) };
+            let change = self.compared(&flight_groups(&groups, order));
+            (!change.changes.is_empty()).then_some(Step { groups, change, ..step })
+        };
+        found.into_iter().enumerate().filter_map(judged).collect()
+    }
+
     /// Flights that differ from every earlier one, each alone against each: what a pair of flights shows, a row of them does not lose.
     /// There are as many places for it as pairs, so it has to be more certain. The change is that against the flight which
     /// differs the least. Once the vehicle changed, a flight that differs from the one before it, and not from all, went back.

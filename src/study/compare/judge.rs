@@ -50,8 +50,10 @@ impl Judge<'_> {
         let alone = self.each_alone(order, least_sigmas);
         let is_known = |from: usize| found.iter().any(|step| step.from == from);
         let new: Vec<Step<Compared>> = alone.into_iter().filter(|step| !is_known(step.from)).collect();
+        let added: Vec<usize> = new.iter().map(|step| step.from).collect();
         found.extend(new);
         found.sort_by_key(|step| step.from);
+        let mut found = self.beside_new(found, &added, order);
         find_returns(order.len(), &mut found, &|groups, step: &Compared| {
             let compared = self.compared(&flight_groups(groups, order));
             compared.changes.is_empty() && step.certain().all(|change| compared.would_show(change))

@@ -13,7 +13,7 @@ use crate::recording::Quantity;
 use crate::signals::Signals;
 use crate::study::Track;
 use crate::study::flights::Prepared;
-use crate::study::track::{CARRIES, OF_LOG};
+use crate::study::track::OF_LOG;
 use crate::text::significant;
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
@@ -206,13 +206,5 @@ fn sized_by(id: &str, carriers: &[usize], tracks: &[Track]) -> Option<Vec<usize>
             .max_by(|a, b| most(*a).total_cmp(&most(*b)))
             .map(|flight| vec![flight]);
     }
-    let others = |track: &Track| -> Vec<usize> {
-        (0..track.values.len()).filter(|flight| !carriers.contains(flight)).collect()
-    };
-    let differs = |track: &&Track| {
-        let (with, without) = (track.only(carriers).pooled(), track.only(&others(track)).pooled());
-        with.zip(without)
-            .is_some_and(|(with, without)| (with.0 - without.0).abs() > CARRIES * with.1.hypot(without.1))
-    };
-    own.iter().any(differs).then(|| carriers.to_vec())
+    own.iter().any(|track| track.differs_from_others(carriers)).then(|| carriers.to_vec())
 }

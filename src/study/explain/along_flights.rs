@@ -54,10 +54,11 @@ impl AlongFlights {
     #[must_use]
     pub fn flight_with_alone(&self, id: &str) -> Option<usize> {
         let of_one = || signature_of(id).is_some_and(is_of_one_flight);
-        let differs = self.sized_by.iter().any(|(of, _)| *of == id);
         let (_, carriers) = self.carried_by.iter().find(|(of, _)| *of == id)?;
-        let [flight] = carriers.as_deref()? else { return None };
-        (differs && of_one()).then_some(*flight)
+        let carriers = carriers.as_deref()?;
+        let [flight] = carriers else { return None };
+        let mut own = self.tracks.iter().filter(|track| track.effect == Some(id));
+        (of_one() && own.any(|track| track.differs_from_others(carriers))).then_some(*flight)
     }
 
     /// Whether a flight, fitted with the effects that were found, has the moments of inertia of the first one within their errors.

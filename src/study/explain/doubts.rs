@@ -28,7 +28,9 @@ impl ExplainStudy {
         };
         let of_body = |(index, of): (usize, BodyParameter)| {
             let moment = matches!(index, 0 | 1 | 4 | 6) && !of.weighed && of.not_determined.is_none();
-            let estimate = (of.after.value, of.after.std);
+            // the guess of the thrust is the mass's own
+            let std = if index == 0 { of.after.own_std() } else { of.after.std };
+            let estimate = (of.after.value, std);
             moment.then(|| Contradiction::of(NAMES[index], estimate, stated(vehicle, index)))?
         };
         let body = self.body().into_iter().enumerate().filter_map(of_body);
