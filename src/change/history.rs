@@ -28,7 +28,7 @@ pub fn steps<T>(
     there_and_back: f64,
 ) -> Vec<Step<T>> {
     let mut found = Vec::new();
-    search(0, flights, (judge, there_and_back), &mut found);
+    search(0, flights, (judge, 0.0, there_and_back), &mut found);
     found.sort_by_key(|step: &Step<T>| step.from);
     let borders: Vec<usize> =
         std::iter::once(0).chain(found.iter().map(|step| step.from)).chain([flights]).collect();
@@ -58,22 +58,25 @@ pub fn find_returns<T>(flights: usize, steps: &mut [Step<T>], is_same: &impl Fn(
     }
 }
 
+/// Judges two groups, the strength that a step needs, and that which one there and back needs.
+type Search<'a, T> = (&'a dyn Fn(&Groups) -> Option<(f64, T)>, f64, f64);
+
 fn search<T>(
     first: usize,
     end: usize,
-    (judge, there_and_back): (&impl Fn(&Groups) -> Option<(f64, T)>, f64),
+    (judge, least, there_and_back): Search<'_, T>,
     found: &mut Vec<Step<T>>,
 ) {
     let judged = (first + 1..end).filter_map(|from| {
         let groups = Groups { before: (first..from).collect(), after: (from..end).collect() };
-        let (strength, change) = judge(&groups)?;
+        let (strength, change) = judge(&groups).filter(|(strength, _)| *strength >= least)?;
         Some((strength, Step { from, groups, change, as_before: Vec::new() }))
     });
     if let Some((_, step)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) {
         let from = step.from;
         found.push(step);
-        search(first, from, (judge, there_and_back), found);
-        search(from, end, (judge, there_and_back), found);
+        search(first, from, (judge, least, there_and_back), found);
+        search(from, end, (judge, least, there_and_back), found);
     } else if let Some((from, to)) = middle(first, end, (judge, there_and_back)) {
         let others = || (first..from).chain(to..end).collect::<Vec<_>>();
         // beside its neighbours where they show it, otherwise beside all others
@@ -88,8 +91,9 @@ fn search<T>(
         let back = Groups { before: own(), after: (to..end).collect() };
         found.extend(step(from, there, Groups { before: others(), after: own() }));
         found.extend(step(to, back, Groups { before: own(), after: others() }));
+        // as many places as for the change in the middle
         for (first, end) in [(first, from), (from, to), (to, end)] {
-            search(first, end, (judge, there_and_back), found);
+            search(first, end, (judge, there_and_back, there_and_back), found);
         }
     }
 }
@@ -98,7 +102,7 @@ fn search<T>(
 fn middle<T>(
     first: usize,
     end: usize,
-    (judge, least): (&impl Fn(&Groups) -> Option<(f64, T)>, f64),
+    (judge, least): (&dyn Fn(&Groups) -> Option<(f64, T)>, f64),
 ) -> Option<(usize, usize)> {
     if end - first > MOST_THERE_AND_BACK {
         return None;

@@ -45,7 +45,7 @@ impl Judge<'_> {
                     add_rivals(&mut wide.change, &own.change);
                     out.push(wide);
                 }
-                _ if is_step(&own.change) && has_name(&own.change) => out.push(own),
+                _ if is_step(&own.change) && own.change.has_name() => out.push(own),
                 _ => out.push(step),
             }
             alike = vec![place + 1];
@@ -105,11 +105,6 @@ impl Judge<'_> {
         }
         found
     }
-}
-
-/// Whether what changed has a name.
-fn has_name(of: &Compared) -> bool {
-    !of.changes.iter().any(|change| change.what == Changed::Balance)
 }
 
 /// What other flights before say of the balance is another explanation of the same.

@@ -48,6 +48,13 @@ impl Judge<'_> {
         let found = steps(order.len(), &judged, there_and_back);
         let mut found = self.beside_loads(found, order, least_sigmas);
         let alone = self.each_alone(order, least_sigmas);
+        // what a flight alone has a name for
+        for step in &mut found {
+            let same = alone.iter().find(|other| other.from == step.from && other.change.has_name());
+            if let Some(named) = same.filter(|_| !step.change.has_name()) {
+                step.clone_from(named);
+            }
+        }
         let is_known = |from: usize| found.iter().any(|step| step.from == from);
         let new: Vec<Step<Compared>> = alone.into_iter().filter(|step| !is_known(step.from)).collect();
         let added: Vec<usize> = new.iter().map(|step| step.from).collect();

@@ -147,6 +147,11 @@ pub struct LeastChange {
 }
 
 impl Compared {
+    /// Whether what changed has a name.
+    pub(super) fn has_name(&self) -> bool {
+        !self.changes.iter().any(|change| change.what == Changed::Balance)
+    }
+
     /// Standard deviations of the strongest change; 0: none.
     #[must_use]
     pub fn strongest(&self) -> f64 {
