@@ -20,8 +20,8 @@ const MOST_THERE_AND_BACK: usize = 60;
 
 /// The steps of a row of flights, in order: the strongest divides the row, and its parts are searched as the whole was. `judge` gives
 /// what changed between two groups and how strong that is; `None` where nothing did. In a part that no step divides, flights in
-/// its middle may differ from those on both sides: there are many more places for that, so it needs a strength of `there_and_back`. In the
-/// end each step is judged by the flights between its neighbours, where these show it.
+/// its middle may differ from those on both sides: there are many more places for that, so it needs a strength of `there_and_back`, and
+/// so do changes beside it.
 pub fn steps<T>(
     flights: usize,
     judge: &impl Fn(&Groups) -> Option<(f64, T)>,
@@ -30,15 +30,6 @@ pub fn steps<T>(
     let mut found = Vec::new();
     search(0, flights, (judge, 0.0, there_and_back), &mut found);
     found.sort_by_key(|step: &Step<T>| step.from);
-    let borders: Vec<usize> =
-        std::iter::once(0).chain(found.iter().map(|step| step.from)).chain([flights]).collect();
-    for (place, step) in found.iter_mut().enumerate() {
-        let part = |part: usize| (borders[part]..borders[part + 1]).collect();
-        let groups = Groups { before: part(place), after: part(place + 1) };
-        if let Some((_, change)) = judge(&groups).filter(|_| groups != step.groups) {
-            (step.groups, step.change) = (groups, change);
-        }
-    }
     found
 }
 
@@ -59,7 +50,9 @@ pub fn find_returns<T>(flights: usize, steps: &mut [Step<T>], is_same: &impl Fn(
 }
 
 /// Judges two groups, the strength that a step needs, and that which one there and back needs.
-type Search<'a, T> = (&'a dyn Fn(&Groups) -> Option<(f64, T)>, f64, f64);
+type Search<'a, T> = (&'a Judge<'a, T>, f64, f64);
+/// How strong a change between two groups is, and what it is; `None` where nothing changed.
+type Judge<'a, T> = dyn Fn(&Groups) -> Option<(f64, T)> + 'a;
 
 fn search<T>(
     first: usize,
@@ -99,11 +92,7 @@ fn search<T>(
 }
 
 /// From and to of the flights within a part of a row that differ the most from those on both sides of them, if they do so enough.
-fn middle<T>(
-    first: usize,
-    end: usize,
-    (judge, least): (&dyn Fn(&Groups) -> Option<(f64, T)>, f64),
-) -> Option<(usize, usize)> {
+fn middle<T>(first: usize, end: usize, (judge, least): (&Judge<'_, T>, f64)) -> Option<(usize, usize)> {
     if end - first > MOST_THERE_AND_BACK {
         return None;
     }

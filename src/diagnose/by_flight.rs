@@ -312,15 +312,7 @@ fn flight_fit(
     (latency, forms): (LatencyFinding, Forms),
 ) -> Result<(Fitted, Vec<usize>), PhysicsError> {
     let after = fit(traces, base, Newton::Held)?;
-    let mut found = Search {
-        before: after.clone(),
-        after,
-        latency,
-        steps: Vec::new(),
-        last: Vec::new(),
-        by_wider_window: [f64::NAN; 3],
-        paths: Vec::new(),
-    };
+    let mut found = Search::of(after, latency);
     reconstruct(std::slice::from_ref(signals), traces, (forms, &mut found), None)?;
     let by_instruments = if is_fed_back(traces) {
         torques_by_instruments(traces, latency.std_s, &mut found.after)?

@@ -26,6 +26,7 @@ mod flight_rows;
 mod floors;
 mod followed;
 mod force_forms;
+mod force_terms;
 mod gates;
 mod grid_refinement;
 mod gyroscopic;

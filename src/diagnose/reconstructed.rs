@@ -7,19 +7,17 @@ use super::base::{Base, follows_force};
 use super::channels::Nuisance;
 use super::fit::{Fitted, Newton, evaluate, fit as fit_rows};
 use super::force_forms::{choose_forms, open_form};
+use super::force_terms::{begin_at, terms};
 use super::hausman::differ;
 use super::pooled_estimate::PooledEstimate;
-use super::signature::EffectTerm;
 use super::tested::Search;
 use super::trace::Trace;
-use crate::physics::{
-    Airframe, Condition, Hook, Input, MAX_ROTORS, PhysicsError, Rotors, State, effects_wrench,
-};
+use crate::physics::PhysicsError;
 use crate::reconstruction::{
     Fit, FitError, KnownLag, Path, Problem, ReconstructionError, Term, fit, fit_mode, force_problem,
 };
 use crate::signals::{Signals, ThrustSource};
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Standard deviation of a lag that the torques have told, s, beside its own. It is the period of a usual log, by
@@ -80,7 +78,7 @@ impl Reconstructed {
     /// These values of all free parameters, each with the same standard error.
     #[cfg(test)]
     pub(super) fn by_hand(base: Base, values: &[f64], std: f64) -> Self {
-        let term = |term: &EffectTerm| {
+        let term = |term: &super::signature::EffectTerm| {
             Term::new(term.effect(), term.values.clone(), term.free.clone(), vec![1e-3; term.free.len()])
         };
         let terms = base.effects.iter().map(term).collect();
@@ -183,19 +181,18 @@ impl Flights<'_> {
         for present in &mut open.effects {
             open_form(present);
         }
-        let terms = terms(&open).ok_or(Kept::OtherKind)?;
-        if terms.iter().all(|term| term.free.is_empty()) {
+        let of_open = terms(&open).ok_or(Kept::OtherKind)?;
+        if of_open.iter().all(|term| term.free.is_empty()) {
             return Err(Kept::NoForce);
         }
         let mut opened: Option<PooledEstimate> = None;
         let has_forms = open.effects.iter().any(|present| present.signature.role.with_speed.is_some());
         if has_forms && self.forms == Forms::Chosen {
-            let pooled = self.pooled_over_flights((fitted, &open), &terms, fit_mode, paths)?;
-            choose_forms(&mut base, &terms, &pooled);
+            let pooled = self.pooled_over_flights((fitted, &open), &of_open, fit_mode, paths)?;
+            choose_forms(&mut base, &of_open, &pooled);
             opened = Some(pooled);
         }
-        let of_open = terms;
-        let mut terms = self::terms(&base).ok_or(Kept::OtherKind)?;
+        let mut terms = terms(&base).ok_or(Kept::OtherKind)?;
         if let Some(pooled) = &opened {
             begin_at(&mut terms, &of_open, pooled);
         }
@@ -223,58 +220,6 @@ impl Flights<'_> {
 
 /// A fit of states and parameters.
 type Estimate = fn(Problem, &[usize]) -> Result<Fit, FitError>;
-
-/// Free values of effects at those that another fit of the same effects found.
-fn begin_at(terms: &mut [Term], opened: &[Term], pooled: &PooledEstimate) {
-    let mut first = 1;
-    for (term, open) in terms.iter_mut().zip(opened) {
-        for &slot in &term.free {
-            if let Some(place) = open.free.iter().position(|free| *free == slot) {
-                term.values[slot] = pooled.values[first + place];
-            }
-        }
-        first += open.free.len();
-    }
-}
-
-/// The effects of the model with those of their parameters free that the forces tell; `None` where one of them has states or
-/// changes what sensors show.
-fn terms(base: &Base) -> Option<Vec<Term>> {
-    let airframe = Airframe::new(&base.vehicle).ok()?;
-    let one = |term: &EffectTerm| {
-        let effect = term.effect();
-        if effect.hooks().contains(&Hook::Sensors) || effect.state_count(&airframe) > 0 {
-            return None;
-        }
-        let role = &term.signature.role;
-        let told = |slot: &usize| {
-            let of_form = role.with_speed.is_some_and(|(own, _)| own == *slot);
-            let by_force = role.wind.is_some() || role.of_air && pushes(term, *slot, &airframe, base);
-            by_force && (term.is_amount(*slot) || of_form)
-        };
-        let free: Vec<usize> = term.free.iter().copied().filter(told).collect();
-        let steps = free.iter().map(|&slot| term.step_of(slot, &base.size)).collect();
-        Some(Term::new(effect, term.values.clone(), free, steps))
-    };
-    base.effects.iter().map(one).collect()
-}
-
-/// Whether a value of an effect of the air changes the force, and not the torque alone: in forward flight and climb, or in a
-/// descent.
-fn pushes(term: &EffectTerm, slot: usize, airframe: &Airframe, base: &Base) -> bool {
-    let rotors = Rotors::as_commanded(airframe, &[1.1; MAX_ROTORS]);
-    let input = Input { speed_command: rotors.speed, ..Input::from_commands(airframe, 0.0, &[]) };
-    let mut moved = term.values.clone();
-    moved[slot] += term.step_of(slot, &base.size);
-    [Vector3::new(2.0, -1.0, 1.5), Vector3::new(0.5, 0.3, -3.0)].into_iter().any(|velocity_m_s| {
-        let state = State { velocity_m_s, ..State::at_rest(Vector3::z(), 0.3) };
-        let at = Condition::new(airframe, &state, &input, Vector3::zeros());
-        let force_n = |parameters: &[f64]| {
-            effects_wrench(std::iter::once((term.effect(), parameters)), &at, &rotors).force_n
-        };
-        force_n(&moved) != force_n(&term.values)
-    })
-}
 
 fn known_lag(fitted: &Fitted, signals: &Signals, std_s: f64) -> KnownLag {
     if signals.quality.thrust_source == ThrustSource::MeasuredSpeed {

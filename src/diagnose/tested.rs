@@ -62,3 +62,18 @@ pub struct Search {
     /// of each flight, once its forces were estimated with it
     pub(super) paths: Vec<Path>,
 }
+
+impl Search {
+    /// Of a model that was not searched for.
+    pub(super) fn of(after: Fitted, latency: LatencyFinding) -> Self {
+        Self {
+            before: after.clone(),
+            after,
+            latency,
+            steps: Vec::new(),
+            last: Vec::new(),
+            by_wider_window: [f64::NAN; 3],
+            paths: Vec::new(),
+        }
+    }
+}

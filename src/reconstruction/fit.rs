@@ -15,8 +15,9 @@ const ROUNDS: usize = 14;
 /// Round from which on noise levels stay. The last rounds need a criterion that does not change, or they would not
 /// converge.
 const LEARNED_UNTIL: usize = 9;
-/// Round that a fit begins with where it begins at the path of another one: levels are learned twice more.
-const FROM_PATH: usize = 6;
+/// Round that a fit begins with where it begins at the path of another one. Its levels stay: learned on and on they would move along the
+/// ridge of process and accelerometer, and the scale with them.
+const FROM_PATH: usize = LEARNED_UNTIL;
 /// A step smaller than this share of every standard error ends the fit.
 const SMALL: f64 = 0.01;
 /// A fit whose last step was larger than this many standard errors has not converged.
@@ -95,8 +96,7 @@ impl<'a> Iterate<'a> {
         for round in self.first_round..ROUNDS {
             let turn = self.linearised()?;
             self.moved(&turn);
-            // the residuals of where a fit begins are no solution's
-            if round > self.first_round.max(1) && round < LEARNED_UNTIL {
+            if round > 1 && round < LEARNED_UNTIL {
                 self.learn(&turn, round);
             }
             let is_small = |(at, step): (usize, &f64)| step.abs() < SMALL * turn.covariance[(at, at)].sqrt();

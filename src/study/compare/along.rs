@@ -92,7 +92,13 @@ impl Judge<'_> {
         };
         let new = |later: usize| {
             let each = (0..later).map(|earlier| against(later, earlier)).collect::<Option<Vec<_>>>()?;
-            let least = each.iter().min_by(|a, b| a.change.strongest().total_cmp(&b.change.strongest()))?;
+            // that with a name, if there is one
+            let weaker = |a: &&Step<Compared>, b: &&Step<Compared>| {
+                let key = |step: &Step<Compared>| (!step.change.has_name(), step.change.strongest());
+                let ((one, a), (other, b)) = (key(a), key(b));
+                one.cmp(&other).then(a.total_cmp(&b))
+            };
+            let least = each.iter().min_by(weaker)?;
             let mut step = least.clone();
             each.iter().for_each(|other| add_rivals(&mut step.change, &other.change));
             Some(step)

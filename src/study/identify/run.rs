@@ -16,7 +16,7 @@ use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::Known;
 use crate::study::{InputFile, Progress, Stage, StudyError};
 use crate::text;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Guessed, Vehicle};
 use std::path::Path;
 
 /// Estimates mass and inertia from logs, and the effects that are asked for together with them.
@@ -38,7 +38,13 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     notes.iter().for_each(|note| progress.note(note));
     progress.stage(Stage::Identifying);
     let beside = request.conditioning_beside();
-    let by_motion = prepare_by_motion(logs.clone(), (&known.loaded.vehicle, known.origin.as_path()), &beside);
+    let of_file = (&known.loaded.vehicle, known.origin.as_path());
+    // a guess stays with its error, and what is stated and impossible does not
+    let by_motion = if known.loaded.vehicle.guessed(Guessed::TorqueRatio) > 0.0 {
+        prepare(logs.clone(), of_file, &beside).map(|flights| (flights, None))
+    } else {
+        prepare_by_motion(logs.clone(), of_file, &beside)
+    };
     let (prepared, corrected) = by_motion
         .map_err(|error| error.to_string())
         .map_or_else(|error| (Err(error), None), |(flights, corrected)| (Ok(flights), corrected));
@@ -46,12 +52,7 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     if let Some((corrected, why)) = corrected {
         known.loaded.vehicle = corrected;
         progress.note(&why);
-        // a warning is in the quality of the flights
-        if why.is_warning() {
-            contradiction = Some(why);
-        } else {
-            notes.push(why);
-        }
+        contradiction = Some(why);
     }
     let with = wanted.map(|wanted| with_effects(request, (&logs, &known), &wanted));
     let with = with.transpose().map_err(or_unflown)?;
