@@ -148,6 +148,8 @@ pub struct FlightApart {
     mass_factor: f64,
     /// a moment of inertia is apart, and not by the factor of the mass as where the thrust differs
     by_moments: bool,
+    /// izz alone is apart
+    about_z_alone: bool,
 }
 
 impl FlightApart {
@@ -155,6 +157,12 @@ impl FlightApart {
     #[must_use]
     pub fn told(&self) -> String {
         format!("{}: two vehicles or two loads? The common estimate describes neither", self.found)
+    }
+
+    /// Whether izz alone is apart: it goes with the law of the rotors' torque, and a flight that hardly turns tells little of it.
+    #[must_use]
+    pub fn is_about_z_alone(&self) -> bool {
+        self.about_z_alone
     }
 
     /// Whether moments of inertia alone are apart, and the masses are not by more than a payload and a battery explain.
@@ -186,7 +194,7 @@ impl FlightApart {
 }
 
 /// The flights whose estimates alone are further from the first one's than those of one vehicle are. A moment of inertia counts only where
-/// the rigid body explains the torque in both flights at all frequencies, and izz not alone: it goes with the law of the rotors' torque.
+/// the rigid body explains the torque in both flights at all frequencies.
 #[must_use]
 pub fn flights_apart(flights: &[Option<Estimated>]) -> Vec<FlightApart> {
     let Some(of_first) = flights.first().and_then(Option::as_ref) else { return Vec::new() };
@@ -207,9 +215,6 @@ pub fn flights_apart(flights: &[Option<Estimated>]) -> Vec<FlightApart> {
         let theta = &flight.theta;
         let all: Vec<(usize, f64)> =
             [0, 1, 4, 6].into_iter().filter_map(|index| far(flight, index)).collect();
-        if all.iter().all(|(index, _)| NAMES[*index] == ABOUT_Z) {
-            return None;
-        }
         let (index, sigma) = *all.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let name = if index == 0 { "a mass".to_owned() } else { format!("an {}", NAMES[index]) };
         let unit = UNITS[index];
@@ -225,9 +230,8 @@ pub fn flights_apart(flights: &[Option<Estimated>]) -> Vec<FlightApart> {
                 first[index]
             ),
             mass_factor,
-            by_moments: all
-                .iter()
-                .any(|(index, _)| *index > 0 && NAMES[*index] != ABOUT_Z && unlike_mass(*index)),
+            by_moments: all.iter().any(|(index, _)| *index > 0 && unlike_mass(*index)),
+            about_z_alone: all.iter().all(|(index, _)| NAMES[*index] == ABOUT_Z),
         })
     };
     flights.iter().enumerate().skip(1).filter_map(told).collect()

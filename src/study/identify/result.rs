@@ -131,8 +131,10 @@ impl IdentifyStudy {
             Err(why) => rigid_body_alone(&mut identification, &vehicle, why),
         }
         let thrust_differs = effects.iter().any(|id| signature_of(id).is_some_and(Signature::alters_thrust));
-        let disagree = identification.apart.iter().any(|flight| flight.is_other_vehicle(thrust_differs));
-        identification.notes.extend(identification.apart.iter().map(|flight| flight.note(thrust_differs)));
+        let apart = || identification.apart.iter().filter(|flight| !flight.is_about_z_alone());
+        let disagree = apart().any(|flight| flight.is_other_vehicle(thrust_differs));
+        let told: Vec<Note> = apart().map(|flight| flight.note(thrust_differs)).collect();
+        identification.notes.extend(told);
         identification.best.result.emit();
         let scale = apply_anchor(&mut identification, &vehicle);
         let joint = |result: &&mut MethodResult| result.method == Method::Joint;
