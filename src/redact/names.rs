@@ -27,11 +27,14 @@ pub(super) fn coordinate(name: &str) -> Option<Coordinate> {
     None
 }
 
-/// Whether a field of this name tells one piece of hardware from others of its kind.
+/// Whether a field of this name tells one piece of hardware from others of its kind, or one place from others: what the autopilot's table of
+/// the magnetic field has for the place tells it to some metres.
 pub(super) fn is_identity(name: &str) -> bool {
     let words = words(name);
     let has = |wanted: &str| words.iter().any(|word| word == wanted);
-    has("UID")
+    let of_field = || has("DECLINATION") || has("DECL") || has("INCLINATION") || has("STRENGTH");
+    has("MAG") && of_field()
+        || has("UID")
         || has("UUID")
         || has("GUID")
         || has("ICAO")
@@ -93,7 +96,9 @@ mod tests {
         for name in ["lateral_acceleration", "alt", "LONGSHOT", "x"] {
             assert_eq!(coordinate(name), None, "{name}");
         }
-        for name in ["device_id", "serial_number", "uid", "UID1"] {
+        for name in
+            ["device_id", "serial_number", "uid", "UID1", "mag_inclination_ref_deg", "mag_strength_ref_gs"]
+        {
             assert!(is_identity(name), "{name}");
         }
         for name in
