@@ -53,10 +53,9 @@ pub(super) fn reconstruct(
     start: Option<&Base>,
 ) -> Result<bool, PhysicsError> {
     let flights = Flights { signals, latency_std_s: found.latency.std_s, forms };
-    let mut paths = found.paths.clone();
-    match flights.sizes(traces, &found.after, start.unwrap_or(&found.after.base), &mut paths)? {
-        Ok(after) => {
-            (found.after, found.paths) = (after, paths);
+    match flights.sizes(traces, &found.after, start.unwrap_or(&found.after.base), &found.paths)? {
+        Ok(told) => {
+            (found.after, found.paths) = told;
             Ok(true)
         }
         Err(why) => {
@@ -72,6 +71,8 @@ pub(super) struct Reconstructed {
     pub(super) base: Base,
     terms: Vec<Term>,
     pooled: PooledEstimate,
+    /// of each flight
+    paths: Vec<Path>,
 }
 
 impl Reconstructed {
@@ -85,7 +86,7 @@ impl Reconstructed {
         let values =
             DVector::from_iterator(values.len() + 1, std::iter::once(1.0).chain(values.iter().copied()));
         let covariance = DMatrix::identity(values.len(), values.len()) * (std * std);
-        Self { base, terms, pooled: PooledEstimate { values, covariance } }
+        Self { base, terms, pooled: PooledEstimate { values, covariance }, paths: Vec::new() }
     }
 
     /// Estimates, SI, and covariance of those `slots` of the effect at `place` that the forces tell.
@@ -124,11 +125,10 @@ pub(super) fn reconstructed_with(
     base: Base,
 ) -> Option<Reconstructed> {
     let flights = Flights { signals, latency_std_s: found.latency.std_s, forms: Forms::Chosen };
-    let mut paths = found.paths.clone();
-    let (base, terms, pooled) = flights.estimated(&found.after, base, &mut paths).ok()?;
-    plausible_scale(pooled.values[0]).ok()?;
-    found.paths = paths;
-    Some(Reconstructed { base, terms, pooled })
+    let told = flights.estimated(&found.after, base, &found.paths).ok()?;
+    plausible_scale(told.pooled.values[0]).ok()?;
+    found.paths.clone_from(&told.paths);
+    Some(told)
 }
 
 /// Why the sizes stay as they were.
@@ -161,22 +161,19 @@ impl Flights<'_> {
         traces: &[Trace],
         fitted: &Fitted,
         start: &Base,
-        paths: &mut Vec<Path>,
-    ) -> Result<Result<Fitted, Kept>, PhysicsError> {
-        match self.estimated(fitted, start.clone(), paths) {
-            Ok((base, terms, pooled)) => replaced(traces, (fitted, base), &terms, &pooled),
+        begun: &[Path],
+    ) -> Result<Result<(Fitted, Vec<Path>), Kept>, PhysicsError> {
+        match self.estimated(fitted, start.clone(), begun) {
+            Ok(Reconstructed { base, terms, pooled, paths }) => {
+                Ok(replaced(traces, (fitted, base), &terms, &pooled)?.map(|after| (after, paths)))
+            }
             Err(why) => Ok(Err(why)),
         }
     }
 
-    /// The base in the forms that the forces show, its effects as terms, and their values; the latency is that of the fit. It begins at
-    /// the `paths` of the flights, where an estimate with other effects left some, and leaves its own.
-    fn estimated(
-        &self,
-        fitted: &Fitted,
-        mut base: Base,
-        paths: &mut Vec<Path>,
-    ) -> Result<(Base, Vec<Term>, PooledEstimate), Kept> {
+    /// The base in the forms that the forces show, and its values; the latency is that of the fit. It begins at the paths of the flights
+    /// (`begun`), where an estimate with other effects left some.
+    fn estimated(&self, fitted: &Fitted, mut base: Base, begun: &[Path]) -> Result<Reconstructed, Kept> {
         let mut open = base.clone();
         for present in &mut open.effects {
             open_form(present);
@@ -185,19 +182,23 @@ impl Flights<'_> {
         if of_open.iter().all(|term| term.free.is_empty()) {
             return Err(Kept::NoForce);
         }
-        let mut opened: Option<PooledEstimate> = None;
+        let mut opened: Option<(PooledEstimate, Vec<Path>)> = None;
         let has_forms = open.effects.iter().any(|present| present.signature.role.with_speed.is_some());
         if has_forms && self.forms == Forms::Chosen {
-            let pooled = self.pooled_over_flights((fitted, &open), &of_open, fit_mode, paths)?;
+            let (pooled, paths) = self.pooled_over_flights((fitted, &open), &of_open, fit_mode, begun)?;
             choose_forms(&mut base, &of_open, &pooled);
-            opened = Some(pooled);
+            opened = Some((pooled, paths));
         }
         let mut terms = terms(&base).ok_or(Kept::OtherKind)?;
-        if let Some(pooled) = &opened {
-            begin_at(&mut terms, &of_open, pooled);
-        }
-        let pooled = self.pooled_over_flights((fitted, &base), &terms, fit, paths)?;
-        Ok((base, terms, pooled))
+        let begun = match &opened {
+            Some((pooled, paths)) => {
+                begin_at(&mut terms, &of_open, pooled);
+                paths
+            }
+            None => begun,
+        };
+        let (pooled, paths) = self.pooled_over_flights((fitted, &base), &terms, fit, begun)?;
+        Ok(Reconstructed { base, terms, pooled, paths })
     }
 
     fn pooled_over_flights(
@@ -205,16 +206,15 @@ impl Flights<'_> {
         (fitted, base): (&Fitted, &Base),
         terms: &[Term],
         estimate: Estimate,
-        paths: &mut Vec<Path>,
-    ) -> Result<PooledEstimate, Kept> {
+        begun: &[Path],
+    ) -> Result<(PooledEstimate, Vec<Path>), Kept> {
         let one = |(index, signals): (usize, &Signals)| {
             let lag = known_lag(fitted, signals, self.latency_std_s);
-            fitted_flight((signals, base, lag), terms, estimate, paths.get(index))
+            fitted_flight((signals, base, lag), terms, estimate, begun.get(index))
         };
         let fits: Vec<Fit> = self.signals.par_iter().enumerate().map(one).collect::<Result<_, _>>()?;
-        let pooled = PooledEstimate::of(&fits, terms).ok_or(Kept::Singular);
-        *paths = fits.into_iter().map(|fit| fit.path).collect();
-        pooled
+        let pooled = PooledEstimate::of(&fits, terms).ok_or(Kept::Singular)?;
+        Ok((pooled, fits.into_iter().map(|fit| fit.path).collect()))
     }
 }
 

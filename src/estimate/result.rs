@@ -238,7 +238,6 @@ fn unexplained(estimated: &Estimated, index: usize) -> Option<String> {
     })
 }
 
-/// The reason if the inertia about one of the parameter's axes depends on the window.
 /// Whether a moment of inertia depends on the band of frequencies, by its ratio (-) from a window of twice the width: the torque then answers
 /// the motion (feedback control). NaN says nothing.
 #[must_use]
@@ -246,6 +245,7 @@ pub fn depends_on_band(ratio: f64) -> bool {
     ratio.is_finite() && !(1.0 / LARGEST_WINDOW_FACTOR..=LARGEST_WINDOW_FACTOR).contains(&ratio)
 }
 
+/// The reason if the inertia about one of the parameter's axes depends on the window.
 fn of_feedback(estimated: &Estimated, index: usize) -> Option<String> {
     let ratios = estimated.by_wider_window?;
     axes_of(index).iter().find(|axis| depends_on_band(ratios[**axis])).map(|axis| {

@@ -9,6 +9,7 @@ use crate::diagnose::channels::{AXES, CHANNEL_NAMES, CHANNELS, Nuisance};
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::fit::{Fitted, evaluate};
 use crate::diagnose::signature::EffectTerm;
+use crate::diagnose::tested::Search;
 use crate::estimate::{INERTIA_ENTRIES, NAMES, UNITS, depends_on_band, inertia_by_wider_window};
 use crate::physics::PhysicsError;
 use crate::vehicle::Vehicle;
@@ -32,13 +33,7 @@ pub(super) fn judged(
     let is_one_model = of_each.iter().all(|of| std::ptr::eq(of.explanation, explanation));
     let mut all: Vec<Agreement> = Vec::new();
     for ((own, of), ready) in weak.own.iter().zip(of_each).zip(ready) {
-        let model = &of.explanation.search;
-        let mut found = agreements(own, &model.after);
-        keep_of_all_bands(&mut found, || {
-            let of_flight =
-                inertia_by_wider_window(std::slice::from_ref(ready.flight.signals), &own.base.vehicle);
-            [of_flight, model.by_wider_window]
-        });
+        let found = of_flight(ready, own, &of.explanation.search);
         if is_one_model {
             let (pairs, alone) = matched(found, all);
             all = pairs.into_iter().map(|(one, all)| pooled(all, &one)).chain(alone).collect();
@@ -88,6 +83,18 @@ pub(super) fn judged(
     Ok((all, by_parameters.or_else(|| by_what_is_left(identified, (weak, alike, faster), whose))))
 }
 
+/// A held-out flight's own fit against the model of a search.
+fn of_flight(ready: &Ready, own: &Fitted, model: &Search) -> Vec<Agreement> {
+    let mut found = agreements(own, &model.after);
+    keep_of_all_bands(&mut found, || [by_wider_window(ready.flight, own), model.by_wider_window]);
+    found
+}
+
+/// Ixx, Iyy, Izz of a flight's rigid body by a window of twice the width, as shares of those by the usual one.
+fn by_wider_window(flight: &HeldOut, own: &Fitted) -> [f64; 3] {
+    inertia_by_wider_window(std::slice::from_ref(flight.signals), &own.base.vehicle)
+}
+
 /// Reason why flights should not have been explained together: the own linear step of each at the common model,
 /// compared with that of the first. `None` if there is no reason.
 ///
@@ -115,10 +122,7 @@ pub fn differing(
             ..own
         });
         let mut pairs: Vec<Agreement> = pairs.collect();
-        keep_of_all_bands(&mut pairs, || {
-            [&flights[0], flight]
-                .map(|of| inertia_by_wider_window(std::slice::from_ref(of.signals), &shared.base.vehicle))
-        });
+        keep_of_all_bands(&mut pairs, || [&flights[0], flight].map(|of| by_wider_window(of, shared)));
         let differs = |pair: &&Agreement| pair.differs() && !pair.is_by_a_load();
         let different: Vec<String> = pairs.iter().filter(differs).map(described).collect();
         if !different.is_empty() {

@@ -53,13 +53,26 @@ impl Judge<'_> {
         out
     }
 
-    /// The steps of a row, judged again where a new step (of those that begin at `added`) is their neighbour: what it took with it is none.
-    pub(super) fn beside_new(
+    /// The steps of a row with those that flights show alone. Where only the flight alone has a name for what changed, the step is its. A step
+    /// of the row beside one of a flight alone is judged again: what that one accounts for is no step.
+    pub(super) fn with_alone(
         &self,
-        found: Vec<Step<Compared>>,
-        added: &[usize],
+        mut found: Vec<Step<Compared>>,
+        alone: Vec<Step<Compared>>,
         order: &[usize],
     ) -> Vec<Step<Compared>> {
+        let mut added: Vec<usize> = Vec::new();
+        for of_flight in alone {
+            match found.iter_mut().find(|step| step.from == of_flight.from) {
+                Some(step) if !step.change.has_name() && of_flight.change.has_name() => *step = of_flight,
+                Some(_) => {}
+                None => {
+                    added.push(of_flight.from);
+                    found.push(of_flight);
+                }
+            }
+        }
+        found.sort_by_key(|step| step.from);
         let borders: Vec<usize> =
             std::iter::once(0).chain(found.iter().map(|step| step.from)).chain([order.len()]).collect();
         let part = |place: usize| (borders[place]..borders[place + 1]).collect();

@@ -46,21 +46,8 @@ impl Judge<'_> {
             (strongest >= at_a_border).then_some((strongest, compared))
         };
         let found = steps(order.len(), &judged, there_and_back);
-        let mut found = self.beside_loads(found, order, least_sigmas);
-        let alone = self.each_alone(order, least_sigmas);
-        // what a flight alone has a name for
-        for step in &mut found {
-            let same = alone.iter().find(|other| other.from == step.from && other.change.has_name());
-            if let Some(named) = same.filter(|_| !step.change.has_name()) {
-                step.clone_from(named);
-            }
-        }
-        let is_known = |from: usize| found.iter().any(|step| step.from == from);
-        let new: Vec<Step<Compared>> = alone.into_iter().filter(|step| !is_known(step.from)).collect();
-        let added: Vec<usize> = new.iter().map(|step| step.from).collect();
-        found.extend(new);
-        found.sort_by_key(|step| step.from);
-        let mut found = self.beside_new(found, &added, order);
+        let found = self.beside_loads(found, order, least_sigmas);
+        let mut found = self.with_alone(found, self.each_alone(order, least_sigmas), order);
         find_returns(order.len(), &mut found, &|groups, step: &Compared| {
             let compared = self.compared(&flight_groups(groups, order));
             compared.changes.is_empty() && step.certain().all(|change| compared.would_show(change))

@@ -120,16 +120,21 @@ impl ExplainStudy {
         self.effects = for_readers(&self.explanation.named, self.explanation.airspeed_m_s);
         self.tell_payloads(flights);
         along.of_one_flight = self.names_of_one_flight(flights, alone, !along.sized_by.is_empty());
-        for named in &self.explanation.named {
-            if let Some(flight) = along.flight_with_alone(named.id) {
-                let text = format!(
-                    "{} is this flight's alone: the model of the vehicle is without it",
-                    called(named.id)
-                );
-                self.notes.push(Note::remark(About::File(self.given.inputs[flight].path.clone()), text));
-            }
-        }
+        self.tell_alone(&along);
         self.along = Some(along);
+    }
+
+    /// A remark on each name that one flight has alone.
+    fn tell_alone(&mut self, along: &AlongFlights) {
+        let told = self.explanation.named.iter().filter_map(|named| {
+            let path = self.given.inputs[along.flight_with_alone(named.id)?].path.clone();
+            let text = format!(
+                "{} is this flight's alone: the model of the vehicle is without it",
+                called(named.id)
+            );
+            Some(Note::remark(About::File(path), text))
+        });
+        self.notes.extend(told);
     }
 
     /// A remark on each flight that flew with another load than the others.

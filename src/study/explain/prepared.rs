@@ -164,16 +164,7 @@ impl Task<'_> {
                     return Ok((study, notes));
                 }
             };
-            // what would take its place has no more to stand on
-            let terms = &study.explanation.search.after.base.effects;
-            // drag along z is a part of the drag that was taken back
-            let is_part = |of: &str| {
-                let whole = signature_of(of).and_then(|of| of.role.axial_part_of);
-                is_unshown && whole.is_some_and(|whole| whole.id() == id)
-            };
-            let stays = |of: &str| of != id && !is_part(of) && terms.iter().any(|term| term.id() == of);
-            let ids = settings.signatures.iter().map(|signature| signature.id());
-            let gone: Vec<&str> = ids.filter(|id| !stays(id)).collect();
+            let gone = gone_with((id, is_unshown), &study, &settings);
             settings.refused.extend(gone);
             notes.push(note);
             self.progress.stage(Stage::ExplainingAgain);
@@ -271,6 +262,23 @@ impl Task<'_> {
         }
         Ok(of_part)
     }
+}
+
+/// The effects that a flight is explained without after one (`id`) was taken back: what would take its place has no more to stand on. Of one
+/// that the flight does not show (`is_unshown`), a part of it goes too, as drag along z of a drag.
+fn gone_with(
+    (id, is_unshown): (&str, bool),
+    study: &ExplainStudy,
+    settings: &ExplainSettings,
+) -> Vec<&'static str> {
+    let terms = &study.explanation.search.after.base.effects;
+    let is_part = |of: &str| {
+        let whole = signature_of(of).and_then(|of| of.role.axial_part_of);
+        is_unshown && whole.is_some_and(|whole| whole.id() == id)
+    };
+    let stays = |of: &str| of != id && !is_part(of) && terms.iter().any(|term| term.id() == of);
+    let ids = settings.signatures.iter().map(|signature| signature.id());
+    ids.filter(|id| !stays(id)).collect()
 }
 
 /// The part held back is another's, or what is left of the part explained drifts with time.

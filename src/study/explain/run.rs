@@ -7,6 +7,7 @@ use super::result::ExplainStudy;
 use crate::config::effects_of;
 use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
+use crate::draft::Draft;
 use crate::note::{About, Note, said_once};
 use crate::signals::{ConditionSettings, STEP_FOR_EFFECTS_S, Signals, ThrustPreference, other_settings};
 use crate::study::flights::{EXPLAINED, Prepared, load_all, prepare, prepare_by_motion, refuse_off_mixer};
@@ -64,14 +65,8 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     };
     let (mut flights, corrected) =
         prepare_by_motion(logs, (&vehicle, &origin), &settings).map_err(or_unflown)?;
-    if let Some((corrected, why)) = corrected {
-        if let Some(draft) = &mut draft {
-            draft.vehicle = corrected.clone();
-            draft.origins.push(why.text.clone());
-        }
-        vehicle = corrected;
-        // a warning is among those of the recordings
-        notes.extend(Some(why).filter(|why| !why.is_warning()));
+    if let Some(corrected) = corrected {
+        notes.extend(take_corrected(corrected, &mut vehicle, draft.as_mut()));
     }
     let mut held = prepare(held, (&vehicle, &origin), &settings).map_err(of_holdout)?;
     refuse_shared(&flights, &held)?;
@@ -92,6 +87,20 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
         study.next_flight = Some(design(&study.explanation, &flights.signals, &inside, &settings, &step));
     }
     Ok(study)
+}
+
+/// Takes the vehicle that the motion allows, also into a draft. Returns what is to be said of it; a warning is among those of the recordings.
+fn take_corrected(
+    (corrected, why): (Vehicle, Note),
+    vehicle: &mut Vehicle,
+    draft: Option<&mut Draft>,
+) -> Option<Note> {
+    if let Some(draft) = draft {
+        draft.vehicle = corrected.clone();
+        draft.origins.push(why.text.clone());
+    }
+    *vehicle = corrected;
+    Some(why).filter(|why| !why.is_warning())
 }
 
 /// What is doubtful about the vehicle's file.

@@ -40,20 +40,20 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     let beside = request.conditioning_beside();
     let of_file = (&known.loaded.vehicle, known.origin.as_path());
     // a guess stays with its error, and what is stated and impossible does not
-    let by_motion = if known.loaded.vehicle.guessed(Guessed::TorqueRatio) > 0.0 {
+    let prepared = if known.loaded.vehicle.guessed(Guessed::TorqueRatio) > 0.0 {
         prepare(logs.clone(), of_file, &beside).map(|flights| (flights, None))
     } else {
         prepare_by_motion(logs.clone(), of_file, &beside)
     };
-    let (prepared, corrected) = by_motion
-        .map_err(|error| error.to_string())
-        .map_or_else(|error| (Err(error), None), |(flights, corrected)| (Ok(flights), corrected));
-    let mut contradiction = None;
-    if let Some((corrected, why)) = corrected {
+    let (prepared, corrected) = match prepared {
+        Ok((flights, corrected)) => (Ok(flights), corrected),
+        Err(error) => (Err(error.to_string()), None),
+    };
+    let contradiction = corrected.map(|(corrected, why)| {
         known.loaded.vehicle = corrected;
         progress.note(&why);
-        contradiction = Some(why);
-    }
+        why
+    });
     let with = wanted.map(|wanted| with_effects(request, (&logs, &known), &wanted));
     let with = with.transpose().map_err(or_unflown)?;
     let vehicle = (&known.loaded.vehicle, known.origin.as_path());
