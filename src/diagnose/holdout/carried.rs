@@ -1,6 +1,6 @@
 //! Transfer of the identified model to another flight.
 
-use super::loading::{Loaded, loaded};
+use super::loading::{Loaded, has_other_mass, loaded};
 use super::rate_law::RateLaw;
 use super::settings::{Explained, HeldOut, HoldoutSettings};
 use crate::diagnose::base::Base;
@@ -23,6 +23,8 @@ pub(super) struct Pair {
     pub(super) after: Base,
     /// with the flight's own centre of mass, where its beginning shows another one: what is predicted with
     pub(super) loaded: Option<LoadedPair>,
+    /// the flight begins with another mass, and is predicted with that of the model
+    pub(super) other_mass: bool,
     /// how the rates of both models move in open loop: it is no merit of the effects
     pub(super) rate_law: Option<RateLaw>,
     /// parameters that were not kept, as sentences
@@ -86,7 +88,7 @@ pub(super) fn pair(explained: Explained, vehicle: &Vehicle, command_period_s: f6
     if let Some(term) = empirical {
         after.vehicle.body.mass_kg += term.mass_change_kg;
     }
-    Pair { before, after, loaded: None, rate_law, notes: Vec::new() }
+    Pair { before, after, loaded: None, other_mass: false, rate_law, notes: Vec::new() }
 }
 
 /// The pair on a flight that was explained, with what is its own.
@@ -133,6 +135,7 @@ pub(super) fn carried_over(
         let text = "the battery's voltage is not recorded, so its sag is left out";
         pair.notes.push(Note::warning(about(), text));
     }
+    pair.other_mass = !settings.same_flight && !settings.own_mass && has_other_mass(&pair.after, trace)?;
     pair.own(trace, f64::NEG_INFINITY);
     if let Some(after) = loaded(&pair.after, trace, settings)? {
         pair.notes.push(Note::warning(about(), of_load(&after)));
@@ -156,7 +159,7 @@ fn of_load(load: &Loaded) -> String {
     }));
     own.extend(load.more_kg.map(|kg| {
         format!(
-            "its mass differs from that of the flights that predict it by {} kg, a payload",
+            "its mass by the thrust differs from that of the flights that predict it by {} kg: a payload, or another battery",
             significant(kg, 2)
         )
     }));

@@ -64,6 +64,7 @@ pub fn on_left_out(
     let closed_loop = closed_loop::flown_again(&ready, empirical, vehicle, settings);
     let improvement = improvement_percent.map(|improvement| improvement.value);
     let another = other_vehicle.is_some();
+    let other_mass = ready.iter().any(|ready| ready.pair.other_mass);
     notes.extend(as_written(&mut ready, empirical, settings));
     tracing::info!(improvement_percent = improvement, blocks, other_vehicle = another, "hold-out predicted");
     notes.push(Note::remark(
@@ -79,6 +80,7 @@ pub fn on_left_out(
         closed_loop,
         agreement,
         other_vehicle,
+        other_mass,
         notes,
     })
 }

@@ -24,6 +24,8 @@ pub struct HoldoutFit {
     pub agreement: Vec<Agreement>,
     /// the reason why the held-out flights cannot be of the identified vehicle
     pub other_vehicle: Option<OtherVehicle>,
+    /// a flight begins with another mass than the model's, with which it is predicted here: a payload, or another battery
+    pub other_mass: bool,
     /// notes on parameters that were not kept or are not known
     pub notes: Vec<Note>,
 }

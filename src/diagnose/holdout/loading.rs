@@ -67,6 +67,15 @@ pub(super) fn loaded(
     }))
 }
 
+/// Whether the beginning of a flight shows another mass than the base has.
+pub(super) fn has_other_mass(base: &Base, trace: &Trace) -> Result<bool, PhysicsError> {
+    let mut all = base.clone();
+    for term in &mut all.effects {
+        term.free.clear();
+    }
+    Ok(heavier(&all, trace)?.is_some())
+}
+
 /// By how much the centre of mass moved, and up to when (s) the flight was used; the base is then moved.
 fn moved(base: &mut Base, trace: &Trace) -> Result<Option<([f64; 2], f64)>, PhysicsError> {
     let mut of_the_loading = ALL.iter().filter(|signature| signature.role.of_the_loading);

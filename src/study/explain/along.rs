@@ -1,6 +1,7 @@
 //! Several flights: what they have in common, what is each one's own, and which flights carry a name.
 
 use super::along_flights::{AlongFlights, is_of_one_flight};
+use super::left_out::mass_of_vehicle;
 use super::readers::for_readers;
 use super::result::ExplainStudy;
 use crate::diagnose::signatures::{is_irregular, signature_of};
@@ -112,10 +113,12 @@ impl ExplainStudy {
             of_one_flight: Vec::new(),
             alone: alone.to_vec(),
         };
-        // one value of a parameter: in the names and in the model that of the flights together
+        // one value of a parameter: in the names and in the model that of the flights together; the mass that goes with them is theirs, too
+        let of_flights =
+            |track: &Track| mass_of_vehicle(track, flights).unwrap_or_else(|| along.together(track));
         let each = along.tracks.iter();
         let common: Vec<(&str, (f64, f64))> =
-            each.filter_map(|track| Some((track.name.as_str(), along.together(track)?))).collect();
+            each.filter_map(|track| Some((track.name.as_str(), of_flights(track)?))).collect();
         self.explanation = self.explanation.with_common(&common);
         self.effects = for_readers(&self.explanation.named, self.explanation.airspeed_m_s);
         self.tell_payloads(flights);

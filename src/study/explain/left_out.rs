@@ -34,13 +34,19 @@ fn without<'a>(tracks: &'a [Track], flight: usize, flights: &[Signals]) -> Vec<(
     let others = |track: &Track| {
         let mut track = track.clone();
         track.values[flight] = None;
-        if track.effect.is_none() && track.name == NAMES[0] {
-            // what they carry is their own
-            for (value, signals) in track.values.iter_mut().zip(flights) {
-                *value = value.map(|(kg, std_kg)| (kg - signals.own.payload_kg, std_kg));
-            }
-        }
-        track.pooled()
+        mass_of_vehicle(&track, flights).unwrap_or_else(|| track.pooled())
     };
     tracks.iter().filter_map(|track| Some((track.name.as_str(), others(track)?))).collect()
+}
+
+/// The mass of the vehicle by all flights without what each carries, kg, with its standard error; `None` of another parameter.
+pub(super) fn mass_of_vehicle(track: &Track, flights: &[Signals]) -> Option<Option<(f64, f64)>> {
+    let is_mass = track.effect.is_none() && track.name == NAMES[0];
+    is_mass.then(|| {
+        let mut track = track.clone();
+        for (value, signals) in track.values.iter_mut().zip(flights) {
+            *value = value.map(|(kg, std_kg)| (kg - signals.own.payload_kg, std_kg));
+        }
+        track.pooled()
+    })
 }

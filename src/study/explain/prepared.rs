@@ -69,7 +69,7 @@ pub(in crate::study) fn explain_prepared(
     let (mut study, refused) = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
     // payload and wind of another day make no other vehicle; the names stay as they were found
     if study.refuted.is_none()
-        && study.other_vehicle().is_some()
+        && (study.other_vehicle().is_some() || study.shown.as_ref().is_some_and(|shown| shown.other_mass))
         && matches!(shown_on, ValidationData::Flights(_))
     {
         task.own_load = true;
