@@ -13,7 +13,7 @@ use super::fit::{Newton, fit};
 use super::named::Named;
 use super::recorded::Need;
 use super::score::columns_of;
-use super::signature::{EffectTerm, Signature};
+use super::signature::{EffectTerm, Role, Signature};
 use super::signatures::ALL;
 use super::trace::Trace;
 use crate::signals::{Lacking, OwnOfFlight, Series, Signals};
@@ -51,7 +51,7 @@ pub fn apart(flights: &[Signals], vehicle: &Vehicle, settings: &ExplainSettings)
         flights.par_iter().map(|signals| Look::at(signals, vehicle, settings)).collect();
     let Some(looks) = looks.into_iter().collect::<Option<Vec<Look>>>() else { return Apart::default() };
     let differs = |(at, one): (usize, &Look)| looks[at + 1..].iter().any(|other| one.differs(other));
-    if !looks.iter().enumerate().any(differs) {
+    if !looks.iter().any(|look| look.changes) && !looks.iter().enumerate().any(differs) {
         return Apart::default();
     }
     let alone = |signals: &Signals| explain(std::slice::from_ref(signals), vehicle, settings).ok();
@@ -107,6 +107,8 @@ struct Look {
     voltage_v: Option<f64>,
     /// how much each rotor lacks, with its standard error
     rotors: Vec<(f64, f64)>,
+    /// something seems to change at a moment of the flight, which no two flights have in common
+    changes: bool,
 }
 
 impl Look {
@@ -124,14 +126,18 @@ impl Look {
         let estimated = fitted.with_stated_thrust(&vehicle.propulsion);
         let index = fitted.rows.nuisances.iter().position(|of| of.nuisance == Nuisance::Mass)?;
         let share = fitted.covariance[(index, index)].max(0.0).sqrt() / fitted.base.vehicle.body.mass_kg;
-        let of_rotors = candidates(vehicle, &traces, ALL);
-        let of_rotors = of_rotors
-            .iter()
-            .filter(|candidate| candidate.signature().is_some_and(|of| of.role.which.is_some()));
-        let rotors = of_rotors.filter_map(|candidate| {
-            let evidence = fitted.weighted.test(&columns_of(&traces, &fitted, candidate)?)?;
-            Some((*evidence.theta.first()?, evidence.std(0)))
-        });
+        let all = candidates(vehicle, &traces, ALL);
+        let sizes = |is_asked: fn(&Role) -> bool| {
+            let asked = all
+                .iter()
+                .filter(move |of| of.signature().is_some_and(|signature| is_asked(&signature.role)));
+            asked.filter_map(|candidate| {
+                let evidence = fitted.weighted.test(&columns_of(&traces, &fitted, candidate)?)?;
+                Some((*evidence.theta.first()?, evidence.std(0)))
+            })
+        };
+        let rotors = sizes(|role| role.which.is_some()).collect();
+        let changes = sizes(|role| role.moment.is_some()).any(|(size, std)| size.abs() > CERTAIN * std);
         let mass_kg = estimated.theta[0];
         let mean = |volts: &Series<f64>| {
             let rows = &traces[0].centers;
@@ -140,7 +146,8 @@ impl Look {
         Some(Self {
             mass: (mass_kg, share * mass_kg),
             voltage_v: traces[0].voltage_v.as_ref().map(mean),
-            rotors: rotors.collect(),
+            rotors,
+            changes,
         })
     }
 

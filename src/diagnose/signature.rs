@@ -199,7 +199,7 @@ pub fn first_finer(term: &EffectTerm) -> Vec<usize> {
 pub struct Naming {
     /// size (norm of the amounts) that ordinary vehicles have: up to it there is no name
     pub ordinary: Option<f64>,
-    /// share of the vehicle's mass up to which an amount in kg gets no name
+    /// share of the vehicle's mass up to which an amount in kg, or in kg/m its share for each metre, gets no name
     pub least_of_mass: f64,
     /// share of the mean arm up to which an amount in m gets no name
     pub least_of_arm: f64,

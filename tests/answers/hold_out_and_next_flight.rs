@@ -240,6 +240,29 @@ fn the_moment_of_a_mass_change_is_found_again() {
 }
 
 #[test]
+fn flights_that_each_drop_a_load_have_each_its_own_and_the_mass_before_it() {
+    let vehicles = pair();
+    let both = (&vehicles.truth, &vehicles.nominal);
+    let mass_kg = vehicles.truth.body.mass_kg;
+    let drops = |time_s: f64, seed: u64| {
+        let change = vec![effect("mass_change", &[time_s, -0.08 * mass_kg])];
+        flown(both, (change, None), trajectory(seed), (seed, 40.0)).1
+    };
+    let mut flights = vec![drops(18.0, 5), drops(20.0, 6)];
+    let settings = ExplainSettings::default();
+    let apart = apart(&flights, &vehicles.nominal, &settings);
+    assert_eq!(apart.own.len(), 2);
+    for ((signals, own), moment_s) in flights.iter_mut().zip(apart.own).zip([18.0, 20.0]) {
+        let [(id, values)] = own.has.as_slice() else { panic!("{own:?}") };
+        assert!(*id == "mass_change" && (values[0] - moment_s).abs() < 0.5, "{values:?}");
+        signals.own = own;
+    }
+    let together = explain(&flights, &vehicles.nominal, &settings).unwrap();
+    let found_kg = together.search.after.base.vehicle.body.mass_kg;
+    assert!(together.named.is_empty() && (found_kg / mass_kg - 1.0).abs() < 0.01, "{found_kg} {mass_kg}");
+}
+
+#[test]
 fn a_force_fixed_in_the_room_is_predicted_without_a_name() {
     let vehicles = pair();
     let push = 0.08 * vehicles.truth.body.mass_kg * 9.81;

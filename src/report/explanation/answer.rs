@@ -59,7 +59,7 @@ fn found(study: &ExplainStudy) -> String {
         ),
         Verdict::NothingMissing => match of_one_flight(study).trim_start_matches("; ") {
             "" => nothing(study),
-            alone => format!("{} But {alone}.", nothing(study)),
+            alone => beside_what_is_alone(&nothing(study), alone),
         },
         Verdict::Explained => {
             format!("{}{}.{}{}", left_out(study), gain(study), not_told_apart(study), unsure(study))
@@ -73,6 +73,15 @@ fn found(study: &ExplainStudy) -> String {
             unsure(study)
         ),
         Verdict::Unexplained => unexplained(study),
+    }
+}
+
+/// What flights have alone, and that nothing else is missing.
+fn beside_what_is_alone(nothing: &str, alone: &str) -> String {
+    let own = format!("Single flights have something of their own: {alone}.");
+    match nothing.strip_prefix('N') {
+        Some(nothing) => format!("{own} Beside that, n{nothing}"),
+        None => format!("{own} {nothing}"),
     }
 }
 
