@@ -36,7 +36,7 @@ pub use identification::{
 };
 pub use inspection::{InspectionDocument, inspection_text};
 pub use number::{significant, spoken, with_error};
-pub use plan::{PlanDocument, plan_text};
+pub use plan::{EXPECTED_ERRORS, PlanDocument, plan_text};
 pub use proof::proof_text;
 pub use schema::{document_schema, verbs_with_schema};
 pub use validation::{
