@@ -15,10 +15,12 @@ Word = Union[str, int, float, "os.PathLike[str]"]
 
 # done; done with loss (the document says which); done, and something changed
 _DONE = (0, 3, 4)
+# as a shell says that there is no such program
+_NOT_FOUND = 127
 
 
 class MavidError(RuntimeError):
-    """The program has no result. `status` is its exit status; the message is what it said."""
+    """The program has no result, or is not there. `status` is its exit status (127: not there); the message is what it said."""
 
     def __init__(self, status: int, message: str) -> None:
         super().__init__(message)
@@ -26,9 +28,15 @@ class MavidError(RuntimeError):
 
 
 def program() -> str:
-    """The path of the program: the variable MAVID, the one of this wheel, or the one on the PATH."""
+    """The path of the program: the variable MAVID, the one of this wheel, or the one on the PATH. Raises MavidError where it is not there."""
     if named := os.environ.get("MAVID"):
-        return named
+        if found := shutil.which(named):
+            return found
+        raise MavidError(
+            _NOT_FOUND,
+            f"expected the path of the program in the environment variable MAVID, got {named!r}, which is no program that can be run: "
+            "correct the variable, or remove it to use the program of the wheel or on the PATH",
+        )
     name = "mavid.exe" if sys.platform == "win32" else "mavid"
     schemes = [sysconfig.get_path("scripts")]
     if user := sysconfig.get_preferred_scheme("user"):
@@ -38,7 +46,11 @@ def program() -> str:
             return str(Path(folder) / name)
     if found := shutil.which(name):
         return found
-    raise FileNotFoundError(f"mavid: expected the program in {', '.join(filter(None, schemes))} or on the PATH, found none")
+    raise MavidError(
+        _NOT_FOUND,
+        f"expected the program {name} in {', '.join(filter(None, schemes))} or on the PATH, found none: install the wheel, or set the "
+        "environment variable MAVID to the path of the program",
+    )
 
 
 def run(*arguments: Word) -> dict[str, Any]:

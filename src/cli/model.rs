@@ -123,7 +123,7 @@ pub struct ExportArgs {
     /// in its place
     #[command(flatten)]
     pub draft: DraftArgs,
-    /// the simulator, or the autopilot of the aircraft
+    /// for what: a simulator, or the aircraft's own autopilot (px4-params, ardupilot-params)
     #[arg(long, value_enum)]
     pub to: ExportFormat,
     /// with px4-params and ardupilot-params: height of the flight's place above the sea, m, for the density of its air
@@ -134,7 +134,7 @@ pub struct ExportArgs {
     pub out: Option<PathBuf>,
 }
 
-/// Names of the simulators and of the aircraft's autopilots.
+/// Names of the simulators and of the aircraft's own autopilots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ExportFormat {
     /// parameters of PX4's simulation in hardware

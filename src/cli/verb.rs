@@ -118,7 +118,7 @@ pub enum Verb {
     /// Study one log for `mavid fleet`, in a process of its own
     #[command(hide = true)]
     FleetLog(FleetLogArgs),
-    /// Write a model for another simulator
+    /// Write a model for another simulator, or as parameters of the aircraft's own autopilot
     #[command(
         after_help = "Examples:\n  mavid export model.toml --to sdf --out model.sdf\n  mavid export model.toml --to px4-params --out vehicle.params"
     )]

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use mavid::config::trajectory_to_toml;
 use mavid::report::{
-    ExplanationDocument, explained_model, explanation_html, explanation_markdown, explanation_text,
+    ExplanationDocument, explained_model, explanation_answer_line, explanation_html, explanation_markdown,
+    explanation_page, explanation_text,
 };
 use mavid::study::{
     ExplainRequest, ExplainStudy, InputFile, Progress, draft_text, explain, lost, stored_trajectory,
@@ -29,15 +30,31 @@ pub const WRITTEN: [&str; 3] = [MODEL, REPORT, DOCUMENT];
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Outcome, CommandError> {
     let study = make(&Spinner::new(stderr), args)?;
+    let say_remarks = || remarks(&study).iter().for_each(Word::say);
     if json {
         output::json(&ExplanationDocument::new(&study))?;
+        say_remarks();
     } else if args.format == PageFormat::Md {
         output::file_text(&explanation_markdown(&study))?;
+        say_remarks();
     } else {
-        output::text(&explanation_text(&study))?;
+        // notes that come on the same terminal by standard error are not said twice
+        let has_notes_beside = output::is_one_terminal() && !stderr.is_quiet();
+        let page = if has_notes_beside { explanation_page(&study) } else { explanation_text(&study) };
+        output::text(&page)?;
+        say_remarks();
+        output::once_more(&page, |columns| closing(&study, args, columns))?;
     }
-    remarks(&study).iter().for_each(Word::say);
     Ok(outcome(&study))
+}
+
+/// The answer in one line, and where the report is: the last lines on a terminal that the page does not fit into.
+fn closing(study: &ExplainStudy, args: &ExplainArgs, columns: usize) -> String {
+    let answer = explanation_answer_line(study, columns);
+    match &args.out {
+        Some(folder) => format!("{answer}\nreport: {}", text::path(&folder.join(REPORT))),
+        None => answer,
+    }
 }
 
 /// Explains, and writes what is asked for. How far it is is told to `progress`.

@@ -1,6 +1,7 @@
-//! `mavid export MODEL --to FORMAT`: the model for another simulator.
+//! `mavid export MODEL --to FORMAT`: the model for another simulator, or for the aircraft's own autopilot.
 
 use std::iter;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use mavid::autopilot::Autopilot;
@@ -16,8 +17,7 @@ use super::{CommandError, Outcome, output};
 use crate::cli::{ExportArgs, ExportFormat};
 
 /// Heights above the sea at which multirotors fly, m.
-const LOWEST_M: f64 = -500.0;
-const HIGHEST_M: f64 = 9000.0;
+pub const ALTITUDES_M: RangeInclusive<f64> = -500.0..=9000.0;
 
 #[derive(Debug, Serialize)]
 struct Document {
@@ -151,8 +151,8 @@ fn checked(args: &ExportArgs) -> Result<(), CommandError> {
         Target::Simulator(_) => {
             "px4-params or ardupilot-params beside it: a simulator has its own air".to_owned()
         }
-        Target::Aircraft(_) if !(LOWEST_M..=HIGHEST_M).contains(&altitude_m) => {
-            format!("a height above the sea of {LOWEST_M} to {HIGHEST_M} m")
+        Target::Aircraft(_) if !ALTITUDES_M.contains(&altitude_m) => {
+            format!("a height above the sea of {} to {} m", ALTITUDES_M.start(), ALTITUDES_M.end())
         }
         Target::Aircraft(_) => return Ok(()),
     };

@@ -12,7 +12,7 @@ use mavid::text;
 use serde::Serialize;
 
 use super::CommandError;
-use super::columns::of_terminal;
+use super::columns::{of_terminal, size_of_terminal};
 use super::standard_error::MESSAGE;
 
 /// A result for people; ends the line. On a terminal lines that are longer than it is wide are broken between words.
@@ -24,6 +24,28 @@ pub fn text(text: &str) -> Result<(), CommandError> {
         None => line(io::stdout().lock(), &text),
     }
 }
+
+/// Standard output and standard error are terminals: for people one and the same.
+pub fn is_one_terminal() -> bool {
+    io::stdout().is_terminal() && io::stderr().is_terminal()
+}
+
+/// Lines below a result for people that is longer than its terminal is high: what stood at its top is out of sight. They are made
+/// for its columns. Nothing where there is no terminal.
+pub fn once_more(result: &str, lines: impl FnOnce(usize) -> String) -> Result<(), CommandError> {
+    match size_of_terminal().filter(|_| io::stdout().is_terminal()) {
+        Some((columns, rows)) if is_higher(result, (columns, rows)) => text(&format!("\n{}", lines(columns))),
+        _ => Ok(()),
+    }
+}
+
+/// Whether a text, with the lines of the shell around it, takes more rows than a terminal has.
+fn is_higher(text: &str, (columns, rows): (usize, usize)) -> bool {
+    to_columns(text, columns).lines().count() + SHELL_ROWS > rows
+}
+
+/// Rows of a terminal that a command and the prompt behind it take.
+const SHELL_ROWS: usize = 2;
 
 /// What is a file for another program; ends the line. Its lines stay as they are.
 pub fn file_text(text: &str) -> Result<(), CommandError> {
@@ -245,6 +267,13 @@ pub fn refuse_overwriting(inputs: &[&PathBuf], outputs: &[&PathBuf]) -> Result<(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_page_that_fits_is_not_summed_up() {
+        assert!(!is_higher(&"line\n".repeat(22), (80, 24)) && is_higher(&"line\n".repeat(23), (80, 24)));
+        // lines that are broken take more rows
+        assert!(is_higher(&format!("{}\n", "word ".repeat(30)).repeat(12), (80, 24)));
+    }
 
     #[test]
     fn a_sentence_is_said_once_and_once_more_as_a_warning() {

@@ -4,6 +4,7 @@ use super::base::Base;
 use super::fit::Newton;
 use super::floors::FORM;
 use super::latency::{FAST_MOTOR_S, LatencyFinding, REFUSED, held_s, is_delay, stated_lag_s, with_latency};
+use super::latency_distance::latency_distance;
 use super::named::{APART, Confusable, Named, NamedParameter, Strength};
 use super::signature::LatencyKind;
 use super::signatures::{latency_signature, signature_of};
@@ -62,7 +63,8 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
         } else {
             vec![Confusable {
                 id: other.id(),
-                distinguishability: Some((others - own).max(0.0)).filter(|d| *d < APART),
+                // the same figure as that of the advice for the next flight
+                distinguishability: latency_distance(traces, &found.after, kind.id()).filter(|d| *d < APART),
             }]
         },
     })

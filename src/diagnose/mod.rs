@@ -37,6 +37,7 @@ mod instruments;
 pub mod joint;
 mod kinematic;
 mod latency;
+mod latency_distance;
 mod latency_name;
 mod left_over;
 mod limits;

@@ -6,7 +6,7 @@ use std::time::Duration;
 use nalgebra::Vector3;
 
 use super::setpoint::{Place, Setpoint, wrapped};
-use crate::plan::{self, TransitionError, bounds_of};
+use crate::plan::{self, HOVER_S, TransitionError, bounds_of};
 use crate::trajectory::{
     FlightPath, FourierTrajectory, Segment, Transition, at_rest, end_state, flat_motion,
 };
@@ -20,8 +20,6 @@ pub(super) const CLIMB_M_S: f64 = 0.8;
 pub(super) const TRANSFER_M_S: f64 = 1.0;
 /// Yaw rate of the transfer, rad/s. Half a turn takes 6 s; a faster one saturates weak yaw control.
 pub(super) const TURN_RAD_S: f64 = 0.5;
-/// Hover before and after the trajectory, s. The controller settles in it; more costs battery.
-const HOVER_S: f64 = 2.0;
 /// Ratio of greatest to mean speed of a transition of seventh degree from rest to rest.
 const PEAK_TO_MEAN_SPEED: f64 = 2.1875;
 /// Greatest acceleration of this transition times the square of its duration, divided by its length.

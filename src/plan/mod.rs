@@ -45,4 +45,4 @@ pub use noise::{NoiseModel, PARAMETERS, RowMotion, RowSpacing, parameter_scale};
 pub use optimise::{Round, Search};
 pub use room::{HEIGHT_ERROR_M, Reach, Roomed, floor_m, too_narrow, with_room};
 pub use space::{AxisStart, SeriesSpace};
-pub use transition::{FlightPlan, TransitionError, flight_path};
+pub use transition::{FlightPlan, HOVER_S, TransitionError, flight_path};

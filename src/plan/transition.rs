@@ -4,6 +4,10 @@ use super::bounds::{Bound, Dynamics, Quantity};
 use super::check::{Violation, check};
 use crate::trajectory::{EndState, FlightPath, FourierTrajectory, Segment, Transition, at_rest, end_state};
 
+/// Hover with which a flight along a trajectory begins, and the one with which it ends, s. The controller settles in it; more
+/// costs battery.
+pub const HOVER_S: f64 = 2.0;
+
 /// Hovers, transitions and periods of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlightPlan {

@@ -27,8 +27,8 @@ pub use chart::{Band, Bars, Line, Panel, Strip, Stroke, svg};
 pub use comparison::{ComparisonDocument, comparison_html, comparison_text};
 pub use effects::{effect_text, effects_text};
 pub use explanation::{
-    ExplanationDocument, explained_model, explanation_answer, explanation_html, explanation_markdown,
-    explanation_text, next_flight_words,
+    ExplanationDocument, explained_model, explanation_answer, explanation_answer_line, explanation_html,
+    explanation_markdown, explanation_page, explanation_text, next_flight_words,
 };
 pub use fleet::{FleetDocument, fleet_html, fleet_text};
 pub use identification::{
@@ -36,7 +36,7 @@ pub use identification::{
 };
 pub use inspection::{InspectionDocument, inspection_text};
 pub use number::{significant, spoken, with_error};
-pub use plan::{PlanDocument, plan_text};
+pub use plan::{EXPECTED_ERRORS, PlanDocument, plan_text};
 pub use proof::proof_text;
 pub use schema::{document_schema, verbs_with_schema};
 pub use validation::{

@@ -66,6 +66,9 @@ impl PlanDocument {
     }
 }
 
+/// Which of the standard errors of one number a plan states: the view of a flight and a model have others.
+pub const EXPECTED_ERRORS: &str = "expected before the flight (rigid body alone, usual noise)";
+
 /// The page for the terminal.
 #[must_use]
 pub fn plan_text(study: &PlanStudy) -> String {
@@ -80,7 +83,8 @@ pub fn plan_text(study: &PlanStudy) -> String {
             let _ = writeln!(page, "this flight does not determine all seven parameters");
         }
         Some(errors) => {
-            let _ = writeln!(page, "expected standard errors after {} s", worth.flight_s);
+            let _ =
+                writeln!(page, "standard errors {EXPECTED_ERRORS}, after {} s of trajectory", worth.flight_s);
             for (name, share) in errors {
                 let _ = writeln!(page, "  {name:<5} {:.2} %{}", 100.0 * share, of_what(name));
             }
@@ -119,6 +123,12 @@ pub fn plan_text(study: &PlanStudy) -> String {
         let _ = writeln!(page, "from hover at ({x:.2}, {y:.2}, {z:.2}) m to the start in {to_start_s:.2} s");
         let [x, y, z, _] = shown(around.landing);
         let _ = writeln!(page, "from the end to hover at ({x:.2}, {y:.2}, {z:.2}) m in {to_landing_s:.2} s");
+        let whole_s = study.hover_to_hover_s().unwrap_or(worth.flight_s);
+        let _ = writeln!(
+            page,
+            "the flight takes {whole_s:.0} s from hover to hover, {} s of them on the trajectory, and takeoff and landing beside it",
+            worth.flight_s
+        );
     }
     match &study.first_violation {
         Some(violation) => {

@@ -362,6 +362,11 @@ fn promise_is_kept(
     let next = design(&found, std::slice::from_ref(&flight), &vehicles.nominal, &settings, &|| {}).unwrap();
     assert!(next.limits_are_flown && next.sentence().contains("standard deviations"));
     let promised = *next.pairs.iter().find(|pair| pair.named == named).unwrap();
+    // the list of names has the same distance
+    let like_it = found.named.iter().filter(|of| of.id == named).flat_map(|of| &of.confusable_with);
+    let listed =
+        like_it.filter(|other| Some(other.id) == promised.other).find_map(|other| other.distinguishability);
+    assert!(listed.is_none_or(|distance| (distance - promised.now).abs() < 1e-9), "{listed:?}, {promised:?}");
     let both = (&vehicles.truth, &vehicles.nominal);
     let (_, then) = flown(both, (concealed(), None), next.trajectory.clone(), (9, 6.0 + next.seconds));
     let after = explain(std::slice::from_ref(&then), &vehicles.nominal, &ExplainSettings::default()).unwrap();

@@ -6,6 +6,9 @@
 mod concealed;
 #[path = "../support/ordinary.rs"]
 mod ordinary;
+#[cfg(target_os = "linux")]
+#[path = "../support/pty.rs"]
+mod pty;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -15,6 +18,8 @@ mod every_effect;
 mod explain_at_bounds;
 mod explain_command;
 mod explain_names;
+#[cfg(target_os = "linux")]
+mod explain_terminal;
 mod feedback;
 mod fleet;
 mod hold_out_and_next_flight;

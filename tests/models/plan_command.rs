@@ -3,6 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use mavid::config::load_vehicle;
+use mavid::fly::{Around, Course};
+
 fn plan(vehicle: &str, arguments: &[&str]) -> Output {
     let vehicle = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(vehicle);
     Command::new(env!("CARGO_BIN_EXE_mavid")).arg("plan").arg(vehicle).args(arguments).output().unwrap()
@@ -62,6 +65,29 @@ fn a_circle_is_written_with_the_way_to_it() {
     let fast = plan("x500.toml", &["--circle", "1.5,2", "--json"]);
     assert_eq!(fast.status.code(), Some(3));
     assert!(json(&fast)["first_violation"].as_str().unwrap().contains("limit"));
+}
+
+#[test]
+fn a_plan_says_how_long_it_is_flown_from_hover_to_hover() {
+    let out = temporary("long.toml");
+    let output = plan("x500.toml", &["--circle", "0.5,5", "--repeats", "4", "--out", out.to_str().unwrap()]);
+    let page = String::from_utf8(output.stdout).unwrap();
+    let vehicle = load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml")).unwrap();
+    let stored = mavid::config::read_trajectory(&out).unwrap();
+    let ways = stored.transitions.unwrap();
+    let around = Around {
+        takeoff: ways.takeoff,
+        landing: ways.landing,
+        to_start_s: ways.to_start_s,
+        to_landing_s: ways.to_landing_s,
+    };
+    // as `fly` flies it
+    let course =
+        Course::new(&stored.series, stored.repeats, Some(&around), &stored.limits, &vehicle).unwrap();
+    let said =
+        format!("the flight takes {:.0} s from hover to hover, 20 s of them", course.path().duration_s());
+    assert!(page.contains(&said), "{said}\n{page}");
+    assert!(page.contains("standard errors expected before the flight"), "{page}");
 }
 
 #[test]

@@ -206,6 +206,26 @@ fn the_columns_of_the_built_in_mapping_are_proposed_as_they_are() {
 }
 
 #[test]
+fn body_rates_of_short_names_are_proposed_with_a_unit_to_be_confirmed() {
+    for (name, rates, size, unit, other) in
+        [("rad", "gx,gy,gz", 2.0, "rad/s", "deg/s"), ("deg", "p,q,r", 120.0, "deg/s", "rad/s")]
+    {
+        let path = table(&format!("short-{name}"), &format!("t,{rates},ax,ay,az"), |t| {
+            format!("{t},{},0,0,0,0,9.8", size * (6.0 * t).sin())
+        });
+        let (recording, document) = proposed(&path);
+        let (mapping, unsure) = (document["mapping"].as_str().unwrap(), document["unsure"].to_string());
+        assert!(
+            mapping.contains("name = \"angular_rate\"") && mapping.contains(&format!("unit = \"{unit}\""))
+        );
+        assert!(unsure.contains(&format!("the unit {unit}: the names say none")), "{unsure}");
+        assert!(unsure.contains(&format!("Confirm it, or write {other}")), "{unsure}");
+        assert_eq!(document["unused_columns"].as_array().unwrap().len(), 0, "{document}");
+        assert!(mean(&recording, Quantity::AngularRate, 0).abs() < 0.3);
+    }
+}
+
+#[test]
 fn a_table_without_a_time_is_refused_with_its_columns() {
     let path = table("timeless", "a,b,c", |_| "1,2,3".to_owned());
     let output = mavid(&["csv-map", &path]);

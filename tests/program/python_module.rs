@@ -1,12 +1,32 @@
 //! The Python module of the wheel, called as a notebook calls it.
 
 use std::path::Path;
+use std::process::Command;
 
 use mavid::physics::effects::ALL;
 use serde_json::json;
 
 use crate::python;
 use crate::require::{Needed, skip};
+
+/// It needs no packages.
+#[test]
+fn python_is_told_where_the_program_was_expected() {
+    let module = Path::new(env!("CARGO_MANIFEST_DIR")).join("python");
+    let ask = "import mavid\ntry:\n    mavid.effects()\nexcept mavid.MavidError as error:\n    print(error.status, error)";
+    let ran = Command::new(python::interpreter())
+        .args(["-c", ask])
+        .env("PYTHONPATH", module)
+        .env("MAVID", "/nowhere/mavid")
+        .output();
+    let Ok(ran) = ran else { return skip(Needed::Tables, "no Python") };
+    let said = String::from_utf8_lossy(&ran.stdout);
+    assert!(
+        said.starts_with("127 expected the path of the program in the environment variable MAVID"),
+        "{said}{ran:?}"
+    );
+    assert!(said.contains("'/nowhere/mavid'") && said.contains("correct the variable"), "{said}");
+}
 
 #[test]
 fn python_gets_dictionaries_arrays_and_a_table() {

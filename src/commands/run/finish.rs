@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use mavid::autopilot::Autopilot;
 use mavid::report::identification_text;
 use mavid::text;
+use mavid::wire::SystemId;
 
+use super::altitude::home_m;
 use super::context::Context;
 use super::step::Step;
 use crate::commands::export::NotMade;
@@ -63,7 +65,7 @@ pub fn exports(context: &Context<'_>) -> Vec<String> {
     let mut files = Vec::new();
     let mut missing: Vec<(&str, Vec<&str>)> = Vec::new();
     for format in FORMATS {
-        match exported(context, format) {
+        match exported(context, format, None) {
             Ok(file) => files.push(file),
             Err(NotMade::Missing { what, .. }) => {
                 match missing.iter_mut().find(|(other, _)| *other == what) {
@@ -86,20 +88,53 @@ pub fn exports(context: &Context<'_>) -> Vec<String> {
     files
 }
 
-/// What follows from the model for the aircraft's own autopilot; the file. That nothing does is said.
-pub fn aircraft(context: &Context<'_>, autopilot: Option<Autopilot>) -> Option<String> {
+/// What follows from the model for the aircraft's own autopilot, in the air of the last flight; the file. That nothing does is
+/// said, and for which air it is.
+pub fn aircraft(
+    context: &Context<'_>,
+    autopilot: Option<Autopilot>,
+    system: Option<SystemId>,
+) -> Option<String> {
     let format = autopilot.and_then(aircraft_format)?;
-    let made = exported(context, format);
+    // the embedded vehicle's air is that at sea level, wherever its home is
+    let is_real = !context.args.sitl;
+    let last = context.folder.flights().pop().filter(|_| is_real);
+    let altitude_m = last.and_then(|flight| home_m(&flight.radio, system));
+    let made = exported(context, format, altitude_m);
     let said =
         |error| output::message(&format!("no parameters for the aircraft: {}", CommandError::from(error)));
-    made.map_err(said).ok()
+    let file = made.map_err(said).ok()?;
+    if is_real {
+        output::message(&air_words(altitude_m));
+    }
+    Some(file)
 }
 
-/// Writes the model in a format, into a file of this name.
-fn exported(context: &Context<'_>, (format, name): (&str, &str)) -> Result<String, NotMade> {
+/// For which air the parameters of the aircraft are.
+fn air_words(altitude_m: Option<f64>) -> String {
+    match altitude_m {
+        Some(altitude_m) => format!(
+            "the aircraft's parameters are for the air at {altitude_m:.0} m above the sea, where its home was in the recording"
+        ),
+        None => "the aircraft's parameters are for the air at sea level: the recording does not say how high home was; give the \
+                 last command again with --altitude"
+            .to_owned(),
+    }
+}
+
+/// Writes the model in a format, into a file of this name; `altitude_m` is for parameters of an aircraft alone.
+fn exported(
+    context: &Context<'_>,
+    (format, name): (&str, &str),
+    altitude_m: Option<f64>,
+) -> Result<String, NotMade> {
     let (folder, model) = (context.folder.of(EXPORT), context.folder.of("model.toml"));
     let file = folder.join(name);
-    let step = Step::of(&["export"]).word(&model).option("--to", format).option("--out", &file);
+    let step = Step::of(&["export"])
+        .word(&model)
+        .option("--to", format)
+        .maybe("--altitude", altitude_m.map(|altitude_m| format!("{altitude_m:.0}")))
+        .option("--out", &file);
     output::silent_folder(&folder)?;
     context.tell(&step);
     export::make(&step.export()?)?;

@@ -4,10 +4,10 @@ use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use mavid::fly::{EVENTS, TLOG};
+use mavid::fly::TLOG;
 use mavid::text;
-use serde::Deserialize;
 
+use super::phases::phases;
 use crate::commands::{CommandError, leftover, output};
 
 /// Every step as it is typed, in the order in which they were done.
@@ -167,21 +167,8 @@ fn has_ending(folder: &Path, endings: &[&str]) -> bool {
     !with_ending(folder, endings).is_empty()
 }
 
-/// A line of a flight's events.
-#[derive(Deserialize)]
-struct Event {
-    kind: String,
-    text: String,
-}
-
-fn phases(folder: &Path) -> Vec<String> {
-    let text = fs::read_to_string(folder.join(EVENTS)).unwrap_or_default();
-    let events = text.lines().filter_map(|line| serde_json::from_str::<Event>(line).ok());
-    events.filter(|event| event.kind == "phase").map(|event| event.text).collect()
-}
-
 fn extent_of(folder: &Path) -> Extent {
-    let phases = phases(folder);
+    let phases: Vec<String> = phases(folder).into_iter().map(|begun| begun.name).collect();
     let reached =
         phases.iter().rposition(|phase| phase == TRAJECTORY).filter(|_| folder.join(TLOG).is_file());
     let Some(reached) = reached else { return Extent::Before };
@@ -194,6 +181,7 @@ fn extent_of(folder: &Path) -> Extent {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mavid::fly::EVENTS;
 
     fn made(name: &str) -> Folder {
         let place = std::env::temp_dir().join(format!("mavid-run-{name}-{}", std::process::id()));

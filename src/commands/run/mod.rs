@@ -17,6 +17,7 @@
 //!
 //! What was done is told by the files in the folder: a run is taken up where it was left.
 
+mod altitude;
 mod ask;
 mod concealed;
 mod context;
@@ -28,6 +29,7 @@ mod folder;
 mod follows;
 mod logging;
 mod page;
+mod phases;
 mod planned;
 mod progress;
 mod rehearsal;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use mavid::config::read_limits;
 use mavid::plan::Extremes;
+use mavid::report::EXPECTED_ERRORS;
 use mavid::study::PlanStudy;
 use mavid::text;
 use mavid::vehicle::Vehicle;
@@ -51,11 +52,14 @@ pub fn first(context: &Context<'_>, vehicle: &Vehicle) -> Result<PathBuf, Comman
     let flight_s = study.series.period_s * f64::from(study.repeats);
     let shown = |(name, _): &&(&str, f64)| !PRODUCTS.contains(name);
     let one = |(name, relative): &(&str, f64)| format!("{name} {:.2} %", 100.0 * relative);
-    let errors = study.standard_errors().map_or_else(String::new, |errors| {
-        let all: Vec<String> = errors.iter().filter(shown).map(one).collect();
-        format!("; expected standard errors: {}", all.join(", "))
+    let whole = study.hover_to_hover_s().map_or_else(String::new, |whole_s| {
+        format!(": {whole_s:.0} s from hover to hover, and takeoff and landing beside it")
     });
-    output::message(&format!("{flight_s:.0} s of trajectory inside the room{errors}"));
+    output::message(&format!("{flight_s:.0} s of trajectory inside the room{whole}"));
+    if let Some(errors) = study.standard_errors() {
+        let all: Vec<String> = errors.iter().filter(shown).map(one).collect();
+        output::message(&format!("standard errors {EXPECTED_ERRORS}: {}", all.join(", ")));
+    }
     Ok(path)
 }
 

@@ -13,6 +13,7 @@ use super::explained;
 use super::flying::{fly, step_of};
 use super::follows::course;
 use super::logging::Logging;
+use super::phases::{durations, phases};
 use super::step::Step;
 use super::target::{Target, WARM_UP_S};
 use super::vehicle::{asked, autopilot};
@@ -58,6 +59,7 @@ pub fn rehearse(context: &Context<'_>, vehicle: &Vehicle, trajectory: &Path) -> 
         flown.tilt_max_deg,
         flown.tilt_planned_deg
     ));
+    durations(&phases(&out)).iter().for_each(|took| output::message(took));
     output::message(&reserve(context, vehicle, trajectory, flown.tracking_max_m)?);
     if !flight.record.outcome.is_whole() {
         let cause = flight.record.outcome.cause.as_ref().map_or_else(String::new, ToString::to_string);
@@ -89,12 +91,11 @@ fn reserve(
     let wall_m = [side(limits.x_max_m, 0), side(limits.y_max_m, 1)].into_iter().flatten();
     let above_m = limits.z_max_m.map(|ceiling_m| ceiling_m - extremes.high_m[2] - reach.up_m - off_m);
     Ok(format!(
-        "so far off, its rotors have {:.2} m left to a wall and {:.2} m to the ceiling, and it is {:.2} m above the ground at \
-         least; from takeoff to landing it takes {:.0} s",
+        "that far off the trajectory the rotors have {:.2} m left to a wall and {:.2} m to the ceiling, and the vehicle is {:.2} m \
+         above the ground at least",
         wall_m.fold(f64::INFINITY, f64::min),
         above_m.unwrap_or(f64::INFINITY),
-        extremes.low_m[2] - off_m,
-        course.path().duration_s()
+        extremes.low_m[2] - off_m
     ))
 }
 

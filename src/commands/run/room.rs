@@ -40,7 +40,9 @@ fn sides_of(numbers: &[f64]) -> Option<[f64; 3]> {
 
 fn expected() -> String {
     let (least, most) = SIDES_M;
-    format!("length, width and height as X,Y,Z, each of {least} to {most} m, such as 4,4,3")
+    format!(
+        "length, width and height as X,Y,Z, each of {least} to {most} m and large enough for the vehicle, such as 4,4,3"
+    )
 }
 
 /// Numbers as they are typed.
@@ -51,10 +53,30 @@ fn came(numbers: &[f64]) -> String {
     numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
 }
 
-/// As it is typed; whoever asks says what came.
-fn typed(text: &str) -> Result<[f64; 3], String> {
+/// As it is typed, for this vehicle; whoever asks says what came.
+fn typed(text: &str, vehicle: &Vehicle) -> Result<[f64; 3], String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|side| side.trim().parse().ok()).collect();
-    sides_of(&numbers.unwrap_or_default()).ok_or_else(expected)
+    let expected = || {
+        let (least, most) = (least_room(vehicle), SIDES_M.1);
+        format!(
+            "length, width and height as X,Y,Z, at least {least} for this vehicle and at most {most} m each"
+        )
+    };
+    let sides_m = sides_of(&numbers.unwrap_or_default()).ok_or_else(expected)?;
+    limits_in(sides_m, vehicle).map(|_| sides_m)
+}
+
+/// Length and width, and height, of the smallest room for a vehicle, m.
+fn least_m(vehicle: &Vehicle) -> (f64, f64) {
+    let reach = Reach::of(vehicle);
+    (2.0 * (reach.side_m + LEAST_SIDE_M), floor_m(vehicle) + LEAST_HEIGHT_M + reach.up_m)
+}
+
+/// The smallest room for a vehicle as it is typed, rounded up to tenths.
+fn least_room(vehicle: &Vehicle) -> String {
+    let (side_m, height_m) = least_m(vehicle);
+    let [side_m, height_m] = [side_m, height_m].map(|least_m| (10.0 * least_m - SAME_M).ceil() / 10.0);
+    format!("{side_m:.1},{side_m:.1},{height_m:.1} m")
 }
 
 /// The limits inside a room for this vehicle, which stands in its middle.
@@ -63,11 +85,12 @@ fn typed(text: &str) -> Result<[f64; 3], String> {
 /// The room is too small: what was expected.
 pub fn limits_in([x_m, y_m, z_m]: [f64; 3], vehicle: &Vehicle) -> Result<Limits, String> {
     let (reach, floor_m) = (Reach::of(vehicle), floor_m(vehicle));
-    let (side_m, height_m) = (2.0 * (reach.side_m + LEAST_SIDE_M), floor_m + LEAST_HEIGHT_M + reach.up_m);
+    let (side_m, height_m) = least_m(vehicle);
     if x_m < side_m || y_m < side_m || z_m < height_m {
         return Err(format!(
-            "a room of at least {side_m:.1},{side_m:.1},{height_m:.1} m for this vehicle (its rotors reach {:.2} m to each \
-             side, and its lowest flight is at {floor_m:.2} m)",
+            "a room of at least {} for this vehicle (its rotors reach {:.2} m to each side, and its lowest flight is at \
+             {floor_m:.2} m)",
+            least_room(vehicle),
             reach.side_m
         ));
     }
@@ -171,8 +194,10 @@ pub fn fits(sides_m: [f64; 3], vehicle: &Vehicle) -> Result<Limits, CommandError
 
 fn asked(ask: Ask, vehicle: &Vehicle, is_simulated: bool) -> Result<[f64; 3], CommandError> {
     let [x, y, z] = USUAL_M;
-    let question = format!("Free room round the vehicle: length, width, height in m? [{x},{y},{z}]");
-    let fits = |text: &str| typed(text).and_then(|sides| limits_in(sides, vehicle).map(|_| sides));
+    let question = format!(
+        "Free room round the vehicle: length, width, height in m? At least {} for this vehicle [{x},{y},{z}]",
+        least_room(vehicle)
+    );
     let alone = || {
         match is_simulated {
         true => Ok(None),
@@ -182,7 +207,7 @@ fn asked(ask: Ask, vehicle: &Vehicle, is_simulated: bool) -> Result<[f64; 3], Co
         )),
     }
     };
-    Ok(ask.value(&question, fits, alone)?.unwrap_or(USUAL_M))
+    Ok(ask.value(&question, |text| typed(text, vehicle), alone)?.unwrap_or(USUAL_M))
 }
 
 /// The limits as a file, to be read and changed by people.
@@ -268,9 +293,14 @@ mod tests {
         assert!(said.contains("a room of at least") && said.contains("rotors reach"), "{said}");
         assert!(limits_in([4.0, 4.0, 0.6], &vehicle).is_err());
         assert!(sides(&[4.0, 4.0]).is_err() && sides(&[4.0, -4.0, 3.0]).is_err());
-        assert_eq!(typed("4, 5,3"), Ok([4.0, 5.0, 3.0]));
+        assert_eq!(typed("4, 5,3", &vehicle), Ok([4.0, 5.0, 3.0]));
         // whoever asks says what came
-        assert!(!typed("large").unwrap_err().contains("got") && !said.contains("got"), "{said}");
+        let large = typed("large", &vehicle).unwrap_err();
+        assert!(!large.contains("got") && !said.contains("got"), "{said}");
+        // what is asked for is what is checked
+        let least = least_room(&vehicle);
+        assert!(large.contains(&least) && said.contains(&least), "{large}, {said}");
+        assert!(typed(least.trim_end_matches(" m"), &vehicle).is_ok(), "{least}");
         assert!(sides(&[4.0]).unwrap_err().ends_with(", got 4"));
         let small = fits([1.0, 1.0, 1.0], &vehicle).unwrap_err().to_string();
         assert!(small.ends_with(", got 1,1,1") && small.matches("got").count() == 1, "{small}");

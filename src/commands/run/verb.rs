@@ -56,7 +56,8 @@ pub fn story(
     context.stage("Model and report");
     finish::rigid_body(&context, logs);
     let exports = finish::exports(&context);
-    let parameters = finish::aircraft(&context, vehicle::autopilot_flown(&context, logs));
+    let system = record.as_ref().and_then(|record| record.system);
+    let parameters = finish::aircraft(&context, vehicle::autopilot_flown(&context, logs), system);
     // the verdict is written: only now is it read what was concealed
     let concealed = match &args.effects {
         Some(file) => compare(&acting(file, &flying_vehicle(args)?)?, &study.effects),

@@ -43,12 +43,7 @@ pub(super) fn unit(head: &TableHead, group: &Group) -> Chosen {
     }
     match group.kind {
         Kind::Time => time(&numbers),
-        Kind::Rate => match numbers.greatest() {
-            Some(most) if most > FASTEST_RAD_S => {
-                Chosen::guessed("deg/s", &format!("the greatest rate is {most:.0}"))
-            }
-            _ => Chosen::guessed("rad/s", "the name says none, and the rates are small"),
-        },
+        Kind::Rate => rate(&numbers),
         Kind::Acceleration if group.is_setpoint => Chosen::unit("m/s^2"),
         Kind::WorldAcceleration => Chosen::guessed("m/s^2", "the name says none"),
         Kind::Acceleration => {
@@ -77,6 +72,28 @@ pub(super) fn unit(head: &TableHead, group: &Group) -> Chosen {
             _ => Chosen::unit("A"),
         },
         _ => Chosen::default(),
+    }
+}
+
+/// Body rates whose names say no unit: by their size, and to be confirmed.
+fn rate(numbers: &Numbers<'_>) -> Chosen {
+    match numbers.greatest() {
+        Some(most) if most > FASTEST_RAD_S => {
+            let why = format!(
+                "the names say none, and the greatest rate is {most:.0}, which is too fast in rad/s. Confirm it, or write rad/s"
+            );
+            Chosen::guessed("deg/s", &why)
+        }
+        Some(most) => {
+            let why = format!(
+                "the names say none, and the greatest rate is {most:.2}: in deg/s the vehicle would hardly turn. Confirm it, or write \
+                 deg/s"
+            );
+            Chosen::guessed("rad/s", &why)
+        }
+        None => {
+            Chosen::guessed("rad/s", "the names say none, and there is no number. Confirm it, or write deg/s")
+        }
     }
 }
 

@@ -187,6 +187,8 @@ pub(super) fn said(name: &str) -> Option<Said> {
     let is = |all: &[&str]| words.iter().any(|word| all.contains(&word.as_str()));
     let found = KINDS.iter().find(|(_, all)| is(all)).map(|(kind, _)| *kind);
     let kind = match (found, unit) {
+        // the letters of the body rates, each a whole name
+        (None | Some(Kind::Attitude), _) if index.is_none() && is_body_rate(words) => Kind::Rate,
         // `rotor_1_speed`, `battery_V`, `x`
         (Some(Kind::Velocity), _) if is(&["rotor", "propeller", "prop"]) => Kind::RotorSpeed,
         (None | Some(Kind::Command | Kind::Time), Some("rpm")) => Kind::RotorSpeed,
@@ -211,6 +213,11 @@ pub(super) fn said(name: &str) -> Option<Said> {
     let is_setpoint =
         is(SETPOINT) && !matches!(kind, Kind::Command | Kind::Demand | Kind::RotorSpeed | Kind::Time);
     Some(Said { kind, is_setpoint, part, unit: unit.filter(|unit| may_have(kind, unit)), group })
+}
+
+/// `p`, `q` or `r`.
+fn is_body_rate(words: &[String]) -> bool {
+    matches!(words, [word] if ["p", "q", "r"].contains(&word.as_str()))
 }
 
 /// A name without the index in brackets at its end, and the index.
@@ -259,19 +266,31 @@ fn apart(name: &str) -> Vec<String> {
         }
         before = letter;
     }
+    if let [letter, axis, ..] = words.as_slice()
+        && SHORT
+            .iter()
+            .any(|(short, _, axes)| letter == short && axis.len() == 1 && axes.contains(axis.as_str()))
+    {
+        // `g_x` is `gx`
+        let axis = words.remove(1);
+        words[0].push_str(&axis);
+    }
     words.into_iter().flat_map(unglued).collect()
 }
 
+/// Letters for a quantity, the quantity, and the axes that may follow the letter.
+const SHORT: &[(&str, &str, &str)] = &[
+    ("v", "vel", "xyzned"),
+    ("a", "acc", "xyz"),
+    ("g", "gyro", "xyz"),
+    ("w", "omega", "xyz"),
+    ("p", "pos", "xyzned"),
+    ("q", "quat", "wxyz"),
+    ("m", "motor", ""),
+];
+
 /// `vx` is `vel x`, `xacc` is `acc x`, `gyrox` is `gyro x`.
 fn unglued(word: String) -> Vec<String> {
-    const SHORT: &[(&str, &str, &str)] = &[
-        ("v", "vel", "xyzned"),
-        ("a", "acc", "xyz"),
-        ("w", "omega", "xyz"),
-        ("p", "pos", "xyzned"),
-        ("q", "quat", "wxyz"),
-        ("m", "motor", ""),
-    ];
     const LONG: &[&str] = &["gyro", "accel", "acc", "vel", "pos", "quat", "omega", "rate"];
     let axis = |text: &str| ["x", "y", "z", "w", "n", "e", "d"].contains(&text);
     let pair = |kind: &str, axis: &str| vec![kind.to_owned(), axis.to_owned()];
@@ -323,6 +342,13 @@ mod tests {
             ("stateEstimate.qw", Kind::Attitude, Part::W, None),
             ("stateEstimate.vx", Kind::Velocity, Part::X, None),
             ("gyro.x", Kind::Rate, Part::X, None),
+            ("gx", Kind::Rate, Part::X, None),
+            ("g_y", Kind::Rate, Part::Y, None),
+            ("GZ [deg/s]", Kind::Rate, Part::Z, Some("deg/s")),
+            ("q", Kind::Rate, Part::Pitch, None),
+            ("r_rad_s", Kind::Rate, Part::Yaw, Some("rad/s")),
+            ("q[2]", Kind::Attitude, Part::Number(2), None),
+            ("a_x", Kind::Acceleration, Part::X, None),
             ("xgyro [mrad/s]", Kind::Rate, Part::X, Some("mrad/s")),
             ("accel_m_s2[2]", Kind::Acceleration, Part::Number(2), Some("m/s^2")),
             ("acc_z_m_s2", Kind::Acceleration, Part::Z, Some("m/s^2")),

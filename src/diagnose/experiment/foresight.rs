@@ -7,8 +7,8 @@ use crate::diagnose::channels::CHANNELS;
 use crate::diagnose::confusable::Signal;
 use crate::diagnose::evidence::Weighted;
 use crate::diagnose::explanation::Explanation;
+use crate::diagnose::latency_distance::{latency_distance, of_latency, turned};
 use crate::diagnose::rows::Rows;
-use crate::diagnose::signature::LatencyKind;
 use crate::diagnose::signatures::{latency_kind, signature_of};
 use crate::diagnose::trace::Trace;
 use crate::physics::ActuationLatency;
@@ -58,12 +58,11 @@ pub(super) fn question(
 ) -> Option<Question> {
     let search = &explanation.search;
     let fitted = &search.after;
-    let inflation = fitted.weighted.long_run_deviation();
     if latency_kind(named).is_some() {
-        let turned = turned(fitted.base.latency, named);
-        let now = of_latency(traces, (&fitted.rows, &fitted.base), &fitted.weighted, turned)?;
-        return Some(Question { named, kind: Kind::Latency(other, turned), now: now / inflation });
+        let now = latency_distance(traces, fitted, named)?;
+        return Some(Question { named, kind: Kind::Latency(other, turned(fitted.base.latency, named)), now });
     }
+    let inflation = fitted.weighted.long_run_deviation();
     let rivals = search.steps.iter().flat_map(|step| &step.rivals);
     let mut best: Option<Question> = None;
     for place in places(explanation, named) {
@@ -103,31 +102,6 @@ pub(super) fn size(explanation: &Explanation, named: &'static str) -> Option<Que
 fn places(explanation: &Explanation, id: &str) -> impl Iterator<Item = usize> {
     let present = explanation.search.after.base.effects.iter().enumerate();
     present.filter(move |(_, present)| present.id() == id).map(|(place, _)| place)
-}
-
-/// The same latency, all of it of the other kind.
-fn turned(latency: ActuationLatency, named: &str) -> ActuationLatency {
-    let (total_s, none) = (latency.total_s(), ActuationLatency::default());
-    if latency_kind(named) == Some(LatencyKind::Lag) {
-        ActuationLatency { delay_s: total_s, ..none }
-    } else {
-        ActuationLatency { lag_s: total_s, ..none }
-    }
-}
-
-/// Norm of the part of another latency that the nuisances (a shift in time among them) do not explain.
-fn of_latency(
-    traces: &[Trace],
-    (rows, base): (&Rows, &Base),
-    weighted: &Weighted,
-    latency: ActuationLatency,
-) -> Option<f64> {
-    let turned = Rows::new(traces, &Base { latency, ..base.clone() }).ok()?;
-    let mut difference = turned.residual;
-    for (difference, own) in difference.iter_mut().zip(&rows.residual) {
-        difference.iter_mut().zip(own).for_each(|(difference, own)| *difference -= own);
-    }
-    Some(weighted.partialled(&[difference]).map_or(0.0, |(_, left)| left.norm()))
 }
 
 /// Step of the grid of the simulated flight, s: many instants a kernel, few a second.

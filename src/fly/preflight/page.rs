@@ -78,8 +78,9 @@ fn trajectory_facts(situation: &Situation<'_>) -> Vec<String> {
     let up_m_s = extremes.up_speed_m_s.max(extremes.down_speed_m_s);
     vec![
         format!(
-            "trajectory: {:.0} s; north {:.2} to {:.2} m ({}), west {:.2} to {:.2} m ({}), up {:.2} to {:.2} m (room {} to {})",
+            "trajectory with the ways to it and from it: {:.0} s (about {:.0} s from the ground to the ground); north {:.2} to {:.2} m ({}), west {:.2} to {:.2} m ({}), up {:.2} to {:.2} m (room {} to {})",
             situation.path.duration_s(),
+            situation.duration_s(),
             low[0],
             high[0],
             wall(limits.x_max_m),

@@ -113,7 +113,8 @@ fn state_line(model: &ViewModel) -> String {
 fn parameters_line(model: &ViewModel) -> String {
     let shown: Vec<String> = model.parameters.iter().filter_map(parameter).collect();
     let said = if shown.is_empty() { "nothing determined yet".to_owned() } else { shown.join(", ") };
-    format!("[{:7.1} s] from {:.0} s of flight: {said}", model.elapsed_s, model.parameters_used_s)
+    let used_s = model.parameters_used_s;
+    format!("[{:7.1} s] rigid body alone, from {used_s:.0} s so far: {said}", model.elapsed_s)
 }
 
 fn parameter(row: &ParameterRow) -> Option<String> {

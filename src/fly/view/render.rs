@@ -65,10 +65,21 @@ pub fn render(frame: &mut Frame<'_>, model: &ViewModel) {
     } else {
         below
     };
-    let title = format!("Parameters from {:.0} s of flight", model.parameters_used_s);
-    boxed(frame, &title, parameter_lines(model, parameters.width), parameters);
+    boxed(
+        frame,
+        &parameters_title(model.parameters_used_s, usize::from(parameters.width)),
+        parameter_lines(model, parameters.width),
+        parameters,
+    );
     event_list(frame, model, events);
     frame.render_widget(Paragraph::new(help(model)), foot);
+}
+
+/// What the parameters and their errors are, in so many columns with the frame: a plan and a model have other errors of them.
+fn parameters_title(used_s: f64, columns: usize) -> String {
+    let short = format!("Rigid body alone, from {used_s:.0} s so far");
+    let long = format!("{short}; +-: standard error in this flight so far");
+    if long.len() + 2 <= columns { long } else { short }
 }
 
 /// The page before the flight, as much of it as fits, and the field for the word.
@@ -294,6 +305,14 @@ fn help(model: &ViewModel) -> Line<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_title_of_the_parameters_says_which_errors_they_are_and_fits() {
+        assert_eq!(parameters_title(12.0, 42), "Rigid body alone, from 12 s so far");
+        let long = parameters_title(12.0, 80);
+        assert!(long.ends_with("standard error in this flight so far") && long.len() <= 78, "{long}");
+        assert!(parameters_title(1234.0, 42).len() <= 40);
+    }
 
     #[test]
     fn no_word_of_a_reason_is_cut() {

@@ -270,7 +270,7 @@ fn nothing(study: &ExplainStudy) -> String {
 const MUCH_LEFT: f64 = 0.15;
 
 /// Force that the model leaves, N rms over all axes and as a share of the weight, where that is much.
-fn much_left(study: &ExplainStudy) -> Option<(f64, f64)> {
+pub(super) fn much_left(study: &ExplainStudy) -> Option<(f64, f64)> {
     let left =
         study.residual().iter().filter(|of| of.unit == "N").map(|of| of.after.powi(2)).sum::<f64>().sqrt();
     let share = left / (study.vehicle().body.mass_kg * study.vehicle().gravity_m_s2);
@@ -346,7 +346,7 @@ fn ranked(rank: fn(&Words) -> Option<usize>) -> Vec<&'static str> {
     all.into_iter().map(|(_, id)| id).collect()
 }
 
-fn list(parts: &[String]) -> String {
+pub(super) fn list(parts: &[String]) -> String {
     joined(parts, "and")
 }
 

@@ -5,7 +5,8 @@ use super::answer::answer;
 use super::hold_out::{hold_out, hold_out_details};
 use super::motor::{motor, sizes};
 use super::pictures;
-use super::text::{after, scale, unseen};
+use super::rivals::rival;
+use super::text::{ERRORS, after, scale, unseen};
 use crate::diagnose::holdout::RateLaw;
 use crate::diagnose::{Empirical, NO_LATENCY, Named, Slight, Verdict, called, clause};
 use crate::report::html::{
@@ -15,6 +16,7 @@ use crate::report::number::{chance, significant, spoken, with_error};
 use crate::report::page::page;
 use crate::report::quality::data_quality;
 use crate::study::{ExplainStudy, TriedAs};
+use crate::text::capital;
 use crate::vehicle::AXIS_NAMES;
 use maud::{Markup, html};
 
@@ -95,20 +97,11 @@ fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
         significant(100.0 * strength.gain, 2),
         significant(study.delta_bic(effect), 3)
     );
-    let apart = |distinguishability: Option<f64>| {
-        distinguishability.map_or_else(
-            || "it explains nearly as much".to_owned(),
-            |apart| format!("{apart:.1} standard deviations apart in {}", study.these_flights()),
-        )
-    };
     html! {
         (paragraph(&format!("{}.", clause(effect, study.vehicle()))))
         (table(&caption, &["parameter", "value|", "unit"], &rows))
         @for other in &effect.confusable_with {
-            (note(&format!(
-                "Confusable with {} ({}): {}.",
-                called(other.id), other.id, apart(other.distinguishability)
-            )))
+            (note(&format!("{}.", capital(&rival(study, other)))))
         }
     }
 }
@@ -195,6 +188,7 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
             &["parameter", "nominal|", "before|", "after|", "moved|", "unit"],
             &rows,
         ))
+        (note(&format!("+-: {ERRORS}.")))
         @if let Some(sentence) = study.scale().as_ref().and_then(scale) { (note(&format!("{sentence}."))) }
         @for (reason, names) in study.body_not_determined() {
             (note(&format!("{}: not determined: {reason}.", names.join(", "))))

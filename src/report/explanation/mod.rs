@@ -2,6 +2,7 @@
 
 mod along;
 mod answer;
+mod answer_line;
 mod effect_json;
 mod figures;
 mod fit_json;
@@ -13,14 +14,16 @@ mod model;
 mod motor;
 mod pictures;
 mod prospect;
+mod rivals;
 mod text;
 mod turning_json;
 mod whereabouts;
 
 pub use answer::answer as explanation_answer;
+pub use answer_line::answer_line as explanation_answer_line;
 pub use html::explanation_html;
 pub use json::ExplanationDocument;
 pub use markdown::explanation_markdown;
 pub use model::explained_model;
 pub use prospect::next_flight_words;
-pub use text::explanation_text;
+pub use text::{explanation_page, explanation_text};

@@ -3,16 +3,28 @@
 use super::along::along_lines;
 use super::answer::answer;
 use super::motor::{motor, sizes};
-use crate::diagnose::{NO_LATENCY, Named, Verdict, called, clause};
+use super::rivals::rival;
+use crate::diagnose::{NO_LATENCY, Named, Verdict, clause};
 use crate::estimate::{Finding, ThrustScale};
+use crate::note::Note;
 use crate::report::number::{chance, percent, significant, with_error};
 use crate::report::thrust_source::thrust_name;
 use crate::study::{AxisFit, BodyParameter, ExplainStudy, Predicted, QUANTITIES};
 use std::fmt::Write;
 
-/// The page for the terminal: the answer first.
+/// The page for the terminal: the answer first, the notes last.
 #[must_use]
 pub fn explanation_text(study: &ExplainStudy) -> String {
+    let mut page = explanation_page(study);
+    for note in &study.notes {
+        let _ = write!(page, "\n  {note}");
+    }
+    page
+}
+
+/// The same without the study's own notes, for a terminal on which they are said beside it.
+#[must_use]
+pub fn explanation_page(study: &ExplainStudy) -> String {
     let mut page = format!("{}\n\n", answer(study));
     let _ = writeln!(page, "  verdict: {}", study.verdict().name());
     for effect in study.effects.iter().chain(&study.closest) {
@@ -31,7 +43,7 @@ pub fn explanation_text(study: &ExplainStudy) -> String {
     }
     quality_lines(&mut page, study);
     let of_holdout = study.shown.iter().flat_map(|shown| &shown.notes);
-    for note in study.notes.iter().chain(of_holdout.filter(|note| note.is_warning())) {
+    for note in of_holdout.filter(|note| note.is_warning()) {
         let _ = writeln!(page, "  {note}");
     }
     page.truncate(page.trim_end().len());
@@ -68,15 +80,7 @@ fn effect_lines(page: &mut String, study: &ExplainStudy, effect: &Named) {
         significant(100.0 * strength.gain, 2)
     );
     for other in &effect.confusable_with {
-        let apart = other.distinguishability.map_or(String::new(), |apart| {
-            format!(": {apart:.1} standard deviations apart in {}", study.these_flights())
-        });
-        let rival = format!("{} ({}){apart}", called(other.id), other.id);
-        let _ = if other.is_told_apart() {
-            writeln!(page, "    explained nearly as much, and is told apart: {rival}")
-        } else {
-            writeln!(page, "    confusable with {rival}")
-        };
+        let _ = writeln!(page, "    {}", rival(study, other));
     }
 }
 
@@ -171,6 +175,10 @@ fn at_end_lines(page: &mut String, predicted: Option<&Predicted>) {
     }
 }
 
+/// Which of the standard errors of one number these are: a plan and the view of a flight have others.
+pub(super) const ERRORS: &str = "standard error after the flight, with the effects in the model. A plan and the live view have those \
+                                 of the rigid body alone";
+
 fn body_lines(page: &mut String, study: &ExplainStudy) {
     let _ = writeln!(page, "\n  rigid body{:>13}{:>16}{:>28}", "nominal", "alone", "with the effects");
     for of in study.body() {
@@ -184,6 +192,7 @@ fn body_lines(page: &mut String, study: &ExplainStudy) {
             of.unit
         );
     }
+    let _ = writeln!(page, "    +-: {ERRORS}");
     if let Some(sentence) = study.scale().as_ref().and_then(scale) {
         let _ = writeln!(page, "    {sentence}");
     }
@@ -271,7 +280,9 @@ fn quality_lines(page: &mut String, study: &ExplainStudy) {
             thrust_name(quality.thrust_source),
             quality.usable.summary()
         );
-        for note in &quality.notes {
+        // what the study says of it stands among its notes
+        let is_said = |note: &&Note| study.notes.iter().any(|of| of.text == note.text);
+        for note in quality.notes.iter().filter(|note| !is_said(note)) {
             let _ = writeln!(page, "    {note}");
         }
     }

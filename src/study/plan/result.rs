@@ -2,7 +2,7 @@
 
 use crate::config::{StoredTrajectory, StoredTransitions};
 use crate::note::Note;
-use crate::plan::{Assessment, Criterion, Extremes, Margin, PARAMETERS};
+use crate::plan::{Assessment, Criterion, Extremes, HOVER_S, Margin, PARAMETERS};
 use crate::trajectory::{FlightPath, FourierTrajectory};
 use crate::units::deg_from_rad;
 use crate::vehicle::{Limits, Vehicle};
@@ -68,6 +68,15 @@ impl PlanStudy {
             format!("{}_{}", margin.quantity.name(), if margin.upper { "max" } else { "min" })
         };
         self.assessment.check.margins.iter().map(move |margin| (name(margin), margin.spare()))
+    }
+
+    /// s from the hover after takeoff to the one before landing, both with [`HOVER_S`], as `fly` flies it; `None` where no transition
+    /// keeps the limits.
+    #[must_use]
+    pub fn hover_to_hover_s(&self) -> Option<f64> {
+        let around = self.transitions?;
+        let series_s = self.series.period_s * f64::from(self.repeats);
+        Some(HOVER_S + around.to_start_s + series_s + around.to_landing_s + HOVER_S)
     }
 
     /// Relative standard errors of what the flight will determine, by parameter; `None` where it cannot determine all
