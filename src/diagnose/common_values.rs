@@ -5,7 +5,9 @@ use super::channels::Nuisance;
 use super::explanation::Explanation;
 use super::fit::Fitted;
 use super::named::Named;
+use super::rows::Rows;
 use super::signature::EffectTerm;
+use super::trace::Trace;
 use crate::estimate::{INERTIA_ENTRIES, NAMES};
 use nalgebra::DMatrix;
 
@@ -23,9 +25,12 @@ impl Explanation {
 
 impl Explanation {
     /// The final model with the values that flights have in common, by the names of [`FlightParameter`](super::FlightParameter), SI: in its names as well.
+    /// Its mass moves with them: thrust that is less by an effect lifts less.
     #[must_use]
-    pub fn with_common(&self, values: &[(&str, (f64, f64))]) -> Self {
+    pub fn with_common(&self, flights: &[Trace], values: &[(&str, (f64, f64))]) -> Self {
         let mut moved = self.with_values(&[], values);
+        moved.search.after.base.vehicle.body.mass_kg +=
+            mass_step(flights, (&self.search.after, &moved.search.after));
         let of = |name: &str| values.iter().find(|(known, _)| *known == name).map(|(_, estimate)| *estimate);
         let terms = &moved.search.after.base.effects;
         for effect in moved.named.iter_mut().chain(&mut moved.closest) {
@@ -47,6 +52,23 @@ fn is_of(named: &Named, term: &EffectTerm) -> bool {
         named.parameters.iter().any(|of| Some(of.name) == name && of.value == term.values[slot])
     };
     named.id == term.id() && term.signature.role.which.is_none_or(is_same)
+}
+
+/// By how much the mass of the flights changes, kg, where the effects have the second model's values in place of the first's: by least
+/// squares of the force along body z with all else held. Zero for a vehicle that was weighed, and where a flight tells nothing of it.
+fn mass_step(flights: &[Trace], (before, after): (&Fitted, &Fitted)) -> f64 {
+    if after.base.weighed_kg.is_some() {
+        return 0.0;
+    }
+    let missing = |fitted: &Fitted| {
+        let rows = Rows::new(flights, &fitted.base).ok()?;
+        let mass = rows.nuisances.iter().find(|column| column.nuisance == Nuisance::Mass)?;
+        let (slopes, residuals) = (&mass.values[2], &rows.residual[2]);
+        let squares: f64 = slopes.iter().map(|slope| slope * slope).sum();
+        let kg = slopes.iter().zip(residuals).map(|(slope, left)| slope * left).sum::<f64>() / squares;
+        kg.is_finite().then_some(kg)
+    };
+    missing(after).zip(missing(before)).map_or(0.0, |(after, before)| after - before)
 }
 
 fn set_values(fitted: &mut Fitted, values: &[(&str, (f64, f64))]) {

@@ -218,7 +218,7 @@ fn is_lacking(lack: &LackOfFit, fitted: &Fitted, mut axes: Range<usize>) -> bool
 fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> Explanation {
     let Beyond { lack, located_before, located_after, field, aperiodic } = beyond;
     let (mut named, mut slight) = names(traces, &found);
-    let limits = limits(&found.last, &found.after);
+    let limits = limits(traces, &found.last, &found.after);
     let too_little_excitation = too_little_excitation(&found.after, &limits);
     let turned_by_control = too_little_excitation && is_fed_back(traces);
     named.extend(latency_name(traces, vehicle, &found).filter(|_| !turned_by_control));

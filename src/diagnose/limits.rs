@@ -10,10 +10,12 @@ use super::gates::Gates;
 use super::gates::NAME_Z;
 use super::materiality::Materiality;
 use super::named::DetectionLimit;
+use super::recorded::heights_flown_m;
 use super::signature::EffectTerm;
 use super::signatures::signature_of;
 use super::slight::BEYOND;
 use super::tested::Tested;
+use super::trace::Trace;
 
 /// Standard errors by which an effect of its usual size must differ from zero: the z of [`Gates`](super::Gates).
 const CERTAIN: f64 = NAME_Z;
@@ -22,7 +24,7 @@ const CERTAIN: f64 = NAME_Z;
 const PLAIN: f64 = 8.0;
 
 /// The smallest coefficient that this flight would have shown, for every candidate that was not named.
-pub(super) fn limits(last: &[Tested], fitted: &Fitted) -> Vec<DetectionLimit> {
+pub(super) fn limits(traces: &[Trace], last: &[Tested], fitted: &Fitted) -> Vec<DetectionLimit> {
     let vehicle = &fitted.base.vehicle;
     let mut out: Vec<DetectionLimit> = Vec::new();
     let has_size = |tested: &&Tested| {
@@ -39,7 +41,8 @@ pub(super) fn limits(last: &[Tested], fitted: &Fitted) -> Vec<DetectionLimit> {
                 let Some(parameter) = part.parameter(free) else { continue };
                 let naming = &part.signature.naming;
                 // certainty alone is not enough for a name
-                let of_size = naming.least_of_mass * vehicle.body.mass_kg
+                let over = if naming.by_height { heights_flown_m(traces) } else { 1.0 };
+                let of_size = naming.least_of_mass * vehicle.body.mass_kg / over
                     + naming.least_of_arm * fitted.base.size.arm_m;
                 let of_size = if part.is_amount(free) { of_size } else { 0.0 };
                 let least = naming.ordinary.unwrap_or(naming.least).max(of_size);

@@ -133,11 +133,15 @@ impl Look {
                 .filter(move |of| of.signature().is_some_and(|signature| is_asked(&signature.role)));
             asked.filter_map(|candidate| {
                 let evidence = fitted.weighted.test(&columns_of(&traces, &fitted, candidate)?)?;
-                Some((*evidence.theta.first()?, evidence.std(0)))
+                Some((candidate, (*evidence.theta.first()?, evidence.std(0))))
             })
         };
-        let rotors = sizes(|role| role.which.is_some()).collect();
-        let changes = sizes(|role| role.moment.is_some()).any(|(size, std)| size.abs() > CERTAIN * std);
+        let rotors = sizes(|role| role.which.is_some()).map(|(_, size)| size).collect();
+        let mass_kg = fitted.base.vehicle.body.mass_kg;
+        let changes = sizes(|role| role.moment.is_some()).any(|(candidate, (size, std))| {
+            let least = candidate.signature().map_or(0.0, |of| of.naming.least_of_mass * mass_kg);
+            size.abs() > (CERTAIN * std).max(least)
+        });
         let mass_kg = estimated.theta[0];
         let mean = |volts: &Series<f64>| {
             let rows = &traces[0].centers;

@@ -122,3 +122,14 @@ impl<'a> Recorded<'a> {
         full.filter(|full_v| (2.5..60.0).contains(full_v))
     }
 }
+
+/// Difference between the greatest and the least height of a flight, m: the greatest of them.
+pub(super) fn heights_flown_m(flights: &[Trace]) -> f64 {
+    let span = |trace: &Trace| {
+        let heights = trace.centers.iter().map(|&row| trace.states[row].position_m.z);
+        let (least, most) =
+            heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), z| (least.min(z), most.max(z)));
+        (most - least).max(0.0)
+    };
+    flights.iter().map(span).fold(0.0, f64::max)
+}

@@ -14,6 +14,7 @@ use super::other_law::add_other_laws;
 use super::pace::Pace;
 use super::physical::make_physical;
 use super::reconstructed::{Forms, reconstruct};
+use super::recorded::heights_flown_m;
 use super::rotor_axes::is_refuted;
 use super::signature::EffectTerm;
 use super::tested::Search;
@@ -176,7 +177,7 @@ fn unnamed(
         let bent = present.signature.role.bends_thrust.is_some() && is_fed_back(traces);
         let unseen = bent && (!shows_in_forces(fitted, present, first) || is_noise(present, traces, fitted));
         let unbalanced = is_refuted(given, fitted, present, first);
-        let ordinary = is_ordinary(present, &fitted.base);
+        let ordinary = is_ordinary(present, &fitted.base, traces);
         let is_unnamed = refuted || unseen || unbalanced || ordinary;
         if is_unnamed {
             let effect = present.id();
@@ -207,11 +208,12 @@ fn is_noise(bent: &EffectTerm, traces: &[Trace], fitted: &Fitted) -> bool {
 
 /// Whether an effect leaves the model without a name: every vehicle has this much of it, or it is too small for its
 /// name. One that every vehicle has a little of, and that is certain, stays as a trace (`EffectTerm::is_of_every_vehicle`).
-fn is_ordinary(term: &EffectTerm, base: &Base) -> bool {
+fn is_ordinary(term: &EffectTerm, base: &Base, traces: &[Trace]) -> bool {
     let naming = &term.signature.naming;
     let of_all = || term.values.iter().map(|value| value * value).sum::<f64>().sqrt();
     let amounts = || term.signature.amounts.iter().filter_map(|&slot| term.values.get(slot));
-    term.size() < naming.least_of_mass * base.vehicle.body.mass_kg
+    let over = if naming.by_height { heights_flown_m(traces) } else { 1.0 };
+    term.size() * over < naming.least_of_mass * base.vehicle.body.mass_kg
         || naming.ordinary.is_some_and(|ordinary| term.size() < ordinary)
         || naming.least > 0.0 && of_all() < naming.least
         || naming.most.is_some_and(|most| amounts().any(|amount| *amount > most))

@@ -199,8 +199,10 @@ pub fn first_finer(term: &EffectTerm) -> Vec<usize> {
 pub struct Naming {
     /// size (norm of the amounts) that ordinary vehicles have: up to it there is no name
     pub ordinary: Option<f64>,
-    /// share of the vehicle's mass up to which an amount in kg, or in kg/m its share for each metre, gets no name
+    /// share of the vehicle's mass up to which an amount in kg gets no name
     pub least_of_mass: f64,
+    /// the amount is for each metre of height: what counts is that over the heights of the flight
+    pub by_height: bool,
     /// share of the mean arm up to which an amount in m gets no name
     pub least_of_arm: f64,
     /// norm of all parameters below which it stays in the model without a name
@@ -228,6 +230,7 @@ impl Naming {
     pub const PLAIN: Self = Self {
         ordinary: None,
         least_of_mass: 0.0,
+        by_height: false,
         least_of_arm: 0.0,
         least: 0.0,
         is_ordinary: |_, _| false,

@@ -20,30 +20,33 @@ pub(super) fn may_be_noise(flights: &[Trace], fitted: &Fitted) -> bool {
         let measured = force.iter().map(|force| mass_kg * force).collect();
         pairs.extend(about_mean(trace.weak(0, &thrust)).into_iter().zip(about_mean(measured)));
     }
-    let Some((least, greatest)) = slopes(&pairs) else { return false };
-    let (least_std, greatest_std) = errors(&pairs);
+    // where the force does not even grow with the thrust, nothing tells the slope
+    let Some(((least, greatest), (least_std, greatest_std))) = slopes(&pairs).zip(errors(&pairs)) else {
+        return true;
+    };
     (least - SIGMAS * least_std..=greatest + SIGMAS * greatest_std).contains(&1.0)
 }
 
 /// Standard errors by which each slope may be wrong. The usual two.
 const SIGMAS: f64 = 2.0;
-/// Parts of the flights that are left out in turn. They are far longer than the weak form's window, over which rows are alike.
+/// Parts of the flights that are left out in turn. They are longer than the weak form's window, over which rows are alike.
 const PARTS: usize = 10;
 
-/// Standard errors of both slopes, by leaving each part of the rows out in turn (jackknife, Quenouille 1956).
-fn errors(pairs: &[(f64, f64)]) -> (f64, f64) {
+/// Standard errors of both slopes, by leaving each part of the rows out in turn (jackknife, Quenouille 1956); `None` where the rest does
+/// not grow together.
+fn errors(pairs: &[(f64, f64)]) -> Option<(f64, f64)> {
     let length = pairs.len().div_ceil(PARTS).max(1);
     let without = |part: usize| {
         let (from, to) = (part * length, ((part + 1) * length).min(pairs.len()));
         slopes(&[&pairs[..from.min(to)], &pairs[to..]].concat())
     };
-    let each: Vec<(f64, f64)> = (0..pairs.len().div_ceil(length)).filter_map(without).collect();
+    let each: Vec<(f64, f64)> = (0..pairs.len().div_ceil(length)).map(without).collect::<Option<_>>()?;
     let count = each.len().max(1) as f64;
     let error = |of: fn(&(f64, f64)) -> f64| {
         let mean = each.iter().map(of).sum::<f64>() / count;
         ((count - 1.0) / count * each.iter().map(|one| (of(one) - mean).powi(2)).sum::<f64>()).sqrt()
     };
-    (error(|(least, _)| *least), error(|(_, greatest)| *greatest))
+    Some((error(|(least, _)| *least), error(|(_, greatest)| *greatest)))
 }
 
 /// Slopes of the second on the first of each pair, and of the first on the second turned around; `None` where they do not grow together.
@@ -82,8 +85,8 @@ mod tests {
             let sign = |row: usize| if row.is_multiple_of(2) { 1.0 } else { -1.0 };
             (0..100).map(|row| (sign(row), slope(row / 10) * sign(row))).collect()
         };
-        assert!(errors(&of(|_| 0.8)).0 < 1e-12);
-        let (least_std, _) = errors(&of(|part| if part.is_multiple_of(2) { 0.8 } else { 1.2 }));
+        assert!(errors(&of(|_| 0.8)).unwrap().0 < 1e-12);
+        let (least_std, _) = errors(&of(|part| if part.is_multiple_of(2) { 0.8 } else { 1.2 })).unwrap();
         // the standard error of the mean of ten values that are 0.2 off
         assert!((least_std - 0.2 / 3.0).abs() < 1e-9, "{least_std}");
     }

@@ -6,8 +6,8 @@ use mavid::diagnose::holdout::{
     split_last_periods,
 };
 use mavid::diagnose::{
-    Along, Empirical, ExplainSettings, Explanation, FlightParameter, Trace, Verdict, each_with_model_of_all,
-    explain,
+    Along, Empirical, ExplainSettings, Explanation, FlightParameter, Trace, Verdict, apart,
+    each_with_model_of_all, explain,
 };
 use mavid::physics::effects::by_id;
 use mavid::physics::{ActiveEffect, Wrench};

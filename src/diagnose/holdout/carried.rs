@@ -1,6 +1,6 @@
 //! Transfer of the identified model to another flight.
 
-use super::loading::{Loaded, has_other_mass, loaded};
+use super::loading::{Loaded, has_other_mass, loaded, loaded_beside};
 use super::rate_law::RateLaw;
 use super::settings::{Explained, HeldOut, HoldoutSettings};
 use crate::diagnose::base::Base;
@@ -139,7 +139,8 @@ pub(super) fn carried_over(
     pair.own(trace, f64::NEG_INFINITY);
     if let Some(after) = loaded(&pair.after, trace, settings)? {
         pair.notes.push(Note::warning(about(), of_load(&after)));
-        let before = loaded(&pair.before, trace, settings)?
+        let beside = if after.more_kg.is_some() { loaded_beside } else { loaded };
+        let before = beside(&pair.before, trace, settings)?
             .map_or_else(|| pair.before.on(&trace.own).into_owned(), |of| of.base);
         pair.loaded = Some(LoadedPair { before, after: after.base, until_s: after.until_s });
     }

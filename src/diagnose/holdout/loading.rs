@@ -41,6 +41,24 @@ pub(super) fn loaded(
     trace: &Trace,
     settings: &HoldoutSettings,
 ) -> Result<Option<Loaded>, PhysicsError> {
+    loaded_from(base, trace, (settings, LEAST_OF_MASS, SIGMAS))
+}
+
+/// The same of the model that is compared with one that has its own mass: it has its own in any case, or the difference would count for the
+/// effects.
+pub(super) fn loaded_beside(
+    base: &Base,
+    trace: &Trace,
+    settings: &HoldoutSettings,
+) -> Result<Option<Loaded>, PhysicsError> {
+    loaded_from(base, trace, (settings, 0.0, 0.0))
+}
+
+fn loaded_from(
+    base: &Base,
+    trace: &Trace,
+    (settings, least, sigmas): (&HoldoutSettings, f64, f64),
+) -> Result<Option<Loaded>, PhysicsError> {
     if settings.same_flight {
         return Ok(None);
     }
@@ -51,7 +69,7 @@ pub(super) fn loaded(
     for term in &mut all.effects {
         term.free.clear();
     }
-    let heavier = if settings.own_mass { heavier(&all, trace)? } else { None };
+    let heavier = if settings.own_mass { heavier(&all, trace, (least, sigmas))? } else { None };
     if let Some((more_kg, _)) = heavier {
         all.vehicle.body.mass_kg += more_kg;
     }
@@ -73,7 +91,7 @@ pub(super) fn has_other_mass(base: &Base, trace: &Trace) -> Result<bool, Physics
     for term in &mut all.effects {
         term.free.clear();
     }
-    Ok(heavier(&all, trace)?.is_some())
+    Ok(heavier(&all, trace, (LEAST_OF_MASS, SIGMAS))?.is_some())
 }
 
 /// By how much the centre of mass moved, and up to when (s) the flight was used; the base is then moved.
@@ -103,8 +121,13 @@ fn moved(base: &mut Base, trace: &Trace) -> Result<Option<([f64; 2], f64)>, Phys
     Ok(Some((moved.into(), until_s)))
 }
 
-/// Mass beyond that of the base, kg, and up to when (s) the flight was used; `None` where it is no payload.
-fn heavier(base: &Base, trace: &Trace) -> Result<Option<(f64, f64)>, PhysicsError> {
+/// Mass beyond that of the base, kg, and up to when (s) the flight was used; `None` where it is less than a share of the mass or so many
+/// standard errors.
+fn heavier(
+    base: &Base,
+    trace: &Trace,
+    (least, sigmas): (f64, f64),
+) -> Result<Option<(f64, f64)>, PhysicsError> {
     let rows = Rows::new(std::slice::from_ref(trace), base)?;
     let mass = rows.nuisances.iter().find(|column| column.nuisance == Nuisance::Mass);
     let (Some(mass), Some(&first_s)) = (mass, rows.time_s.first()) else { return Ok(None) };
@@ -130,8 +153,7 @@ fn heavier(base: &Base, trace: &Trace) -> Result<Option<(f64, f64)>, PhysicsErro
     let scatter =
         blocks.iter().map(|(_, score)| score * score).sum::<f64>() * blocks.len() as f64 / left as f64;
     let std_kg = scatter.sqrt() / squares;
-    let is_payload =
-        more_kg.abs() > SIGMAS * std_kg && more_kg.abs() > LEAST_OF_MASS * base.vehicle.body.mass_kg;
+    let is_payload = more_kg.abs() > sigmas * std_kg && more_kg.abs() > least * base.vehicle.body.mass_kg;
     Ok(is_payload.then_some((more_kg, until_s)))
 }
 

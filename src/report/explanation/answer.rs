@@ -80,7 +80,7 @@ fn found(study: &ExplainStudy) -> String {
 fn beside_what_is_alone(nothing: &str, alone: &str) -> String {
     let own = format!("Single flights have something of their own: {alone}.");
     match nothing.strip_prefix('N') {
-        Some(nothing) => format!("{own} Beside that, n{nothing}"),
+        Some(nothing) => format!("{own} Apart from that, n{nothing}"),
         None => format!("{own} {nothing}"),
     }
 }

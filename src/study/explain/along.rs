@@ -1,9 +1,9 @@
 //! Several flights: what they have in common, what is each one's own, and which flights carry a name.
 
 use super::along_flights::{AlongFlights, is_of_one_flight};
-use super::left_out::mass_of_vehicle;
 use super::readers::for_readers;
 use super::result::ExplainStudy;
+use super::traces::traces_of;
 use crate::diagnose::signatures::{is_irregular, signature_of};
 use crate::diagnose::{
     Apart, ExplainSettings, Explanation, Named, Owner, Verdict, apart, called, each_with_model_of_all,
@@ -14,6 +14,7 @@ use crate::recording::Quantity;
 use crate::signals::Signals;
 use crate::study::Track;
 use crate::study::flights::Prepared;
+use crate::study::input::InputFile;
 use crate::study::track::OF_LOG;
 use crate::text::significant;
 use crate::vehicle::Vehicle;
@@ -113,13 +114,12 @@ impl ExplainStudy {
             of_one_flight: Vec::new(),
             alone: alone.to_vec(),
         };
-        // one value of a parameter: in the names and in the model that of the flights together; the mass that goes with them is theirs, too
-        let of_flights =
-            |track: &Track| mass_of_vehicle(track, flights).unwrap_or_else(|| along.together(track));
+        // one value of a parameter: in the names and in the model that of the flights together
         let each = along.tracks.iter();
         let common: Vec<(&str, (f64, f64))> =
-            each.filter_map(|track| Some((track.name.as_str(), of_flights(track)?))).collect();
-        self.explanation = self.explanation.with_common(&common);
+            each.filter_map(|track| Some((track.name.as_str(), along.together(track)?))).collect();
+        let traces = traces_of(flights, vehicle, settings);
+        self.explanation = self.explanation.with_common(&traces, &common);
         self.effects = for_readers(&self.explanation.named, self.explanation.airspeed_m_s);
         self.tell_payloads(flights);
         along.of_one_flight = self.names_of_one_flight(flights, alone, !along.sized_by.is_empty());
@@ -136,6 +136,18 @@ impl ExplainStudy {
                 called(named.id)
             );
             Some(Note::remark(About::File(path), text))
+        });
+        self.notes.extend(told);
+    }
+
+    /// A remark on each held-out flight that is seen with a wind of its own.
+    pub(super) fn tell_winds(&mut self, inputs: &[InputFile], winds_m_s: &[Option<[f64; 2]>]) {
+        let told = inputs.iter().zip(winds_m_s).filter_map(|(input, wind)| {
+            let [north, west] = (*wind)?;
+            let text = format!(
+                "it is predicted with its own wind, {north:.1} m/s to the north and {west:.1} m/s to the west, which is from the whole flight"
+            );
+            Some(Note::warning(About::File(input.path.clone()), text))
         });
         self.notes.extend(told);
     }

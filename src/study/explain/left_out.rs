@@ -34,19 +34,16 @@ fn without<'a>(tracks: &'a [Track], flight: usize, flights: &[Signals]) -> Vec<(
     let others = |track: &Track| {
         let mut track = track.clone();
         track.values[flight] = None;
-        mass_of_vehicle(&track, flights).unwrap_or_else(|| track.pooled())
-    };
-    tracks.iter().filter_map(|track| Some((track.name.as_str(), others(track)?))).collect()
-}
-
-/// The mass of the vehicle by all flights without what each carries, kg, with its standard error; `None` of another parameter.
-pub(super) fn mass_of_vehicle(track: &Track, flights: &[Signals]) -> Option<Option<(f64, f64)>> {
-    let is_mass = track.effect.is_none() && track.name == NAMES[0];
-    is_mass.then(|| {
-        let mut track = track.clone();
-        for (value, signals) in track.values.iter_mut().zip(flights) {
-            *value = value.map(|(kg, std_kg)| (kg - signals.own.payload_kg, std_kg));
+        if track.effect.is_none() && track.name == NAMES[0] {
+            // what they carry is their own, and by how much it is more rests on the others
+            let unladen = flights.iter().map(|signals| signals.own.payload_kg == 0.0);
+            let unladen: Vec<usize> = unladen
+                .enumerate()
+                .filter_map(|(at, unladen)| (unladen && at != flight).then_some(at))
+                .collect();
+            return if unladen.is_empty() { track.pooled() } else { track.only(&unladen).pooled() };
         }
         track.pooled()
-    })
+    };
+    tracks.iter().filter_map(|track| Some((track.name.as_str(), others(track)?))).collect()
 }

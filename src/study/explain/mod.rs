@@ -22,6 +22,7 @@ mod request;
 mod result;
 mod run;
 mod short;
+mod traces;
 mod unshown;
 mod validation_data;
 mod worth;

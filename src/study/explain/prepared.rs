@@ -4,11 +4,12 @@ use super::along::{with_own, with_own_winds, without_gust_of_none};
 use super::hold_out::hold_back;
 use super::result::{ExplainStudy, Given};
 use super::short::Short;
+use super::traces::traces_of;
 use super::validation_data::ValidationData;
 use crate::diagnose::holdout::HoldoutSettings;
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{
-    ExplainError, ExplainSettings, Explanation, GyroscopicShare, Named, TorqueLaw, Trace, Verdict,
+    ExplainError, ExplainSettings, Explanation, GyroscopicShare, Named, TorqueLaw, Verdict,
 };
 use crate::estimate::{
     Contradiction, contradicted, contradicting_flights, contradicts_file, moved_by_guessed_curve,
@@ -69,19 +70,19 @@ pub(in crate::study) fn explain_prepared(
     let (mut study, refused) = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
     // payload and wind of another day make no other vehicle; the names stay as they were found
     if study.refuted.is_none()
-        && (study.other_vehicle().is_some() || study.shown.as_ref().is_some_and(|shown| shown.other_mass))
+        && study.other_vehicle().is_some()
         && matches!(shown_on, ValidationData::Flights(_))
     {
         task.own_load = true;
-        if !several && !names_wind(&study) {
-            with_own_winds(held, asked.vehicle);
-        }
+        let day = !several && !names_wind(&study);
+        let own_winds = if day { with_own_winds(held, asked.vehicle) } else { Vec::new() };
         progress.stage(Stage::Predicting);
         let ExplainStudy { given, explanation, .. } = &study;
         let given = task.given(flights, given.settings.clone());
         let own = task.evaluated(given, explanation.clone(), flights, (held, None, shown_on));
-        if own.holdout.is_some() && own.other_vehicle().is_none() {
+        if own.predicts() && own.other_vehicle().is_none() {
             study = own;
+            study.tell_winds(&held.inputs, &own_winds);
         }
     }
     study.notes.extend(refused);
@@ -90,13 +91,6 @@ pub(in crate::study) fn explain_prepared(
         Some(whole) => task.explained_again(study, flights, whole),
         None => Ok(study),
     }
-}
-
-/// The flights as the weak form sees them.
-pub(super) fn traces_of(flights: &Prepared, vehicle: &Vehicle, settings: &ExplainSettings) -> Vec<Trace> {
-    let traces =
-        flights.signals.iter().filter_map(|signals| Trace::new(signals, vehicle, settings.half_width_s).ok());
-    traces.collect()
 }
 
 /// What every attempt has in common.
@@ -137,7 +131,8 @@ impl Task<'_> {
             }
             self.progress.stage(Stage::Predicting);
             let given = self.given(flights, settings.clone());
-            let mut study = self.evaluated(given, explanation, flights, (held, back, shown_on.clone()));
+            let study = self.evaluated(given, explanation, flights, (held, back, shown_on.clone()));
+            let mut study = self.with_own_mass(study, flights, (held, &shown_on));
             if let Some(refuted) = study.refuted_by_holdout() {
                 let ExplainStudy { given, explanation, .. } = study;
                 study = self.evaluated(given, explanation.refuted(), flights, (held, back, shown_on));
@@ -145,7 +140,7 @@ impl Task<'_> {
                 study.refuted = Some(refuted);
                 return Ok((study, notes));
             }
-            let unshown = study.unshown(&traces_of(flights, self.asked.vehicle, &settings));
+            let unshown = study.unshown(&traces_of(&flights.signals, self.asked.vehicle, &settings));
             let worthless = study.worthless().filter(|of| !settings.refused.contains(&of.id));
             let is_unshown = unshown.is_some();
             let (id, note) = match (unshown, worthless) {
@@ -169,6 +164,23 @@ impl Task<'_> {
             notes.push(note);
             self.progress.stage(Stage::ExplainingAgain);
         }
+    }
+
+    /// The same with the mass that a hold-out begins with, where that is another one: what is named is judged by what it does there, and not
+    /// by a payload.
+    fn with_own_mass(
+        &self,
+        study: ExplainStudy,
+        flights: &Prepared,
+        (held, shown_on): (&Prepared, &ValidationData),
+    ) -> ExplainStudy {
+        let begins_so = study.shown.as_ref().is_some_and(|shown| shown.other_mass);
+        if !begins_so || !matches!(shown_on, ValidationData::Flights(_)) {
+            return study;
+        }
+        let given = Given { own_load: true, ..self.given(flights, study.given.settings.clone()) };
+        let own = self.evaluated(given, study.explanation.clone(), flights, (held, None, shown_on.clone()));
+        if own.predicts() && own.other_vehicle().is_none() { own } else { study }
     }
 
     fn explanation(&self, flights: &Prepared, settings: &ExplainSettings) -> Result<Explanation, StudyError> {

@@ -1,9 +1,10 @@
 //! Opens, conditions, holds out, explains, tries again, shows, and designs the next flight.
 
 use super::hold_out::refuse_shared;
-use super::prepared::{Asked, explain_prepared, traces_of};
+use super::prepared::{Asked, explain_prepared};
 use super::request::ExplainRequest;
 use super::result::ExplainStudy;
+use super::traces::traces_of;
 use crate::config::effects_of;
 use crate::config::{LoadedVehicle, read_limits};
 use crate::diagnose::experiment::{NextSettings, design};
@@ -75,7 +76,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
     let of =
         Asked { vehicle: &vehicle, notes: &notes, logs: &request.logs, transient_s: request.transient_s };
     let mut study = explain_prepared(&mut flights, &mut held, of, progress)?;
-    study.traces = traces_of(&flights, &vehicle, &study.given.settings);
+    study.traces = traces_of(&flights.signals, &vehicle, &study.given.settings);
     study.drafted = draft;
     if request.design_next {
         study.tell_by_part();
