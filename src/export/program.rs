@@ -1,5 +1,6 @@
 //! A program in Python beside a file: it does in the simulator what the file cannot hold.
 
+use crate::text;
 use std::path::Path;
 
 /// Ends the names of such programs, without the ending of the file.
@@ -41,7 +42,7 @@ impl EffectsProgram {
 
 /// Name of the module for the model in this file.
 fn module(model: &Path) -> String {
-    let stem = model.file_stem().unwrap_or_default().to_string_lossy();
+    let stem = text::path(model.file_stem().unwrap_or_default());
     let allowed = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
     let name: String = stem.chars().map(allowed).collect();
     let first = if name.starts_with(|letter: char| letter.is_ascii_digit()) { "_" } else { "" };
@@ -51,7 +52,7 @@ fn module(model: &Path) -> String {
 /// How a program in Python loads the model in this file.
 fn loads(model: &Path) -> String {
     // no quote ends the text of the module
-    let name = model.file_name().unwrap_or_default().to_string_lossy().replace(['"', '\\'], "'");
+    let name = text::path(model.file_name().unwrap_or_default()).replace(['"', '\\'], "'");
     format!("mujoco.MjModel.from_xml_path(\"{name}\")")
 }
 
