@@ -12,5 +12,5 @@ pub use balance_change::{BalanceChange, BalanceFound, LOADED, Least, NAMED, NAME
 pub use explanation::What;
 pub use groups::{Groups, Moved, interval_95};
 pub use history::{Step, find_returns, steps};
-pub use parameter::{ParameterChange, Spread, Undecided, judge_parameter};
+pub use parameter::{ParameterChange, Spread, UNDECIDED, Undecided, judge_parameter};
 pub use pooled::{pooled_mean, with_scatter};

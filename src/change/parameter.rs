@@ -39,7 +39,7 @@ pub struct Undecided {
 
 /// A difference is told as undecided from so many standard errors on. Of ten parameters of an unchanged vehicle, one in 40 pairs of
 /// flights is.
-const UNDECIDED: f64 = 3.0;
+pub const UNDECIDED: f64 = 3.0;
 
 /// Later flights say the same from so many standard errors on.
 const SAYS: f64 = 2.0;

@@ -32,8 +32,8 @@ pub fn run(json: bool, stderr: &StandardError, args: &CompareArgs) -> Result<Out
         output::text(&comparison_text(&study))?;
     }
     study.notes.iter().for_each(output::note);
-    // that something changed is what was asked; the output says what was lost or left out
-    Ok(match study.is_whole() {
+    // that something changed is what was asked; the output says what was lost or left out, and why nothing may have been compared
+    Ok(match study.is_whole() && study.is_of_one_vehicle() {
         _ if study.has_changed() => Outcome::Changed,
         true => Outcome::Done,
         false => Outcome::DoneWithLoss,

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use mavid::autopilot::Autopilot;
 use mavid::config::effects_of;
 use mavid::export::{
-    AircraftParameter, AircraftParameters, ExportError, Exported, Format, aircraft_parameters, export,
+    AircraftParameter, AircraftParameters, EffectsProgram, ExportError, Exported, Format,
+    aircraft_parameters, export,
 };
 use mavid::note::Note;
 use mavid::text;
@@ -69,18 +70,40 @@ impl From<ExportFormat> for Target {
     }
 }
 
-/// The program's file beside that of the model: `model.xml` has `model_effects.py`.
+/// What the model's file is called where none is asked for.
+const UNNAMED: &str = "model.xml";
+
+/// The program's file beside that of the model.
 fn callback_of(path: &Path) -> PathBuf {
-    let mut name = path.file_stem().unwrap_or_default().to_owned();
-    name.push("_effects.py");
-    path.with_file_name(name)
+    path.with_file_name(EffectsProgram::file_name(path))
+}
+
+/// Whether there is a program beside the model's file that an earlier export of this file wrote.
+fn has_earlier(path: &Path) -> bool {
+    let text = std::fs::read_to_string(callback_of(path));
+    text.is_ok_and(|text| EffectsProgram::is_of(&text, path))
+}
+
+/// Refuses to write the program over what is not this file's: two models whose files differ in their ending only have one name for it.
+fn refuse_other_program(path: &Path) -> Result<(), CommandError> {
+    let beside = callback_of(path);
+    if !beside.exists() || has_earlier(path) {
+        return Ok(());
+    }
+    Err(CommandError::Input(format!(
+        "--out: the program that makes the effects of {} is written to {}; expected that this file is not there, or is the program of an \
+         earlier export to the same file; it is neither, give --out another name",
+        text::path(&path),
+        text::path(&beside)
+    )))
 }
 
 /// Runs the verb.
 pub fn run(json: bool, args: &ExportArgs) -> Result<Outcome, CommandError> {
-    let Made { text, left_out, callback, parameters, origin, warnings } = make(args)?;
+    let Made { text, left_out, callback, outdated, parameters, origin, warnings } = make(args)?;
     output::warnings(&origin, &warnings);
     left_out.iter().for_each(|note| output::message(&format!("note: {note}")));
+    outdated.iter().for_each(|told| output::message(told));
     match (&args.out, &callback) {
         (Some(path), Some(_)) => {
             output::message(&format!("wrote {}, which makes the effects", text::path(&callback_of(path))));
@@ -107,6 +130,8 @@ pub struct Made {
     left_out: Vec<String>,
     /// a program that does what the file cannot hold
     callback: Option<String>,
+    /// that such a program of an earlier export was removed
+    outdated: Option<String>,
     /// of the aircraft's autopilot; none for a simulator
     parameters: Vec<ParameterLine>,
     /// what messages call the model
@@ -159,6 +184,27 @@ fn checked(args: &ExportArgs) -> Result<(), CommandError> {
     Err(CommandError::Input(format!("--altitude: expected {expected}, got {altitude_m}")))
 }
 
+/// Writes the file, and its program beside it. The program of an earlier export of the same file is removed where there is none now:
+/// returns that it was.
+fn write(
+    (path, text): (&PathBuf, &str),
+    program: Option<&str>,
+    args: &ExportArgs,
+) -> Result<Option<String>, CommandError> {
+    let beside = program.is_some().then(|| callback_of(path));
+    let read: Vec<&PathBuf> = args.model.iter().collect();
+    output::refuse_overwriting(&read, &iter::once(path).chain(&beside).collect::<Vec<_>>())?;
+    if program.is_some() {
+        refuse_other_program(path)?;
+    }
+    let is_outdated = program.is_none() && has_earlier(path);
+    output::file(path, text)?;
+    if let (Some(program), Some(beside)) = (program, &beside) {
+        output::file(beside, program)?;
+    }
+    if is_outdated { output::outdated(&callback_of(path)) } else { Ok(None) }
+}
+
 /// Exports, and writes the file that is asked for.
 pub fn make(args: &ExportArgs) -> Result<Made, NotMade> {
     checked(args)?;
@@ -186,15 +232,12 @@ pub fn make(args: &ExportArgs) -> Result<Made, NotMade> {
             (text, left_out, parameters.into_iter().map(ParameterLine::from).collect(), None)
         }
     };
+    let file = args.out.as_deref().unwrap_or(Path::new(UNNAMED));
+    let callback = callback.map(|program| program.text(file));
+    let mut outdated = None;
     if let Some(path) = &args.out {
-        let beside = callback.is_some().then(|| callback_of(path));
-        let read: Vec<&PathBuf> = args.model.iter().collect();
-        output::refuse_overwriting(&read, &iter::once(path).chain(&beside).collect::<Vec<_>>())?;
-        output::file(path, &text)?;
-        if let (Some(callback), Some(beside)) = (&callback, &beside) {
-            output::file(beside, callback)?;
-        }
+        outdated = write((path, &text), callback.as_deref(), args)?;
     }
     let warnings = loaded.warnings;
-    Ok(Made { text, left_out, callback, parameters, origin, warnings })
+    Ok(Made { text, left_out, callback, outdated, parameters, origin, warnings })
 }

@@ -23,6 +23,7 @@ use super::tested::Search;
 use super::torque_law::ABOUT_Z;
 use super::torques_by_instruments::torques_by_instruments;
 use super::trace::Trace;
+use super::vehicle_terms::{Owner, add_term, is_same, of_the_vehicle, owner};
 use crate::estimate::{NAMES, UNITS};
 use crate::physics::PhysicsError;
 use crate::signals::{OwnOfFlight, Signals};
@@ -30,15 +31,6 @@ use crate::vehicle::Vehicle;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::sync::Arc;
-
-/// Whose a parameter is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Owner {
-    /// the same in every flight
-    Vehicle,
-    /// of the day: load, battery, wind
-    Flight,
-}
 
 /// Name of the vehicle's latency between command and rotor, delay and lag together, without that of a log.
 pub const LATENCY: &str = "latency";
@@ -84,9 +76,7 @@ pub fn by_flight(
         Some(out)
     };
     let each: Vec<_> = flights.par_iter().zip(explanations).map(one).collect();
-    let mut each: Vec<Vec<FlightParameter>> = each.into_iter().map(Option::unwrap_or_default).collect();
-    one_axial_name(&mut each);
-    each
+    each.into_iter().map(Option::unwrap_or_default).collect()
 }
 
 /// The parameters of each flight, fitted alone to the model of one explanation of all of them. A flight that drifts is seen with its own
@@ -228,67 +218,6 @@ fn is_of_air(parameter: &FlightParameter) -> bool {
     signature.is_some_and(|signature| signature.role.of_air || signature.role.wind.is_some())
 }
 
-/// Whether an effect may be compared from flight to flight at all.
-fn is_comparable(term: &EffectTerm) -> bool {
-    term.signature.role.moment.is_none() && !term.free.is_empty()
-}
-
-fn owner(term: &EffectTerm) -> Owner {
-    let role = &term.signature.role;
-    if role.of_the_day || role.of_the_loading || role.hangs_below { Owner::Flight } else { Owner::Vehicle }
-}
-
-/// Each effect of the vehicle that was named, once; each rotor may have its own.
-fn of_the_vehicle(explanations: &[&Explanation]) -> Vec<EffectTerm> {
-    let mut terms: Vec<EffectTerm> = Vec::new();
-    for explanation in explanations.iter().filter(|one| one.verdict != Verdict::Unexplained) {
-        let named = |term: &&EffectTerm| explanation.named.iter().any(|named| named.id == term.id());
-        for term in explanation.search.after.base.effects.iter().filter(named) {
-            let is_known = terms.iter().any(|known| is_same(known, term));
-            if is_comparable(term) && owner(term) == Owner::Vehicle && !is_known {
-                terms.push(term.clone());
-            }
-        }
-    }
-    terms
-}
-
-/// Whether an effect estimates along body z what another one has as its law there.
-fn has_axial(present: &EffectTerm, other: &EffectTerm) -> bool {
-    let is_whole = other.signature.role.axial_part_of.is_some_and(|whole| whole.id() == present.id());
-    is_whole && present.signature.role.axial.is_some_and(|slot| present.free.contains(&slot))
-}
-
-/// Drag along body z has one law and two names: where one flight has it as a part of its drag, the flights that have it by itself call it
-/// so too.
-fn one_axial_name(each: &mut [Vec<FlightParameter>]) {
-    let parts = ALL.iter().filter_map(|part| Some((part, part.role.axial?, part.role.axial_part_of?)));
-    for (part, slot, whole) in parts {
-        let Some(of_whole) = signature_of(whole.id()).and_then(|of| whole.parameters().get(of.role.axial?))
-        else {
-            continue;
-        };
-        let Some(own) = part.effect.parameters().get(slot) else { continue };
-        let (own, of_whole) =
-            (format!("{}.{}", part.id(), own.name), format!("{}.{}", whole.id(), of_whole.name));
-        let has = |name: &str, of: &[FlightParameter]| of.iter().any(|parameter| parameter.name == name);
-        if !each.iter().any(|of| has(&of_whole, of)) {
-            continue;
-        }
-        for of in each.iter_mut().filter(|of| !has(&of_whole, of)) {
-            for parameter in of.iter_mut().filter(|parameter| parameter.name == own) {
-                parameter.name.clone_from(&of_whole);
-                parameter.effect = Some(whole.id());
-            }
-        }
-    }
-}
-
-fn is_same(one: &EffectTerm, other: &EffectTerm) -> bool {
-    let which = one.signature.role.which;
-    one.id() == other.id() && which.is_none_or(|slot| one.values[slot] == other.values[slot])
-}
-
 /// The model of one flight with the effects of all that it can show.
 fn with_terms(explanation: &Explanation, terms: &[EffectTerm], (vehicle, trace): (&Vehicle, &Trace)) -> Base {
     let search = &explanation.search;
@@ -296,10 +225,7 @@ fn with_terms(explanation: &Explanation, terms: &[EffectTerm], (vehicle, trace):
     let mut base = own.base.clone();
     let recorded = Recorded::new(vehicle, std::slice::from_ref(trace));
     for term in terms {
-        let is_there = base.effects.iter().any(|present| is_same(present, term) || has_axial(present, term));
-        if !is_there && recorded.lacks(term.signature.needs).is_none() {
-            base.effects.push(term.clone());
-        }
+        add_term(&mut base.effects, term, || recorded.lacks(term.signature.needs).is_none());
     }
     base
 }

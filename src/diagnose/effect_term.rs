@@ -57,6 +57,17 @@ impl EffectTerm {
         self.signature.amounts.contains(&slot)
     }
 
+    /// Estimates the amounts as well that another one of the same effect does, from the other one's values on.
+    pub(super) fn free_amounts_of(&mut self, other: &Self) {
+        for &slot in other.free.iter().filter(|slot| other.is_amount(**slot)) {
+            if !self.free.contains(&slot) {
+                self.values[slot] = other.values[slot];
+                self.free.push(slot);
+            }
+        }
+        self.free.sort_unstable();
+    }
+
     /// Whether it changes what sensors show and nothing else: how much force that makes says nothing of its size.
     pub(super) fn is_of_sensors(&self) -> bool {
         self.effect().hooks() == [Hook::Sensors]

@@ -85,13 +85,14 @@ mod trace;
 mod trace_error;
 mod trim_check;
 mod usual_size;
+mod vehicle_terms;
 mod velocity_error;
 pub mod wording;
 mod words;
 
 pub use base::Base;
 pub use by_flight::{
-    FlightParameter, LATENCY, Owner, by_flight, each_with_model_of_all, of_one_flight, rigid_by_flight,
+    FlightParameter, LATENCY, by_flight, each_with_model_of_all, of_one_flight, rigid_by_flight,
 };
 pub use by_part::{ByPart, by_part};
 pub use candidates::{Candidate, candidates};
@@ -125,3 +126,4 @@ pub use torque_law::TorqueLaw;
 pub use trace::{Known, Trace};
 pub use trace_error::TraceError;
 pub use usual_size::UsualSize;
+pub use vehicle_terms::Owner;

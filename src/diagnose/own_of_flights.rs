@@ -4,7 +4,7 @@
 //! A quick fit of each flight tells whether they differ at all. If they do, each is explained alone, and fitted to all that one of them shows.
 
 use super::base::Base;
-use super::by_flight::{FlightParameter, Owner, by_flight, named};
+use super::by_flight::{FlightParameter, by_flight, named};
 use super::candidates::candidates;
 use super::channels::Nuisance;
 use super::explain::{ExplainSettings, explain};
@@ -16,6 +16,7 @@ use super::score::columns_of;
 use super::signature::{EffectTerm, Role, Signature};
 use super::signatures::ALL;
 use super::trace::Trace;
+use super::vehicle_terms::Owner;
 use crate::signals::{Lacking, OwnOfFlight, Series, Signals};
 use crate::vehicle::{Anchor, Vehicle};
 use rayon::prelude::*;

@@ -303,7 +303,8 @@ pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Findin
         return Finding::NotDetermined {
             reason: format!(
                 "the rotors' torque goes with the power {exponent:.2} of their thrust, and the motion about z tells only how it \
-                 changes with the thrust: {:.3e} kg m^2 if the stated torque per thrust is that of hover",
+                 changes with the thrust: {:.3e} kg m^2 if the stated torque per thrust is torque over thrust at hover, {value:.3e} if it \
+                 is the change of the torque with the thrust there",
                 exponent * value
             ),
         };

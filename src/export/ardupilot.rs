@@ -69,6 +69,9 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     set("refVoltage", BATTERY_V);
     set("refCurrent", air.hover_power_w() / BATTERY_V);
     set("maxVoltage", BATTERY_V);
+    // the model's thrust does not go with this battery
+    set("refBatRes", 0.0);
+    set("battCapacityAh", 0.0);
     set("mdrag_coef", across / air.momentum());
     set("disc_area", disc_m2);
     set("hoverThrOut", weight_n / (count * propulsion.full_thrust_n()));
@@ -77,7 +80,7 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     pulses(&mut file, &mut source);
     file.insert("moment_inertia".into(), json!(moments_kg_m2(&mut source)));
     motors(&mut file, &source, &arms, diagonal_m);
-    tell(&mut source);
+    tell(&mut source, air.hover_power_w() / BATTERY_V);
     Ok(source.finish(|notes| {
         let head = line_comments("#", notes);
         let body = json_pretty(&Value::Object(file)).unwrap_or_default();
@@ -86,8 +89,14 @@ pub(super) fn write(mut source: Source<'_>) -> Result<Exported, ExportError> {
     }))
 }
 
-/// What is the same for every model, and the lag.
-fn tell(source: &mut Source<'_>) {
+/// mAh, ArduPilot's default of `BATT_CAPACITY`.
+const DEFAULT_MAH: f64 = 3300.0;
+/// mAh in one Ah, and s in one hour.
+const MAH: f64 = 1000.0;
+const HOUR_S: f64 = 3600.0;
+
+/// What is the same for every model, the battery's current (A at hover), and the lag.
+fn tell(source: &mut Source<'_>, hover_a: f64) {
     source.note("motors are in the model's own order; the simulator's frame must have as many, and its servo functions the same order");
     source.note(format!(
         "thrust and drag are the model's at the simulator's own home, {HOME_M} m above sea level; for a home elsewhere set refAlt to its altitude"
@@ -95,7 +104,17 @@ fn tell(source: &mut Source<'_>) {
     source.note(format!(
         "battery and power were not identified, and those of the file are not the vehicle's: refVoltage times refCurrent makes the simulator's own loss of thrust in a climb, which the model does not have, a share of (v / {OUTFLOW_M_S})^2 at v m/s; SIM_BATT_VOLTAGE has to be {BATTERY_V} V, as by default"
     ));
-    source.note("the reaction torque goes with thrust times command in the simulator and with thrust in the model: they change alike about hover, and a violent turn identifies an izz that is some percent too large");
+    source.note(format!(
+        "the simulator's current is {hover_a:.0} A at hover for that reason. It uses up a BATT_CAPACITY of {DEFAULT_MAH} mAh, the default, in {:.0} s: set BATT_CAPACITY to {:.0} mAh for an hour of hover. The thrust does not fall, because the simulator's battery has no capacity (battCapacityAh 0) and no resistance",
+        HOUR_S * DEFAULT_MAH / (MAH * hover_a),
+        MAH * hover_a
+    ));
+    let propulsion = &source.vehicle.propulsion;
+    let hover_n = source.airframe.hover_thrust_n;
+    let share = propulsion.command_from_thrust(hover_n) / torque_slope(propulsion, hover_n);
+    source.note(format!(
+        "the reaction torque goes with thrust times command in the simulator and with thrust in the model. motorN_yaw makes it change with the thrust at hover as in the model; the torque itself is {share:.2} of the model's there, and cancels between the rotors. A flight of the simulator identifies the model's izz with the model's torque_ratio, some percent too large from a violent turn. An izz for a torque per thrust that is that of hover is not the simulator's"
+    ));
     source.note("versions with parameters SIM_FRM_* take their defaults from this file, so that none has to be set; one that was set by hand stays as it was set");
     source.turns_without_gyroscopic();
     if source.lags_s().is_some() {

@@ -3,6 +3,7 @@
 //! `mjcb_passive` adds to the forces of the free joint: along the world at the body's origin, and torques in body axes. Thrusts are the
 //! actuators' own, without those of weak rotors. The laws are those of the effects ([`crate::physics::effects`]).
 
+use super::program::EffectsProgram;
 use super::source::{Callback, Source};
 use crate::physics::effects::GroundEffect;
 use nalgebra::Vector3;
@@ -26,19 +27,16 @@ pub(super) fn callback(source: &mut Source<'_>, drag: &HeldDrag, factors: &[f64]
     if ids.is_empty() || (source.has("ground_effect") && source.vehicle.propulsion.rotor_radius_m.is_none()) {
         return None;
     }
-    let text = head(source, &ids) + &values(source, drag, factors) + LAWS;
-    Some(Callback { ids, whither: "the callback in Python beside the file makes it", text })
+    let title = title(source, &ids);
+    let body = format!("import mujoco\nimport numpy as np\n\n{}{LAWS}", values(source, drag, factors));
+    let program = EffectsProgram { title, body };
+    Some(Callback { ids, whither: "the callback in Python beside the file makes it", program })
 }
 
-fn head(source: &Source<'_>, ids: &[&str]) -> String {
+fn title(source: &Source<'_>, ids: &[&str]) -> String {
     // no quote ends the text of the module
     let name = source.vehicle.name.replace(['"', '\\'], "'");
-    format!(
-        "\"\"\"{name}: what MuJoCo's XML cannot hold: {}.\n\n    import mujoco\n    import model_effects\n\n    model = \
-         mujoco.MjModel.from_xml_path(\"model.xml\")\n    model_effects.install(model)\n\nSI, axes of the body: forward, left, up.\n\"\"\"\n\nimport \
-         mujoco\nimport numpy as np\n\n",
-        ids.join(", ")
-    )
+    format!("{name}: what MuJoCo's XML cannot hold: {}.", ids.join(", "))
 }
 
 fn values(source: &mut Source<'_>, drag: &HeldDrag, factors: &[f64]) -> String {
@@ -121,10 +119,10 @@ def force_and_torque(thrust, air, spin, height, turned):
 
 
 def install(model):
-    """From now on MuJoCo adds the effects to the body `vehicle` of this model."""
+    """From now on MuJoCo adds the effects to the body `vehicle` of this model. Other models keep theirs."""
     body = model.body("vehicle").id
 
-    def passive(model, data):
+    def add(data):
         turned, spin = data.xmat[body].reshape(3, 3), data.qvel[3:6]
         velocity = turned.T @ data.qvel[:3] + np.cross(spin, CENTER)
         height = (data.qpos[:3] + turned @ CENTER)[2]
@@ -134,5 +132,20 @@ def install(model):
         data.qfrc_passive[:3] += turned @ force
         data.qfrc_passive[3:6] += torque + np.cross(CENTER, force)
 
-    mujoco.set_mjcb_passive(passive)
+    # MuJoCo has one callback for all models: it goes through what was installed
+    first = mujoco.get_mjcb_passive()
+    installed = getattr(first, "installed", None)
+    if installed is None:
+        installed = []
+
+        def passive(given, data):
+            if first is not None:
+                first(given, data)
+            for of, added in installed:
+                if of is given:
+                    added(data)
+
+        passive.installed = installed
+        mujoco.set_mjcb_passive(passive)
+    installed[:] = [one for one in installed if one[0] is not model] + [(model, add)]
 "#;

@@ -2,6 +2,7 @@
 
 use super::cost::Costs;
 use super::error::ExportError;
+use super::program::EffectsProgram;
 use crate::physics::{ActiveEffect, Airframe, Parameter};
 use crate::text::compact;
 use crate::vehicle::{ThrustLaw, Vehicle};
@@ -208,7 +209,7 @@ impl<'a> Source<'a> {
             self.left_out.push(format!("{lost}; {instead}"));
         }
         self.left_out.extend(of_gyroscopic(self.vehicle.body.gyroscopic, self.gyroscopic));
-        let callback = self.callback.map(|callback| callback.text);
+        let callback = self.callback.map(|callback| callback.program);
         Exported { text: write(&self.left_out), left_out: self.left_out, callback }
     }
 
@@ -251,8 +252,8 @@ pub(super) struct Callback {
     pub(super) ids: Vec<&'static str>,
     /// words for where they are
     pub(super) whither: &'static str,
-    /// the program
-    pub(super) text: String,
+    /// what does it
+    pub(super) program: EffectsProgram,
 }
 
 /// A file, and what of the model is not in it.
@@ -263,7 +264,7 @@ pub struct Exported {
     /// sentence by sentence; they stand in the file as comments too
     pub left_out: Vec<String>,
     /// a program in Python that does what the file cannot hold, where there is one
-    pub callback: Option<String>,
+    pub callback: Option<EffectsProgram>,
 }
 
 #[cfg(test)]

@@ -115,6 +115,7 @@ impl All<'_> {
             compared: None,
             history: Vec::new(),
             least_in_the_middle: None,
+            undecided_along: None,
             lifts_apart: None,
             left_out: Vec::new(),
             notes,

@@ -117,6 +117,72 @@ fn a_rotor_that_became_weak_is_found_and_an_unchanged_vehicle_is_not_called_chan
     );
 }
 
+/// A flight of the x500 along Table 2 with another mass or drag.
+fn simulated(folder: &Path, name: &str, (mass_kg, drag): (f64, f64), seed: u32) -> String {
+    let place = |name: String| folder.join(name).display().to_string();
+    let (vehicle, effects, log) = (
+        place(format!("{name}.toml")),
+        place(format!("{name}-effects.toml")),
+        place(format!("{name}-{seed}.tlog")),
+    );
+    let nominal = std::fs::read_to_string(config("x500.toml")).unwrap();
+    std::fs::write(&vehicle, nominal.replacen("mass = 2.0643", &format!("mass = {mass_kg}"), 1)).unwrap();
+    let of_drag = format!("[[effect]]\nid = \"linear_drag\"\ndx = {drag}\ndy = {drag}\ndz = {drag}\n");
+    std::fs::write(&effects, of_drag).unwrap();
+    let (trajectory, seed) = (config("trajectories/table2.toml"), seed.to_string());
+    let simulated = mavid(&[
+        "simulate",
+        &vehicle,
+        "--trajectory",
+        &trajectory,
+        "--effects",
+        &effects,
+        "--seed",
+        &seed,
+        "--out",
+        &log,
+    ]);
+    assert!(simulated.status.success(), "{}", String::from_utf8_lossy(&simulated.stderr));
+    log
+}
+
+/// "Nothing changed" says nothing of two vehicles.
+#[test]
+fn flights_that_may_be_of_two_vehicles_have_an_exit_status_of_their_own() {
+    let folder = folder("two-vehicles");
+    let heavy = simulated(&folder, "heavy", (2.0643, 0.3), 1);
+    let light = simulated(&folder, "light", (1.4, 0.3), 2);
+    let told =
+        mavid(&["compare", &heavy, "--with", &light, "--balance-only", "--vehicle", &config("x500.toml")]);
+    let text = String::from_utf8_lossy(&told.stdout).into_owned();
+    assert!(text.contains("It is doubtful that this is one vehicle"), "{text}");
+    assert_eq!(told.status.code(), Some(3), "{text}");
+}
+
+/// A change of drag needs several flights, because it differs between flights of one vehicle: what does not suffice is told.
+#[test]
+fn a_drag_that_moved_along_a_history_is_told_before_it_is_certain() {
+    let folder = folder("drag-along");
+    let mut flights: Vec<String> =
+        (1..4).map(|seed| simulated(&folder, "slow", (2.0643, 0.3), seed)).collect();
+    flights.extend((4..6).map(|seed| simulated(&folder, "fast", (2.0643, 0.45), seed)));
+    let request = CompareRequest {
+        before: flights.iter().map(PathBuf::from).collect(),
+        vehicle: Some(VehicleGiven::File(config("x500.toml").into())),
+        transient_s: CompareRequest::TRANSIENT_S,
+        ..CompareRequest::default()
+    };
+    let study = compare(&request, &Silent).unwrap();
+    assert!(study.history.is_empty() && !study.has_changed());
+    let along = study.undecided_along.as_ref().unwrap();
+    assert!(along.from == 3 && along.moved[0].sigmas < along.least_sigmas, "{along:?}");
+    let told = mavid::report::comparison_text(&study);
+    assert!(
+        told.contains("Not decided: from ") && told.contains("make a change at one of the places"),
+        "{told}"
+    );
+}
+
 #[test]
 fn logs_of_different_autopilots_are_not_of_one_vehicle() {
     let refused =

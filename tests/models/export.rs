@@ -288,6 +288,40 @@ fn without_a_measured_speed_rotors_turn_as_usual_propellers_and_lift_as_the_mode
 }
 
 #[test]
+fn ardupilots_notes_tell_the_current_of_its_battery_and_what_the_yaw_factor_holds() {
+    let mut vehicle = vehicle();
+    for (expo, share) in [(0.0, "0.50"), (1.0, "0.67")] {
+        vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 11.0, expo };
+        let exported = export(&vehicle, &[], None, Format::ArdupilotSitl).unwrap();
+        let frame = frame(&exported.text);
+        let number = |key: &str| frame[key].as_f64().unwrap();
+        // no voltage of the battery changes the thrust
+        assert_eq!((number("battCapacityAh"), number("refBatRes")), (0.0, 0.0));
+        let (current, hour) =
+            (format!("{:.0} A at hover", number("refCurrent")), 1000.0 * number("refCurrent"));
+        let told = |words: &str| exported.left_out.iter().any(|note| note.contains(words));
+        assert!(
+            told(&current) && told(&format!("set BATT_CAPACITY to {hour:.0} mAh")),
+            "{:?}",
+            exported.left_out
+        );
+        assert!(
+            told(&format!("the torque itself is {share} of the model's there")),
+            "{:?}",
+            exported.left_out
+        );
+        // about hover the torque changes with the thrust as in the model: by hand, with the command of a thrust
+        let torque = |thrust_n: f64| {
+            let yaw = number("motor1_yaw").abs() * 0.05 * number("diagonal_size");
+            yaw * vehicle.propulsion.command_from_thrust(thrust_n) * thrust_n
+        };
+        let hover_n = vehicle.body.mass_kg * vehicle.gravity_m_s2 / 4.0;
+        let slope = (torque(hover_n + 1e-4) - torque(hover_n - 1e-4)) / 2e-4;
+        assert!((slope / vehicle.propulsion.torque_per_thrust_m - 1.0).abs() < 1e-6, "{slope}");
+    }
+}
+
+#[test]
 fn ardupilots_note_says_that_its_hubs_damp_more_than_the_model() {
     let mut vehicle = vehicle();
     vehicle.propulsion.law = ThrustLaw::Curve { thrust_max_n: 11.0, expo: 0.5 };
@@ -308,7 +342,7 @@ fn what_mujocos_file_cannot_hold_is_in_its_callback_where_that_can_make_it() {
     let vehicle = vehicle();
     let effects = [effect("quadratic_drag", &[0.05, 0.06, 0.07]), effect("slung_load", &[0.2, 1.0])];
     let exported = export(&vehicle, &effects, None, Format::Mjcf).unwrap();
-    let callback = exported.callback.unwrap();
+    let callback = exported.callback.unwrap().text(std::path::Path::new("model.xml"));
     for wanted in ["QUADRATIC = np.array([0.05, 0.06, 0.07])", "mujoco.set_mjcb_passive(passive)"] {
         assert!(callback.contains(wanted), "{callback}");
     }
@@ -448,4 +482,46 @@ fn an_aircraft_gets_what_was_identified_and_nothing_else() {
     // without standard errors nothing follows
     let none = aircraft_parameters(&vehicle, &effects, None, (Autopilot::ArduPilot, None));
     assert!(none.unwrap_err().to_string().contains("standard errors"));
+}
+
+/// A program of another model is never written over, and one that nothing needs any more does not stay.
+#[test]
+fn the_program_of_a_models_effects_belongs_to_the_file_of_the_model() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("export-programs");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    let place = |name: &str| folder.join(name).display().to_string();
+    let vehicle =
+        std::fs::read_to_string(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml"))
+            .unwrap();
+    let drag =
+        |c: f64| format!("{vehicle}\n[[effect]]\nid = \"quadratic_drag\"\ncx = {c}\ncy = {c}\ncz = {c}\n");
+    std::fs::write(place("one.toml"), drag(0.05)).unwrap();
+    std::fs::write(place("two.toml"), drag(0.07)).unwrap();
+    std::fs::write(place("plain.toml"), &vehicle).unwrap();
+    let to = |model: &str, out: &str| {
+        let arguments = ["export", &place(model), "--to", "mjcf", "--out", &place(out)];
+        std::process::Command::new(env!("CARGO_BIN_EXE_mavid")).args(arguments).output().unwrap()
+    };
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+    assert!(to("one.toml", "x500-a.xml").status.success());
+    assert!(to("two.toml", "x500-b.xml").status.success());
+    let (a, b) = (read("x500_a_effects.py"), read("x500_b_effects.py"));
+    assert!(a.contains("import x500_a_effects\n") && a.contains("from_xml_path(\"x500-a.xml\")"), "{a}");
+    assert!(a.contains("[0.05, 0.05, 0.05]") && b.contains("[0.07, 0.07, 0.07]"));
+    // the same name for the program of another model
+    for out in ["x500-a.mjcf", "x500_a.xml"] {
+        let refused = to("two.toml", out);
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert_eq!(refused.status.code(), Some(2), "{said}");
+        assert!(said.contains("x500_a_effects.py; expected that this file is not there"), "{said}");
+        assert!(!folder.join(out).exists());
+    }
+    assert_eq!(read("x500_a_effects.py"), a);
+    // an export to the same file replaces both, and takes away what is not needed any more
+    assert!(to("two.toml", "x500-a.xml").status.success());
+    assert!(read("x500_a_effects.py").contains("[0.07, 0.07, 0.07]"));
+    let plain = to("plain.toml", "x500-a.xml");
+    assert!(plain.status.success() && !folder.join("x500_a_effects.py").exists());
+    assert!(String::from_utf8_lossy(&plain.stderr).contains("x500_a_effects.py, of an earlier run"));
 }

@@ -7,7 +7,8 @@ use crate::study::{Change, Changed, CompareStudy, Compared, LeastChange, LiftsAp
 use crate::text::capital;
 
 /// What the errors of parameters along the flights hold.
-pub(super) const FLIGHTS_OWN_ERRORS: &str = "errors of each flight alone; those of before and after hold the spread between flights of one vehicle as well";
+pub(super) const FLIGHTS_OWN_ERRORS: &str = "errors of each flight alone; those of before and after hold the spread between flights of one vehicle as well, and with it \
+     that the air has another law of drag, which `explain` holds in the errors of each flight";
 
 /// What the rotors along the flights are.
 pub(super) const OF_MEAN_ROTOR: &str = "over that of the mean of all rotors; the centre of mass is taken where the vehicle has it, and errors hold what wanders from flight \
@@ -72,7 +73,11 @@ fn what_changed(study: &CompareStudy) -> String {
         _ if study.history.is_empty() => {
             let seen = study.least_in_the_middle.as_deref().map(would_have_shown);
             let seen = seen.map_or_else(String::new, |seen| format!(" From the middle of them on {seen}."));
-            format!("Nothing changed along {} that they could show.{seen}", flights(study.flights.len()))
+            format!(
+                "Nothing changed along {} that they could show.{seen}{}",
+                flights(study.flights.len()),
+                open_along(study)
+            )
         }
         _ => {
             let steps = study.history.iter().map(|step| {
@@ -203,20 +208,35 @@ fn all_open(study: &CompareStudy, compared: &Compared) -> String {
     let Some(most) = compared.undecided.iter().map(|(_, why)| why.flights).max() else {
         return String::new();
     };
-    let one = |(change, _): &(Change, Undecided)| {
-        let by = change.moved.map_or_else(String::new, |moved| with_error(moved.by.0, moved.by.1));
-        let sigmas = significant(change.sigmas, 2);
-        format!(
-            "{} moved by {by}{} ({sigmas} standard deviations)",
-            said(study, change.what),
-            spaced(change.unit)
-        )
-    };
-    let all: Vec<String> = compared.undecided.iter().map(one).collect();
+    let all: Vec<String> = compared.undecided.iter().map(|(change, _)| by_how_much(study, change)).collect();
     format!(
         " Not decided: {}; {NAMED_SIGMAS} make a change. Fly {} on each side to decide.",
         all.join("; "),
         flights(most)
+    )
+}
+
+/// What is not decided along the flights, in a sentence or two; empty where nothing is.
+fn open_along(study: &CompareStudy) -> String {
+    let Some(along) = &study.undecided_along else { return String::new() };
+    let all: Vec<String> = along.moved.iter().map(|change| by_how_much(study, change)).collect();
+    format!(
+        " Not decided: from {} on {}; {} make a change at one of the places between {}. More flights on both sides of it decide.",
+        study.flights[along.from].input.path,
+        all.join("; "),
+        significant(along.least_sigmas, 2),
+        flights(study.flights.len())
+    )
+}
+
+/// By how much something moved, as a clause.
+fn by_how_much(study: &CompareStudy, change: &Change) -> String {
+    let by = change.moved.map_or_else(String::new, |moved| with_error(moved.by.0, moved.by.1));
+    let sigmas = significant(change.sigmas, 2);
+    format!(
+        "{} moved by {by}{} ({sigmas} standard deviations)",
+        said(study, change.what),
+        spaced(change.unit)
     )
 }
 

@@ -10,6 +10,9 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+/// What the errors of several flights hold, which are not those of a comparison.
+const ERRORS_OF_FIT: &str = "standard errors of the fit, without the spread between flights of one vehicle, which `mavid compare` adds";
+
 /// Several flights in JSON.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(super) struct AlongValue {
@@ -99,7 +102,7 @@ fn winds(along: &AlongFlights) -> Vec<String> {
 /// The lines for the terminal; none of one flight.
 pub(super) fn along_lines(page: &mut String, study: &ExplainStudy) {
     let Some(along) = &study.along else { return };
-    page.push_str("\n  together, and each flight alone\n");
+    let _ = writeln!(page, "\n  together, and each flight alone; {ERRORS_OF_FIT}");
     let untold = untold(study);
     for track in &along.tracks {
         let together = together(along, track, &untold);
@@ -158,10 +161,11 @@ pub(super) fn along_section(study: &ExplainStudy) -> Markup {
         )
     });
     let carried: Vec<String> = along.carried_by.iter().map(line).chain(alone).collect();
+    let caption = format!("The vehicle's parameters by all flights and by each alone; {ERRORS_OF_FIT}");
     section(
         "The flights together",
         &html! {
-            (table("The vehicle's parameters by all flights and by each alone, with standard errors", &heads, &rows))
+            (table(&caption, &heads, &rows))
             @for line in &carried { (note(line)) }
         },
     )

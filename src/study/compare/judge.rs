@@ -1,8 +1,9 @@
 //! What changed between groups of flights whose balance and parameters are known.
 
-use super::result::{Change, Changed, Compared, LeastChange, LiftsApart};
+use super::result::{Change, Changed, Compared, LeastChange, LiftsApart, UndecidedAlong};
 use crate::change::{
-    BalanceChange, Groups, NAMED_SIGMAS, Step, What, find_returns, judge_balance, judge_parameter, steps,
+    BalanceChange, Groups, NAMED_SIGMAS, Step, UNDECIDED, What, find_returns, judge_balance, judge_parameter,
+    steps,
 };
 use crate::diagnose::Need;
 use crate::diagnose::Owner;
@@ -66,6 +67,24 @@ impl Judge<'_> {
         let wider = at_a_border(count) / NAMED_SIGMAS;
         let compared = self.compared(&flight_groups(&Groups::split(count, count / 2), order));
         compared.least.into_iter().map(|least| LeastChange { size: wider * least.size, ..least }).collect()
+    }
+
+    /// What moved by more than chance reaches at one of the borders of a row in which nothing changed, at the border where it is the
+    /// strongest.
+    #[must_use]
+    pub fn undecided_along(&self, order: &[usize]) -> Option<UndecidedAlong> {
+        let (count, least_sigmas) = (order.len(), at_a_border(order.len()));
+        let least = UNDECIDED.hypot(beyond(count.saturating_sub(1)));
+        let at = |from: usize| {
+            let Compared { changes, undecided, .. } =
+                self.compared(&flight_groups(&Groups::split(count, from), order));
+            let all = changes.into_iter().chain(undecided.into_iter().map(|(change, _)| change));
+            let moved: Vec<Change> =
+                all.filter(|change| change.moved.is_some() && change.sigmas >= least).collect();
+            (!moved.is_empty()).then_some(UndecidedAlong { from, moved, least_sigmas })
+        };
+        let strongest = |along: &UndecidedAlong| along.moved[0].sigmas;
+        (1..count).filter_map(at).max_by(|a, b| strongest(a).total_cmp(&strongest(b)))
     }
 
     /// The strongest change between the flights before and those after any place of an order: standard deviations, and the flights

@@ -12,6 +12,8 @@ mod usable;
 pub use judge::Judge;
 pub(super) use motion::is_compared;
 pub use request::CompareRequest;
-pub use result::{Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange, LeftOut, LiftsApart};
+pub use result::{
+    Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange, LeftOut, LiftsApart, UndecidedAlong,
+};
 pub use run::compare;
 pub(super) use run::{UNKNOWN, power_w};

@@ -31,12 +31,25 @@ pub struct CompareStudy {
     pub history: Vec<Step<Compared>>,
     /// the smallest changes that a border in the middle of all flights would have shown, where there are no groups and nothing changed
     pub least_in_the_middle: Option<Vec<LeastChange>>,
+    /// what moved along all flights by more than chance and less than is certain, where there are no groups and nothing changed
+    pub undecided_along: Option<UndecidedAlong>,
     /// full thrust over weight that says that this may be two vehicles, where no parameter is compared
     pub lifts_apart: Option<LiftsApart>,
     /// flights that were given and are not compared
     pub left_out: Vec<LeftOut>,
     /// what the user should know
     pub notes: Vec<Note>,
+}
+
+/// What moved at a place of a row of flights by more than chance and less than is certain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UndecidedAlong {
+    /// the first flight of the later ones
+    pub from: usize,
+    /// the strongest first
+    pub moved: Vec<Change>,
+    /// standard deviations that make a change at a place of so many flights
+    pub least_sigmas: f64,
 }
 
 /// Full thrust over weight that differs by more than that of one vehicle does.
@@ -206,6 +219,13 @@ impl CompareStudy {
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.left_out.is_empty() && lost(self.flights.iter().map(|flight| &flight.input)).is_empty()
+    }
+
+    /// Nothing says that the flights are those of two vehicles, of which "nothing changed" would say nothing.
+    #[must_use]
+    pub fn is_of_one_vehicle(&self) -> bool {
+        let other = self.compared.as_ref().is_some_and(|compared| compared.other_vehicle.is_some());
+        self.lifts_apart.is_none() && !other
     }
 
     /// Places of the flights from which on something is otherwise than before.

@@ -60,11 +60,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     notes.splice(0..0, of_vehicle(request, &known));
     let Known { loaded: LoadedVehicle { vehicle, .. }, draft, .. } = known;
     notes.extend(left_out.iter().map(LeftOut::note));
-    let paths = flights.inputs.iter().map(|input| input.path.as_str());
-    notes.extend(out_of_order(&starts_utc_us.into_iter().zip(paths).collect::<Vec<_>>(), first));
-    notes.extend(said_of(&flights.inputs));
-    notes.extend(other_settings(&flights.recordings));
-    notes.extend(doubts(&flights));
+    notes.extend(of_flights(&flights, &starts_utc_us, first));
     let balance = balance(&legs);
     progress.stage(Stage::Explaining);
     let Motion { tracks, reasons, notes: of_motion } = moved(request, &flights, &vehicle, progress);
@@ -81,6 +77,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let history = judge.history(&order, 0.0);
     let is_unchanged = groups.is_none() && history.is_empty();
     let least_in_the_middle = is_unchanged.then(|| judge.least_in_the_middle(&order));
+    let undecided_along = if is_unchanged { judge.undecided_along(&order) } else { None };
     let lifts_apart = judge.lifts_apart(groups.as_ref());
     if groups.is_none() {
         notes.extend(moved_by_loads(&judge, &flights.inputs, &history));
@@ -97,10 +94,22 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         compared,
         history,
         least_in_the_middle,
+        undecided_along,
         lifts_apart,
         left_out,
         notes,
     })
+}
+
+/// What is to be known of the flights: their order, their logs, and what is doubtful about their data.
+fn of_flights(flights: &Prepared, starts_utc_us: &[Option<u64>], first: usize) -> Vec<Note> {
+    let paths = flights.inputs.iter().map(|input| input.path.as_str());
+    let begun: Vec<_> = starts_utc_us.iter().copied().zip(paths).collect();
+    let mut notes: Vec<Note> = out_of_order(&begun, first).into_iter().collect();
+    notes.extend(said_of(&flights.inputs));
+    notes.extend(other_settings(&flights.recordings));
+    notes.extend(doubts(flights));
+    notes
 }
 
 /// What is to be known of the vehicle.
