@@ -253,7 +253,7 @@ fn flights_that_each_drop_a_load_have_each_its_own_and_the_mass_before_it() {
     let apart = apart(&flights, &vehicles.nominal, &settings);
     assert_eq!(apart.own.len(), 2);
     for ((signals, own), moment_s) in flights.iter_mut().zip(apart.own).zip([18.0, 20.0]) {
-        let [(id, values)] = own.has.as_slice() else { panic!("{own:?}") };
+        let [(id, values)] = &*own.has else { panic!("{own:?}") };
         assert!(*id == "mass_change" && (values[0] - moment_s).abs() < 0.5, "{values:?}");
         signals.own = own;
     }
