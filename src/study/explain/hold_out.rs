@@ -191,7 +191,7 @@ impl ExplainStudy {
         let models = of_others(self, &flights.signals);
         for ((place, flight), explanation) in flights.held_out().into_iter().enumerate().zip(&models) {
             match shown_only_by(self, place, &flight.signals.own) {
-                Some(id) => alone.push(format!("{} has its own {id}", flight.name)),
+                Some(id) => alone.push(format!("{id} is shown by {} alone", flight.name)),
                 None => {
                     predicted.push(flight);
                     each.push(Explained { explanation, ..self.explained() });
@@ -206,7 +206,7 @@ impl ExplainStudy {
         let shown_on = ValidationData::LeftOut { flights: predicted.len() };
         let shown = on_left_out(self.explained(), &each, &predicted, (&self.given.vehicle, &settings));
         self.notes.extend(alone.iter().map(|of| {
-            let text = format!("{of}, which the others do not tell, so they do not predict this flight");
+            let text = format!("{of}, so the others do not predict this flight");
             Note::remark(About::HoldOut, text)
         }));
         match shown {
