@@ -92,7 +92,7 @@ fn refuse_other_program(path: &Path) -> Result<(), CommandError> {
     }
     Err(CommandError::Input(format!(
         "--out: the program that makes the effects of {} is written to {}; expected that this file is not there, or is the program of an \
-         earlier export to the same file; it is neither, give --out another name",
+         earlier export to the same file. It is neither: give --out another name",
         text::path(&path),
         text::path(&beside)
     )))

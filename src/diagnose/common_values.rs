@@ -54,19 +54,34 @@ fn is_of(named: &Named, term: &EffectTerm) -> bool {
     named.id == term.id() && term.signature.role.which.is_none_or(is_same)
 }
 
-/// By how much the mass of the flights changes, kg, where the effects have the second model's values in place of the first's: by least
-/// squares of the force along body z with all else held. Zero for a vehicle that was weighed, and where a flight tells nothing of it.
+/// The mass by least squares of the force along body z, with all else held.
+pub(super) struct MassByLift<'a> {
+    /// kg beyond the mass of the rows' model
+    pub(super) more_kg: f64,
+    /// force along body z of one kg more in each row, N/kg
+    pub(super) slopes: &'a [f64],
+    /// sum of their squares over the rows that were used
+    pub(super) squares: f64,
+}
+
+/// `None` where the rows tell nothing of the mass.
+pub(super) fn mass_by_lift<'a>(rows: &'a Rows, used: &[usize]) -> Option<MassByLift<'a>> {
+    let mass = rows.nuisances.iter().find(|column| column.nuisance == Nuisance::Mass)?;
+    let slopes = mass.values[2].as_slice();
+    let squares: f64 = used.iter().map(|&row| slopes[row].powi(2)).sum();
+    let more_kg = used.iter().map(|&row| slopes[row] * rows.residual[2][row]).sum::<f64>() / squares;
+    more_kg.is_finite().then_some(MassByLift { more_kg, slopes, squares })
+}
+
+/// By how much the mass of the flights changes, kg, where the effects have the second model's values in place of the first's. Zero for a vehicle that was weighed, and where a flight tells nothing of it.
 fn mass_step(flights: &[Trace], (before, after): (&Fitted, &Fitted)) -> f64 {
     if after.base.weighed_kg.is_some() {
         return 0.0;
     }
     let missing = |fitted: &Fitted| {
         let rows = Rows::new(flights, &fitted.base).ok()?;
-        let mass = rows.nuisances.iter().find(|column| column.nuisance == Nuisance::Mass)?;
-        let (slopes, residuals) = (&mass.values[2], &rows.residual[2]);
-        let squares: f64 = slopes.iter().map(|slope| slope * slope).sum();
-        let kg = slopes.iter().zip(residuals).map(|(slope, left)| slope * left).sum::<f64>() / squares;
-        kg.is_finite().then_some(kg)
+        let all: Vec<usize> = (0..rows.len()).collect();
+        mass_by_lift(&rows, &all).map(|of| of.more_kg)
     };
     missing(after).zip(missing(before)).map_or(0.0, |(after, before)| after - before)
 }

@@ -116,8 +116,8 @@ fn air_words(altitude_m: Option<f64>) -> String {
         Some(altitude_m) => format!(
             "the aircraft's parameters are for the air at {altitude_m:.0} m above the sea, where its home was in the recording"
         ),
-        None => "the aircraft's parameters are for the air at sea level: the recording does not say how high home was; give the \
-                 last command again with --altitude"
+        None => "the aircraft's parameters are for the air at sea level: the recording does not say how high home was. Repeat the \
+                 last command with --altitude"
             .to_owned(),
     }
 }

@@ -2,7 +2,8 @@
 
 use super::settings::HoldoutSettings;
 use crate::diagnose::base::Base;
-use crate::diagnose::channels::{AXES, Nuisance};
+use crate::diagnose::channels::AXES;
+use crate::diagnose::common_values::{MassByLift, mass_by_lift};
 use crate::diagnose::gates::NAME_Z;
 use crate::diagnose::rows::Rows;
 use crate::diagnose::signatures::{ALL, REPACKED_M};
@@ -65,10 +66,7 @@ fn loaded_from(
     // what the whole flight tells of its payload is not known from its beginning
     let own = OwnOfFlight { payload_kg: 0.0, ..trace.own.clone() };
     let trace = &trace.with_own(own.clone());
-    let mut all = base.clone();
-    for term in &mut all.effects {
-        term.free.clear();
-    }
+    let mut all = with_held_effects(base);
     let heavier = if settings.own_mass { heavier(&all, trace, (least, sigmas))? } else { None };
     if let Some((more_kg, _)) = heavier {
         all.vehicle.body.mass_kg += more_kg;
@@ -87,11 +85,13 @@ fn loaded_from(
 
 /// Whether the beginning of a flight shows another mass than the base has.
 pub(super) fn has_other_mass(base: &Base, trace: &Trace) -> Result<bool, PhysicsError> {
+    Ok(heavier(&with_held_effects(base), trace, (LEAST_OF_MASS, SIGMAS))?.is_some())
+}
+
+fn with_held_effects(base: &Base) -> Base {
     let mut all = base.clone();
-    for term in &mut all.effects {
-        term.free.clear();
-    }
-    Ok(heavier(&all, trace, (LEAST_OF_MASS, SIGMAS))?.is_some())
+    all.effects.iter_mut().for_each(|term| term.free.clear());
+    all
 }
 
 /// By how much the centre of mass moved, and up to when (s) the flight was used; the base is then moved.
@@ -129,16 +129,11 @@ fn heavier(
     (least, sigmas): (f64, f64),
 ) -> Result<Option<(f64, f64)>, PhysicsError> {
     let rows = Rows::new(std::slice::from_ref(trace), base)?;
-    let mass = rows.nuisances.iter().find(|column| column.nuisance == Nuisance::Mass);
-    let (Some(mass), Some(&first_s)) = (mass, rows.time_s.first()) else { return Ok(None) };
+    let Some(&first_s) = rows.time_s.first() else { return Ok(None) };
     let until_s = first_s + FIRST_S;
     let used: Vec<usize> = (0..rows.len()).filter(|&row| rows.time_s[row] < until_s).collect();
-    let slope = |row: usize| mass.values[2][row];
-    let squares: f64 = used.iter().map(|&row| slope(row).powi(2)).sum();
-    if squares <= 0.0 {
-        return Ok(None);
-    }
-    let more_kg = used.iter().map(|&row| slope(row) * rows.residual[2][row]).sum::<f64>() / squares;
+    let Some(MassByLift { more_kg, slopes, squares }) = mass_by_lift(&rows, &used) else { return Ok(None) };
+    let slope = |row: usize| slopes[row];
     let mut blocks: Vec<(f64, f64)> = Vec::new();
     for &row in &used {
         let block = ((rows.time_s[row] - first_s) / BLOCK_S).floor();

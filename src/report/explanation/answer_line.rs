@@ -52,7 +52,7 @@ fn nothing(study: &ExplainStudy) -> &'static str {
     } else if study.refuted.is_some() {
         "no name holds"
     } else if has_own {
-        "nothing is missing in all flights; one of them has an effect of its own"
+        "single flights have effects of their own; nothing else is missing"
     } else if much_left(study).is_some() {
         "nothing was found, and much is left over"
     } else {
