@@ -63,13 +63,15 @@ fn of_vehicle(bounds: &Bounds, size: &VehicleSize) -> String {
 
 /// What a file may say of a parameter.
 fn expected(parameter: &Parameter, size: Option<&VehicleSize>) -> String {
-    let (bounds, unit) = (&parameter.bounds, parameter.unit);
+    let bounds = &parameter.bounds;
+    let in_unit = if parameter.unit == "-" { String::new() } else { format!(" {}", parameter.unit) };
     match widened(bounds, size) {
         Some((least, greatest)) => {
             let of = size.map_or_else(String::new, |size| of_vehicle(bounds, size));
-            format!("{} to {} {unit}{of}", compact(least), compact(greatest))
+            format!("{} to {}{in_unit}{of}", compact(least), compact(greatest))
         }
-        None => format!("a number in {unit}"),
+        None if in_unit.is_empty() => "a number".to_owned(),
+        None => format!("a number in{in_unit}"),
     }
 }
 
