@@ -25,12 +25,19 @@ impl Explanation {
 
 impl Explanation {
     /// The final model with the values that flights have in common, by the names of [`FlightParameter`](super::FlightParameter), SI: in its names as well.
-    /// Its mass moves with them: thrust that is less by an effect lifts less.
+    /// Its mass moves with them, or the thrust of a vehicle that was weighed: thrust that is less by an effect lifts less.
     #[must_use]
     pub fn with_common(&self, flights: &[Trace], values: &[(&str, (f64, f64))]) -> Self {
         let mut moved = self.with_values(&[], values);
-        moved.search.after.base.vehicle.body.mass_kg +=
-            mass_step(flights, (&self.search.after, &moved.search.after));
+        let step_kg = mass_step(flights, (&self.search.after, &moved.search.after));
+        let base = &mut moved.search.after.base;
+        let mass_kg = base.vehicle.body.mass_kg;
+        if base.weighed_kg.is_some() {
+            // its mass stays, and all of its thrust is more or less than it was
+            base.vehicle.propulsion = base.vehicle.propulsion.scaled(mass_kg / (mass_kg + step_kg));
+        } else {
+            base.vehicle.body.mass_kg += step_kg;
+        }
         let of = |name: &str| values.iter().find(|(known, _)| *known == name).map(|(_, estimate)| *estimate);
         let terms = &moved.search.after.base.effects;
         for effect in moved.named.iter_mut().chain(&mut moved.closest) {
@@ -54,10 +61,10 @@ fn is_of(named: &Named, term: &EffectTerm) -> bool {
     named.id == term.id() && term.signature.role.which.is_none_or(is_same)
 }
 
-/// The mass by least squares of the force along body z, with all else held.
+/// A Newton step of the mass by least squares of the force along body z, with all else held.
 pub(super) struct MassByLift<'a> {
-    /// kg beyond the mass of the rows' model
-    pub(super) more_kg: f64,
+    /// kg beyond the mass of the rows' model by one linear step: see [`mass_after`]
+    pub(super) step_kg: f64,
     /// force along body z of one kg more in each row, N/kg
     pub(super) slopes: &'a [f64],
     /// sum of their squares over the rows that were used
@@ -69,19 +76,25 @@ pub(super) fn mass_by_lift<'a>(rows: &'a Rows, used: &[usize]) -> Option<MassByL
     let mass = rows.nuisances.iter().find(|column| column.nuisance == Nuisance::Mass)?;
     let slopes = mass.values[2].as_slice();
     let squares: f64 = used.iter().map(|&row| slopes[row].powi(2)).sum();
-    let more_kg = used.iter().map(|&row| slopes[row] * rows.residual[2][row]).sum::<f64>() / squares;
-    more_kg.is_finite().then_some(MassByLift { more_kg, slopes, squares })
+    let step_kg = used.iter().map(|&row| slopes[row] * rows.residual[2][row]).sum::<f64>() / squares;
+    step_kg.is_finite().then_some(MassByLift { step_kg, slopes, squares })
 }
 
-/// By how much the mass of the flights changes, kg, where the effects have the second model's values in place of the first's. Zero for a vehicle that was weighed, and where a flight tells nothing of it.
+/// The mass to which a linear step about another one leads, kg, and the factor from the step's standard error to that of the mass. The
+/// residual is `m K(a) - K(F)` and the column of the mass `-K(F) / m`, so that a force `F = m' K(a)` gives the step `(m' - m) m / m'`.
+/// `None` where no mass gives that step.
+pub(super) fn mass_after(mass_kg: f64, step_kg: f64) -> Option<(f64, f64)> {
+    let left = 1.0 - step_kg / mass_kg;
+    (left > 0.0).then(|| (mass_kg / left, left.powi(-2)))
+}
+
+/// By how much the mass of the flights changes, kg, where the effects have the second model's values in place of the first's: a
+/// difference of two small steps. Zero where a flight tells nothing of it.
 fn mass_step(flights: &[Trace], (before, after): (&Fitted, &Fitted)) -> f64 {
-    if after.base.weighed_kg.is_some() {
-        return 0.0;
-    }
     let missing = |fitted: &Fitted| {
         let rows = Rows::new(flights, &fitted.base).ok()?;
         let all: Vec<usize> = (0..rows.len()).collect();
-        mass_by_lift(&rows, &all).map(|of| of.more_kg)
+        mass_by_lift(&rows, &all).map(|of| of.step_kg)
     };
     missing(after).zip(missing(before)).map_or(0.0, |(after, before)| after - before)
 }
@@ -125,5 +138,26 @@ fn set_std(covariance: &mut DMatrix<f64>, index: usize, std: f64) {
     if by.is_finite() && by > 0.0 {
         covariance.row_mut(index).scale_mut(by);
         covariance.column_mut(index).scale_mut(by);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a hover with another mass: `F = m' a` in the rows of a model with `m`, and the least squares on `-F / m`.
+    #[test]
+    fn a_step_leads_to_the_mass_that_the_force_carries() {
+        for (mass_kg, true_kg) in [(1.0, 0.75), (1.0, 1.2), (2.0, 3.0)] {
+            let lift: f64 = true_kg * 9.8;
+            let (residual, slope) = (mass_kg * 9.8 - lift, -lift / mass_kg);
+            let (found, factor) = mass_after(mass_kg, residual / slope).unwrap();
+            assert!((found - true_kg).abs() < 1e-12, "{found}");
+            // of a small further force
+            let more = (mass_kg * 9.8 - lift * (1.0 + 1e-6)) / slope;
+            let by = (mass_after(mass_kg, more).unwrap().0 - found) / (more - residual / slope);
+            assert!((by / factor - 1.0).abs() < 1e-4, "{by} {factor}");
+        }
+        assert!(mass_after(1.0, 1.0).is_none());
     }
 }

@@ -5,7 +5,7 @@ use super::fit::Newton;
 use super::floors::FORM;
 use super::latency::{FAST_MOTOR_S, LatencyFinding, REFUSED, held_s, is_delay, stated_lag_s, with_latency};
 use super::latency_distance::latency_distance;
-use super::named::{APART, Confusable, Named, NamedParameter, Strength};
+use super::named::{Confusable, LATENCY_APART, Named, NamedParameter, Strength};
 use super::signature::LatencyKind;
 use super::signatures::{latency_signature, signature_of};
 use super::tested::Search;
@@ -51,7 +51,7 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     if !stated && value < CERTAIN * std {
         return None;
     }
-    let told_apart = stated && others > TOLD_APART && own < 0.5 * REFUSED;
+    let told_apart = stated && others > LATENCY_APART && own < 0.5 * REFUSED;
     let z = (total_s - ordinary_s) / found.latency.std_s.hypot(ORDINARY_STD_S);
     Some(Named {
         id: kind.id(),
@@ -64,7 +64,8 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
             vec![Confusable {
                 id: other.id(),
                 // the same figure as that of the advice for the next flight
-                distinguishability: latency_distance(traces, &found.after, kind.id()).filter(|d| *d < APART),
+                distinguishability: latency_distance(traces, &found.after, kind.id())
+                    .filter(|d| *d < LATENCY_APART),
             }]
         },
     })
@@ -201,11 +202,6 @@ fn parameters_of(
 
 /// Standard error of the latency that every vehicle has, s: low-passes of gyroscopes at 30 to 80 Hz delay by 2 to 7 ms.
 const ORDINARY_STD_S: f64 = 0.0025;
-
-/// Standard deviations beyond which a lag is distinguished from a delay. More than for other pairs, because rotors
-/// with different rising and falling time constants are neither and resemble a delay. Set by judgement; measured only
-/// together with all conditions of a name (see `Gates`).
-const TOLD_APART: f64 = 15.0;
 
 #[cfg(test)]
 mod tests {

@@ -62,8 +62,9 @@ impl EffectTerm {
 
     /// At the values at which it does nothing.
     fn vanish(&mut self) {
-        let Some(&first) = self.signature.amounts.first() else { return };
-        self.values[first] = self.signature.nothing;
+        for &amount in self.signature.amounts {
+            self.values[amount] = self.signature.nothing;
+        }
         for slot in self.free.clone() {
             self.values[slot] = self.nothing_at(slot);
         }

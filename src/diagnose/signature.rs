@@ -207,6 +207,8 @@ pub struct Naming {
     pub least_of_arm: f64,
     /// norm of all parameters below which it stays in the model without a name
     pub least: f64,
+    /// size of a single one, in the amounts' unit, that `is_ordinary` calls so
+    pub ordinary_alone: f64,
     /// whether it is ordinary in the presence of the other effects of the model, whatever its size
     pub is_ordinary: fn(&EffectTerm, &[EffectTerm]) -> bool,
     /// added to the least normal deviate, because the effect is tried at many values and the most likely one counts
@@ -233,6 +235,7 @@ impl Naming {
         by_height: false,
         least_of_arm: 0.0,
         least: 0.0,
+        ordinary_alone: 0.0,
         is_ordinary: |_, _| false,
         extra_z: 0.0,
         ubiquitous: false,

@@ -11,9 +11,9 @@ use crate::physics::Airframe;
 /// of both regressions, or as near to one as its standard error allows.
 pub(super) fn may_be_noise(flights: &[Trace], fitted: &Fitted) -> bool {
     let Ok(airframe) = Airframe::new(&fitted.base.vehicle) else { return false };
-    let mass_kg = fitted.base.vehicle.body.mass_kg;
     let mut pairs: Vec<(f64, f64)> = Vec::new();
     for trace in flights {
+        let mass_kg = fitted.base.vehicle.body.mass_kg + trace.own.payload_kg;
         let thrust = trace.felt_n(&airframe, fitted.base.latency);
         let thrust: Vec<f64> = thrust.each().map(|rotors| rotors.iter().sum()).collect();
         let Some([.., force]) = trace.weak_specific_force().first() else { return false };

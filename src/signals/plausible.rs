@@ -18,6 +18,9 @@ const TRAVEL_S: f64 = 1.0;
 const LEAST_TRAVELS: usize = 10;
 /// Least rms of such a change that is compared, m. A receiver's position wanders by less in a second.
 const TRAVELLED_M: f64 = 0.05;
+/// Least rms of the change of a velocity over that time that is compared with the measured acceleration, m/s. A receiver's velocity is
+/// noisier than this only where it says nothing.
+const SPED_UP_M_S: f64 = 0.1;
 /// Least absolute correlation of two series that belong together, or of one with the wrong sign. Only a flight with
 /// little noise tells signs and order; with a smaller one a sound log could be contradicted.
 const ALIKE: f64 = 0.6;
@@ -50,6 +53,7 @@ pub(super) fn check(signals: &Signals, vehicle: &Vehicle) -> Vec<Note> {
     if units.is_empty() {
         units.extend(torques(signals, vehicle, &spans));
     }
+    units.extend(velocities(signals));
     units.extend(positions(signals));
     units.into_iter().map(|text| Note::warning(About::Contradiction, text)).collect()
 }
@@ -139,6 +143,44 @@ fn forces(signals: &Signals, gravity_m_s2: f64, spans: &[(usize, usize)]) -> Vec
             )
         })
         .collect()
+}
+
+/// Changes of the velocity against the measured acceleration. Velocity and position that are both in another unit agree with each other.
+fn velocities(signals: &Signals) -> Vec<String> {
+    let (Some(attitude), Some(specific_force), Some(velocity)) =
+        (&signals.attitude, &signals.specific_force, &signals.velocity)
+    else {
+        return Vec::new();
+    };
+    let spans = windows(signals, TRAVEL_S);
+    let changed: Vec<Vector3<f64>> =
+        spans.iter().map(|&(first, last)| velocity[last] - velocity[first]).collect();
+    let felt: Vec<Vector3<f64>> = spans
+        .iter()
+        .map(|&(first, last)| {
+            let sum: Vector3<f64> = (first..last).map(|index| attitude[index] * specific_force[index]).sum();
+            sum * signals.grid.step_s
+        })
+        .collect();
+    let one = |(axis, name): (usize, &&str)| {
+        let ratio = other_scale(&column(&changed, axis), &column(&felt, axis))?;
+        Some(format!(
+            "the velocity {name} changes by {ratio:.3} times what the accelerometer says: expected velocities in m/s and accelerations in \
+             m/s^2"
+        ))
+    };
+    ["north", "west", "up"].iter().enumerate().filter_map(one).collect()
+}
+
+/// Ratio of changes of a velocity to those that the acceleration gives, m/s, where both are alike and on scales that differ by more than
+/// noise explains. Gravity and a bias are in the mean.
+fn other_scale(changed: &[f64], felt: &[f64]) -> Option<f64> {
+    let (changed, felt) = (centred(changed), centred(felt));
+    let ratio = rms(&changed) / rms(&felt);
+    let tells = changed.len() >= LEAST_TRAVELS
+        && rms(&changed).max(rms(&felt)) > SPED_UP_M_S
+        && likeness(&changed, &felt) > ALIKE;
+    (tells && !(1.0 / RATIO..=RATIO).contains(&ratio)).then_some(ratio)
 }
 
 /// Changes of the position against the velocity.
@@ -265,4 +307,27 @@ fn likeness(a: &[f64], b: &[f64]) -> f64 {
     let product: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
     let scale = rms(&a) * rms(&b) * a.len() as f64;
     if scale > 0.0 { product / scale } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_velocity_in_another_unit_is_told_by_the_acceleration() {
+        // with gravity in the mean of what is felt
+        let felt: Vec<f64> = (0..20).map(|i| f64::from(i).sin() + 9.8).collect();
+        let times = |factor: f64| -> Vec<f64> { felt.iter().map(|of| factor * (of - 9.8)).collect() };
+        assert_eq!(other_scale(&times(1.0), &felt), None);
+        assert_eq!(other_scale(&times(1.5), &felt), None);
+        let ratio = other_scale(&times(100.0), &felt).unwrap();
+        assert!((ratio - 100.0).abs() < 1e-9, "{ratio}");
+        // nothing alike, too few, or hardly any motion
+        assert_eq!(
+            other_scale(&(0..20).map(|i| 100.0 * (2.7 * f64::from(i)).cos()).collect::<Vec<_>>(), &felt),
+            None
+        );
+        assert_eq!(other_scale(&times(100.0)[..5], &felt[..5]), None);
+        assert_eq!(other_scale(&times(0.02), &times(0.001)), None);
+    }
 }

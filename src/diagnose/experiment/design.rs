@@ -7,7 +7,8 @@ use super::foresight::{self, Foresight, Question};
 use super::search;
 use super::settings::NextSettings;
 use crate::diagnose::explanation::Explanation;
-use crate::diagnose::signatures::signature_of;
+use crate::diagnose::signature::LatencyKind;
+use crate::diagnose::signatures::{latency_kind, signature_of};
 use crate::diagnose::trace::Trace;
 use crate::diagnose::trace_error::TraceError;
 use crate::signals::Signals;
@@ -108,7 +109,15 @@ const SAME_SIGMA: f64 = 0.5;
 const SAME: &str = "in every flight inside the limits both have the same effect on the vehicle";
 const BY_WEIGHING: &str =
     "weigh the vehicle before and after, swap the pack in between, and record the battery's voltage";
+const BY_STATING: &str =
+    "state the motors' time constant (time_constant under [propulsion]), of which nothing is known here";
 const NOT_TRIED: &str = "what it would do in another flight is not known";
+
+/// A delay of a vehicle whose motors' lag is not stated.
+fn is_of_unstated_motors(named: &str, explanation: &Explanation) -> bool {
+    let propulsion = &explanation.search.after.base.vehicle.propulsion;
+    latency_kind(named) == Some(LatencyKind::Delay) && propulsion.mean_time_constant_s().is_none()
+}
 
 /// The pairs of all confusable sets, and those among them that no trajectory separates. If all names are certain, the
 /// one with the smallest significance.
@@ -124,6 +133,11 @@ fn questions(explanation: &Explanation, traces: &[Trace]) -> (Vec<Question>, Vec
             }
             let pair = [named.id, other];
             let role = |id: &&str| signature_of(id).map(|signature| signature.role);
+            // however far it is from a lag, the motors' own may be all of it
+            if is_of_unstated_motors(named.id, explanation) {
+                inseparable.push(Inseparable { named: named.id, other, why: BY_STATING });
+                continue;
+            }
             let still = pair.iter().all(|id| role(id).is_some_and(|role| !role.by_motion))
                 || pair.iter().any(|id| role(id).is_some_and(|role| role.moment.is_some()));
             let question = (!still).then(|| foresight::question(explanation, traces, (named.id, other)));

@@ -1,6 +1,6 @@
 //! The next flight and its expected results.
 
-use crate::diagnose::named::APART;
+use crate::diagnose::named::apart_from;
 use crate::diagnose::signatures::latency_kind;
 use crate::trajectory::FourierTrajectory;
 use crate::vehicle::Limits;
@@ -66,14 +66,20 @@ impl Pair {
     /// With the next flight the two effects are told apart.
     #[must_use]
     pub fn is_told_apart(&self) -> bool {
-        self.other.is_some() && self.with_next() >= APART
+        self.other.is_some_and(|other| self.with_next() >= apart_from(other))
+    }
+
+    /// With the next flight the two effects are told apart, and without it they are not.
+    #[must_use]
+    pub fn is_told_apart_by_next(&self) -> bool {
+        self.is_told_apart() && self.other.is_some_and(|other| self.now < apart_from(other))
     }
 
     /// Their distance in words, now and with the next flight, which has the name `flight`.
     #[must_use]
     pub fn distance(&self, flight: &str) -> String {
         let apart = match self.other {
-            Some(_) if !self.is_told_apart() => format!(", and {APART:.0} tell them apart"),
+            Some(other) if !self.is_told_apart() => format!(", and {:.0} tell them apart", apart_from(other)),
             _ => String::new(),
         };
         format!("now {:.1}, with {flight} {:.1} standard deviations{apart}", self.now, self.with_next())
@@ -114,9 +120,15 @@ mod tests {
         let pair = |now, after| Pair { named: "motor_lag", other: Some("transport_delay"), now, after };
         let near = pair(1.5, 1.2);
         assert!(!near.is_told_apart() && near.otherwise().is_some());
-        assert_eq!(near.distance("it"), "now 1.5, with it 1.9 standard deviations, and 5 tell them apart");
-        let far = pair(3.0, 4.0);
+        assert_eq!(near.distance("it"), "now 1.5, with it 1.9 standard deviations, and 15 tell them apart");
+        let far = pair(9.0, 12.0);
         assert!(far.is_told_apart() && far.otherwise().is_none());
-        assert_eq!(far.distance("it"), "now 3.0, with it 5.0 standard deviations");
+        assert_eq!(far.distance("it"), "now 9.0, with it 15.0 standard deviations");
+        assert!(far.is_told_apart_by_next() && !pair(15.0, 4.0).is_told_apart_by_next());
+        // other pairs need less
+        assert!(
+            Pair { named: "linear_drag", other: Some("quadratic_drag"), now: 3.0, after: 4.0 }
+                .is_told_apart()
+        );
     }
 }

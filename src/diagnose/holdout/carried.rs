@@ -1,6 +1,6 @@
 //! Transfer of the identified model to another flight.
 
-use super::loading::{Loaded, has_other_mass, loaded, loaded_beside};
+use super::loading::{Loaded, has_other_mass, loaded, loaded_beside, without_payload};
 use super::rate_law::RateLaw;
 use super::settings::{Explained, HeldOut, HoldoutSettings};
 use crate::diagnose::base::Base;
@@ -141,7 +141,7 @@ pub(super) fn carried_over(
         pair.notes.push(Note::warning(about(), of_load(&after)));
         let beside = if after.more_kg.is_some() { loaded_beside } else { loaded };
         let before = beside(&pair.before, trace, settings)?
-            .map_or_else(|| pair.before.on(&trace.own).into_owned(), |of| of.base);
+            .map_or_else(|| pair.before.on(&without_payload(trace)).into_owned(), |of| of.base);
         pair.loaded = Some(LoadedPair { before, after: after.base, until_s: after.until_s });
     }
     Ok(pair)

@@ -54,7 +54,10 @@ pub(super) fn flown_again(
         let (before, after) = ready.pair.predicting();
         let (before, after) =
             rayon::join(|| fly("rigid body alone", before), || fly("model with the effects", after));
-        for ((time_s, before), (_, after)) in before?.iter().zip(&after?) {
+        let from_s = ready.pair.predicted_from_s();
+        for ((time_s, before), (_, after)) in
+            before?.iter().zip(&after?).filter(|((time_s, _), _)| *time_s >= from_s)
+        {
             let squares = Squares { unchanged: None, before, after, count: &[1.0; SIGNALS.len()] };
             blocks.add((index, *time_s), squares);
         }

@@ -65,6 +65,7 @@ pub fn on_left_out(
     let improvement = improvement_percent.map(|improvement| improvement.value);
     let another = other_vehicle.is_some();
     let other_mass = ready.iter().any(|ready| ready.pair.other_mass);
+    let speed_share = other_vehicle::speed_share(&ready, explanation);
     notes.extend(as_written(&mut ready, empirical, settings));
     tracing::info!(improvement_percent = improvement, blocks, other_vehicle = another, "hold-out predicted");
     notes.push(Note::remark(
@@ -81,6 +82,7 @@ pub fn on_left_out(
         agreement,
         other_vehicle,
         other_mass,
+        speed_share,
         notes,
     })
 }

@@ -26,6 +26,8 @@ pub struct HoldoutFit {
     pub other_vehicle: Option<OtherVehicle>,
     /// a flight begins with another mass than the model's, with which it is predicted here: a payload, or another battery
     pub other_mass: bool,
+    /// mean speed over the mean airspeed of the flights explained, -
+    pub speed_share: f64,
     /// notes on parameters that were not kept or are not known
     pub notes: Vec<Note>,
 }

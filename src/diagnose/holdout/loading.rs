@@ -3,7 +3,7 @@
 use super::settings::HoldoutSettings;
 use crate::diagnose::base::Base;
 use crate::diagnose::channels::AXES;
-use crate::diagnose::common_values::{MassByLift, mass_by_lift};
+use crate::diagnose::common_values::{MassByLift, mass_after, mass_by_lift};
 use crate::diagnose::gates::NAME_Z;
 use crate::diagnose::rows::Rows;
 use crate::diagnose::signatures::{ALL, REPACKED_M};
@@ -63,8 +63,7 @@ fn loaded_from(
     if settings.same_flight {
         return Ok(None);
     }
-    // what the whole flight tells of its payload is not known from its beginning
-    let own = OwnOfFlight { payload_kg: 0.0, ..trace.own.clone() };
+    let own = without_payload(trace);
     let trace = &trace.with_own(own.clone());
     let mut all = with_held_effects(base);
     let heavier = if settings.own_mass { heavier(&all, trace, (least, sigmas))? } else { None };
@@ -75,12 +74,20 @@ fn loaded_from(
     let Some(until_s) = moved.map(|(_, until_s)| until_s).or(heavier.map(|(_, until_s)| until_s)) else {
         return Ok(None);
     };
+    // as free as they were, for a fit of the flight's own
+    let given = base.effects.iter().map(|term| term.free.clone()).chain(std::iter::repeat(Vec::new()));
+    all.effects.iter_mut().zip(given).for_each(|(term, free)| term.free = free);
     Ok(Some(Loaded {
         base: all.on(&own).into_owned(),
         moved_m: moved.map(|(moved_m, _)| moved_m),
         more_kg: heavier.map(|(more_kg, _)| more_kg),
         until_s,
     }))
+}
+
+/// What is a flight's own but its payload: what the whole flight tells of that is not known from its beginning.
+pub(super) fn without_payload(trace: &Trace) -> OwnOfFlight {
+    OwnOfFlight { payload_kg: 0.0, ..trace.own.clone() }
 }
 
 /// Whether the beginning of a flight shows another mass than the base has.
@@ -132,7 +139,9 @@ fn heavier(
     let Some(&first_s) = rows.time_s.first() else { return Ok(None) };
     let until_s = first_s + FIRST_S;
     let used: Vec<usize> = (0..rows.len()).filter(|&row| rows.time_s[row] < until_s).collect();
-    let Some(MassByLift { more_kg, slopes, squares }) = mass_by_lift(&rows, &used) else { return Ok(None) };
+    let Some(MassByLift { step_kg, slopes, squares }) = mass_by_lift(&rows, &used) else { return Ok(None) };
+    let mass_kg = base.vehicle.body.mass_kg;
+    let Some((own_kg, factor)) = mass_after(mass_kg, step_kg) else { return Ok(None) };
     let slope = |row: usize| slopes[row];
     let mut blocks: Vec<(f64, f64)> = Vec::new();
     for &row in &used {
@@ -141,14 +150,14 @@ fn heavier(
             blocks.push((block, 0.0));
         }
         if let Some((_, score)) = blocks.last_mut() {
-            *score += slope(row) * (rows.residual[2][row] - slope(row) * more_kg);
+            *score += slope(row) * (rows.residual[2][row] - slope(row) * step_kg);
         }
     }
     let left = blocks.len().saturating_sub(1).max(1);
     let scatter =
         blocks.iter().map(|(_, score)| score * score).sum::<f64>() * blocks.len() as f64 / left as f64;
-    let std_kg = scatter.sqrt() / squares;
-    let is_payload = more_kg.abs() > sigmas * std_kg && more_kg.abs() > least * base.vehicle.body.mass_kg;
+    let (more_kg, std_kg) = (own_kg - mass_kg, factor * scatter.sqrt() / squares);
+    let is_payload = more_kg.abs() > sigmas * std_kg && more_kg.abs() > least * mass_kg;
     Ok(is_payload.then_some((more_kg, until_s)))
 }
 

@@ -6,6 +6,7 @@ use super::ready::{Ready, trace_of};
 use super::settings::{Explained, HeldOut, HoldoutSettings};
 use super::weak::Weak;
 use crate::diagnose::channels::{AXES, CHANNEL_NAMES, CHANNELS, Nuisance};
+use crate::diagnose::common_values::mass_after;
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::fit::{Fitted, evaluate};
 use crate::diagnose::signature::EffectTerm;
@@ -79,7 +80,7 @@ pub(super) fn judged(
     });
     // averaged torques leave less than those of each row
     let alike = ready.iter().all(|ready| ready.trace.torques == identified.rows.compares_torques);
-    let faster = mean_speed_m_s(ready) / explanation.airspeed_m_s.max(f64::MIN_POSITIVE);
+    let faster = speed_share(ready, explanation);
     Ok((all, by_parameters.or_else(|| by_what_is_left(identified, (weak, alike, faster), whose))))
 }
 
@@ -207,10 +208,11 @@ fn by_what_is_left(
     Some(OtherVehicle { by, reason })
 }
 
-/// Mean speed over the rows of the held-out flights, m/s.
-fn mean_speed_m_s(ready: &[Ready]) -> f64 {
+/// Mean speed over the rows of the held-out flights, as a share of the mean airspeed of the flights explained.
+pub(super) fn speed_share(ready: &[Ready], explanation: &Explanation) -> f64 {
     let rows = || ready.iter().flat_map(|of| of.trace.centers.iter().map(|&center| &of.trace.states[center]));
-    rows().map(|state| state.velocity_m_s.norm()).sum::<f64>() / rows().count().max(1) as f64
+    let mean_m_s = rows().map(|state| state.velocity_m_s.norm()).sum::<f64>() / rows().count().max(1) as f64;
+    mean_m_s / explanation.airspeed_m_s.max(f64::MIN_POSITIVE)
 }
 
 fn described(agreement: &Agreement) -> String {
@@ -257,13 +259,18 @@ fn agreements(own: &Fitted, identified: &Fitted) -> Vec<Agreement> {
         let Some(known) = known.filter(|&known| std(identified, known) > 0.0 && std(own, index) > 0.0) else {
             continue;
         };
+        let step = moved(index, Some(known));
+        let (held_out, factor) = match column.nuisance {
+            Nuisance::Mass => mass_after(value, step).unwrap_or((value + step, 1.0)),
+            _ => (value + step, 1.0),
+        };
         out.push(Agreement {
             name: name.to_owned(),
             unit,
             identified: value,
             identified_std: std(identified, known),
-            held_out: value + moved(index, Some(known)),
-            held_out_std: std(own, index),
+            held_out,
+            held_out_std: factor * std(own, index),
             relevance,
         });
     }

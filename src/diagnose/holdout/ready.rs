@@ -6,13 +6,26 @@ use super::settings::{HeldOut, HoldoutSettings};
 use crate::diagnose::base::Base;
 use crate::diagnose::trace::Trace;
 use crate::physics::{Model, PhysicsError};
+use crate::signals::OwnOfFlight;
 use crate::vehicle::Vehicle;
+use std::borrow::Cow;
 
 /// A held-out flight prepared for the comparison.
 pub(super) struct Ready<'a> {
     pub(super) flight: &'a HeldOut<'a>,
     pub(super) trace: Trace,
     pub(super) pair: Pair,
+}
+
+impl Ready<'_> {
+    /// The flight on which the models for predictions stand: they have in them what is its own.
+    pub(super) fn predicted(&self) -> Cow<'_, Trace> {
+        if self.pair.loaded.is_some() {
+            Cow::Owned(self.trace.with_own(OwnOfFlight::default()))
+        } else {
+            Cow::Borrowed(&self.trace)
+        }
+    }
 }
 
 pub(super) fn trace_of(

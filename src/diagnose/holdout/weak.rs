@@ -12,6 +12,20 @@ use crate::diagnose::trace::Trace;
 use crate::physics::PhysicsError;
 use rayon::prelude::*;
 
+/// Of one held-out flight.
+struct Part {
+    /// residual of the rigid body alone, by the models for predictions
+    before: Channels,
+    /// of the model with effects
+    after: Channels,
+    /// the flight's own fit about that
+    own: Fitted,
+    /// the same about the model without what is the flight's own
+    of_vehicle: Fitted,
+    /// vehicle clock, s, from which on the flight is predicted
+    from_s: f64,
+}
+
 /// Residuals, and the held-out flights' own linear fits about the carried model.
 pub(super) struct Weak {
     pub(super) compared: Vec<Option<Compared>>,
@@ -29,28 +43,34 @@ pub(super) fn residuals(
     empirical: Option<&Empirical>,
     settings: &HoldoutSettings,
 ) -> Result<Weak, PhysicsError> {
-    let parts: Vec<(Channels, Channels, Fitted)> = ready
+    let parts: Vec<Part> = ready
         .par_iter()
         .map(|ready| {
+            let (trace, search) = (ready.predicted(), &explanation.search);
             let frozen = |base: &Base, from: &Fitted| -> Result<(Channels, Fitted), PhysicsError> {
-                let own = own_fit(&ready.trace, base)?;
+                let own = own_fit(&trace, base)?;
                 Ok((without_known_nuisances(&own, from), own))
             };
-            let search = &explanation.search;
-            let (before, _) = frozen(&ready.pair.before, &search.before)?;
-            let (mut after, own) = frozen(&ready.pair.after, &search.after)?;
+            let (base_before, base_after) = ready.pair.predicting();
+            let (before, _) = frozen(base_before, &search.before)?;
+            let (mut after, own) = frozen(base_after, &search.after)?;
             if let Some(empirical) = empirical {
-                subtract(&mut after, empirical, &ready.trace);
+                subtract(&mut after, empirical, &trace);
             }
-            Ok((before, after, own))
+            let of_vehicle = match ready.pair.loaded {
+                Some(_) => own_fit(&ready.trace, &ready.pair.after)?,
+                None => own.clone(),
+            };
+            Ok(Part { before, after, own, of_vehicle, from_s: ready.pair.predicted_from_s() })
         })
         .collect::<Result<_, PhysicsError>>()?;
     let mut blocks = Blocks::new(CHANNELS, settings.block_s);
     let (mut floor, mut rows) = ([0.0; CHANNELS], [0; CHANNELS]);
-    for (flight, (before, after, own)) in parts.iter().enumerate() {
+    for (flight, Part { before, after, own, from_s, .. }) in parts.iter().enumerate() {
         let counts: [usize; CHANNELS] = std::array::from_fn(|channel| own.rows.count_of(channel));
         let measured = counts.map(|count| if count > 0 { 1.0 } else { 0.0 });
-        for (row, time_s) in own.rows.time_s.iter().enumerate() {
+        // what a flight has its own was taken from its beginning
+        for (row, time_s) in own.rows.time_s.iter().enumerate().filter(|(_, time_s)| *time_s >= from_s) {
             let squares = |channels: &Channels| -> [f64; CHANNELS] {
                 std::array::from_fn(|channel| channels[channel][row].powi(2))
             };
@@ -72,7 +92,7 @@ pub(super) fn residuals(
             // a flight's own fit has no empirical term
             .map(|compared| Compared { floor: empirical.is_none().then_some(own_rms), ..compared });
     }
-    Ok(Weak { own_rms, compared, own: parts.into_iter().map(|(.., own)| own).collect() })
+    Ok(Weak { own_rms, compared, own: parts.into_iter().map(|part| part.of_vehicle).collect() })
 }
 
 /// A flight's own linear fit about a model. The size of a change that was before the flight's rows keeps its value: there

@@ -35,6 +35,7 @@ pub static SIGNATURE: Signature = Signature {
         rotors.map(|term| Form { term, instead_of_nuisance: false }).collect()
     },
     naming: Naming {
+        ordinary_alone: ALIKE,
         is_ordinary,
         least_std: BETWEEN_SAMPLES,
         // the first rotor's number is 0

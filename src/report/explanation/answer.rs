@@ -15,7 +15,7 @@ const SIZED: usize = 4;
 /// The answer in one sentence; what makes it doubtful comes first, or last where that concerns no name.
 #[must_use]
 pub fn answer(study: &ExplainStudy) -> String {
-    let found = format!("{}{}", found(study), no_model(study));
+    let found = format!("{}{}{}", found(study), withdrawn(study), no_model(study));
     match study.doubts().as_slice() {
         [] => found,
         [doubt] if study.doubts_torques_alone() => {
@@ -91,6 +91,22 @@ fn unsure(study: &ExplainStudy) -> String {
         [] => String::new(),
         unsure => format!(" It also shows {}, but not surely enough for a name.", list(unsure)),
     }
+}
+
+/// A sentence on what the flights explained show, and the hold-out does not.
+fn withdrawn(study: &ExplainStudy) -> String {
+    let names = study.withdrawn.as_slice();
+    if names.is_empty() {
+        return String::new();
+    }
+    let (have, them) = if names.len() > 1 { ("have", "them") } else { ("has", "it") };
+    let (on, another) = (study.shown_on.words(), matches!(study.shown_on, ValidationData::Flights(_)));
+    let changed = if another { " If the vehicle changed in between, mavid compare tells what." } else { "" };
+    format!(
+        " What was explained also shows {}, but errors on {on} are smaller without {them}, so {} {have} no name.{changed}",
+        list(names),
+        if names.len() > 1 { "they" } else { "it" }
+    )
 }
 
 fn unsure_names(study: &ExplainStudy) -> &[String] {

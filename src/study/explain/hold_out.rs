@@ -37,6 +37,10 @@ const LEAST_BETTER_PERCENT: f64 = 1.0;
 /// seldom. Set by judgement.
 const BY_CHANCE: f64 = 0.2;
 
+/// Least mean speed of another flight, as a share of that of the flights explained, with which it refutes what acts in motion. With half
+/// the speed a linear drag has half the force, and that by the square a quarter. Set by judgement.
+const MOVES: f64 = 0.5;
+
 /// A flight that was used, or a part of it, shows nothing as a hold-out.
 pub(super) fn refuse_shared(flights: &Prepared, held: &Prepared) -> Result<(), StudyError> {
     for (hold_out, input) in held.recordings.iter().zip(&held.inputs) {
@@ -119,6 +123,10 @@ impl ExplainStudy {
     /// the hold-out is of another vehicle.
     pub(super) fn refuted_by_holdout(&self) -> Option<Refuted> {
         let named = self.explanation.named.iter();
+        let has_power = |named: &Named| self.judges(named.id);
+        if !self.explanation.named.iter().all(has_power) {
+            return None;
+        }
         let worse_percent = -self.holdout.as_ref()?.work_of_effects()?;
         let names: Vec<String> = named.map(|named| brief(named, &self.given.vehicle, true)).collect();
         // what explains how it moves is not refuted by how it turns, and the other way round
@@ -141,11 +149,13 @@ impl ExplainStudy {
         // a lag has its delay in its place, and a moment is looked for again
         let is_judged = |id: &str| {
             signature_of(id).is_some_and(|of| of.role.latency.is_none() && of.role.moment.is_none())
+                && self.judges(id)
         };
         let of = |named: &Named| {
             let better_percent = worth.better_without_percent(named.id)?;
-            // where there are too few blocks for a test, the mean decides
-            if worth.chance_of_better_without(named.id).is_some_and(|chance| chance > BY_CHANCE) {
+            // where there are too few blocks for a test, the mean decides in the same flight, and nothing in another one
+            let chance = worth.chance_of_better_without(named.id).or((!same_flight).then_some(1.0));
+            if chance.is_some_and(|chance| chance > BY_CHANCE) {
                 return None;
             }
             Some(Worthless { id: named.id, name: brief(named, &self.given.vehicle, true), better_percent })
@@ -154,6 +164,13 @@ impl ExplainStudy {
         judged
             .filter(|of| of.better_percent > LEAST_BETTER_PERCENT)
             .max_by(|a, b| a.better_percent.total_cmp(&b.better_percent))
+    }
+
+    /// Whether the hold-out can refute an effect: another flight that hardly moves tells nothing of what acts in motion.
+    fn judges(&self, id: &str) -> bool {
+        let by_motion = signature_of(id).is_none_or(|of| of.role.by_motion);
+        let moves = self.shown.as_ref().is_none_or(|shown| shown.speed_share > MOVES);
+        !by_motion || moves || !matches!(self.shown_on, ValidationData::Flights(_))
     }
 
     /// Whether a hold-out is predicted over half a second.

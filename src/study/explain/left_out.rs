@@ -41,7 +41,11 @@ fn without<'a>(tracks: &'a [Track], flight: usize, flights: &[Signals]) -> Vec<(
                 .enumerate()
                 .filter_map(|(at, unladen)| (unladen && at != flight).then_some(at))
                 .collect();
-            return if unladen.is_empty() { track.pooled() } else { track.only(&unladen).pooled() };
+            return if unladen.is_empty() {
+                track.pooled()
+            } else {
+                track.only(&unladen).pooled().or_else(|| track.pooled())
+            };
         }
         track.pooled()
     };

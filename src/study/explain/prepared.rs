@@ -52,9 +52,7 @@ pub(in crate::study) fn explain_prepared(
     // the wind of one flight is for its explanation to name
     let several = flights.signals.len() > 1;
     let winds_m_s = if several { with_own_winds(flights, asked.vehicle) } else { Vec::new() };
-    if several {
-        with_own_winds(held, asked.vehicle);
-    }
+    let held_winds_m_s = if several { with_own_winds(held, asked.vehicle) } else { Vec::new() };
     let alone = if several { with_own(flights, asked.vehicle) } else { Vec::new() };
     let whole = flights.signals.last().cloned();
     let (shown_on, back) = match (held.is_empty(), several) {
@@ -86,6 +84,7 @@ pub(in crate::study) fn explain_prepared(
         }
     }
     study.notes.extend(refused);
+    study.tell_winds(&held.inputs, &held_winds_m_s);
     // what changed in the part held back, or shortly before it, is nowhere in the part explained
     match whole.filter(|_| back.is_some() && changes_late(&study)) {
         Some(whole) => task.explained_again(study, flights, whole),
@@ -117,6 +116,7 @@ impl Task<'_> {
     ) -> Result<(ExplainStudy, Vec<Note>), StudyError> {
         let mut settings = ExplainSettings::default();
         let (mut notes, mut unsure) = (Vec::new(), Vec::<(&str, String)>::new());
+        let mut withdrawn = Vec::<(&str, String)>::new();
         let mut all_was_explained = false;
         loop {
             let mut explanation = self.explanation(flights, &settings)?;
@@ -149,10 +149,17 @@ impl Task<'_> {
                     unsure.push((of.id, of.name));
                     more
                 }
-                (None, Some(of)) => (of.id, of.note()),
+                (None, Some(of)) => {
+                    let more = (of.id, of.note());
+                    withdrawn.push((of.id, of.name));
+                    more
+                }
                 (None, None) => {
                     // one that came back as a part of what stays has its name
-                    unsure.retain(|(id, _)| study.effects.iter().all(|named| named.id != *id));
+                    for gone in [&mut unsure, &mut withdrawn] {
+                        gone.retain(|(id, _)| study.effects.iter().all(|named| named.id != *id));
+                    }
+                    study.withdrawn = withdrawn.into_iter().map(|(_, name)| name).collect();
                     if let Some(short) = &mut study.short {
                         short.unsure = unsure.into_iter().map(|(_, name)| name).collect();
                     }

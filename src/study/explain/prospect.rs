@@ -30,7 +30,7 @@ impl ExplainStudy {
     /// apart with it, and sizes that are known worse than 5 %.
     pub fn worthwhile<'a>(&'a self, next: &'a NextFlight) -> impl Iterator<Item = &'a Pair> {
         next.pairs.iter().filter(|pair| match pair.other {
-            Some(_) => pair.is_told_apart(),
+            Some(_) => pair.is_told_apart_by_next(),
             None => self.relative_std(pair) > WELL_KNOWN,
         })
     }

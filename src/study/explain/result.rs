@@ -88,6 +88,8 @@ pub struct ExplainStudy {
     pub by_part: Vec<ByPart>,
     /// names that were taken back, because flights that were not used refute them
     pub refuted: Option<Refuted>,
+    /// effects that the flights explained show and the hold-out does not, each in brief with its size: they have no name
+    pub withdrawn: Vec<String>,
     /// where one flight is too short for a part to be held back
     pub short: Option<Short>,
     /// the vehicle as it was drafted, where it came from no file
@@ -131,6 +133,7 @@ impl ExplainStudy {
             differing: None,
             by_part: Vec::new(),
             refuted: None,
+            withdrawn: Vec::new(),
             short: None,
             drafted: None,
             along: None,
