@@ -61,7 +61,8 @@ pub struct BalanceFound {
     pub offset: Option<[(f64, f64); 2]>,
     /// what accounts for it nearly as well; where [`Self::what`] is `None`, what accounts for it alone
     pub rivals: Vec<What>,
-    /// sum of squares that it accounts for, in standard deviations
+    /// sum of squares that it accounts for, in standard deviations: of a rotor the square of its change in standard errors, which are
+    /// larger by the spread of its torque
     pub strength: f64,
     /// later flights that each show it alone
     pub carried_by: Vec<usize>,
@@ -74,6 +75,14 @@ pub struct Least {
     pub rotors: Vec<f64>,
     /// of the centre of mass, arms
     pub centre: f64,
+}
+
+impl BalanceChange {
+    /// It moved for certain, and nothing has a name: a load or a battery may do the same, or nothing known alone.
+    #[must_use]
+    pub fn moved_without_name(&self) -> bool {
+        self.strength >= NAMED && self.found.as_ref().is_none_or(|found| found.what.is_none())
+    }
 }
 
 /// The comparison of two groups.
@@ -100,13 +109,20 @@ pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> B
         found.carried_by = carriers(&pair, found, &known);
     }
     let least = |explanation: &Explanation| match explanation.what {
-        What::Rotor(rotor) => Some(NAMED.sqrt() * explanation.std(&variances) / shares[rotor]),
+        What::Rotor(rotor) => Some(explanation.least(&variances, NAMED) / shares[rotor]),
         _ => None,
     };
     let worst = variances.x.max(variances.y) + 2.0 * LOADED * LOADED;
     let least = Least { rotors: known.iter().filter_map(least).collect(), centre: (NAMED * worst).sqrt() };
-    let by_a_load = found.is_none() && strength >= NAMED;
+    let by_a_load =
+        found.is_none() && strength >= NAMED && beyond_load - turned_by_a_load(&by, &variances) < NAMED;
     BalanceChange { moved, strength, beyond_load, scatter: scale, found, by_a_load, least }
+}
+
+/// Sum of squares about the vertical that counts as a load's: it does not turn the vehicle, and what certainly turns is no load alone.
+fn turned_by_a_load(by: &Vector3<f64>, variances: &Vector3<f64>) -> f64 {
+    let turned = by.z.powi(2) / variances.z;
+    if turned < NAMED { turned } else { 0.0 }
 }
 
 /// Variances of a move where a battery or a load may sit elsewhere.
@@ -151,10 +167,14 @@ fn found(
     let is_either = matches!(best.what, What::Rotor(_))
         && of_both.is_some_and(|other| other + OF_BOTH * PRICE < cost + APART);
     let fits = best.left <= FITS && !is_either;
-    // where a battery or a load sits is the flight's own; it does not turn the vehicle, and what certainly turns is no load alone
-    let turned = by.z.powi(2) / variances.z;
-    let by_a_load = best.what == What::CentreOfMass && turned < NAMED;
-    let about_z = if by_a_load { turned } else { 0.0 };
+    // the size of a rotor's change has to be as certain as that there is one: its torque may fall by more or less than its thrust
+    let of_name = if matches!(best.what, What::Rotor(_)) { best.certainty() } else { f64::INFINITY };
+    let of_name = of_name.min(strength - best.left);
+    if fits && of_name < NAMED {
+        return None;
+    }
+    // where a battery or a load sits is the flight's own
+    let about_z = if best.what == What::CentreOfMass { turned_by_a_load(by, variances) } else { 0.0 };
     if (best.what == What::CentreOfMass || !fits) && beyond_load - about_z < NAMED {
         return None;
     }
@@ -175,7 +195,7 @@ fn found(
         offset: (fits && best.what == What::CentreOfMass).then(|| [amounts[0], amounts[1]]),
         rivals: near,
         // of what has no name a load may make a part
-        strength: if fits { strength - best.left } else { (strength - best.left).min(beyond_load) },
+        strength: if fits { of_name } else { (strength - best.left).min(beyond_load) },
         carried_by: Vec::new(),
     })
 }

@@ -84,9 +84,24 @@ impl Explanation {
         Account { what: self.what, amounts, left, cost: left }
     }
 
-    /// Standard error of the first amount.
-    pub(super) fn std(&self, variances: &Vector3<f64>) -> f64 {
-        self.fitted(&Vector3::zeros(), variances).amounts[0].1
+    /// The least first amount whose square is `squares` times that of its standard error, with the spread that follows the amount. By
+    /// `a^2 (n + p^2 / (v + s a^2)) = squares` this is the root of a quadratic equation in `a^2`: `n` is the information along x and y, `p` the
+    /// pull about z, `v` the variance there, and `s a^2` the spread's.
+    pub(super) fn least(&self, variances: &Vector3<f64>, squares: f64) -> f64 {
+        let direction = self.directions[0];
+        let level = direction.x.powi(2) / variances.x + direction.y.powi(2) / variances.y;
+        let pull = direction.z.powi(2);
+        let spread = if matches!(self.what, What::Rotor(_)) { TORQUE_SPREAD.powi(2) * pull } else { 0.0 };
+        let linear = level * variances.z + pull - squares * spread;
+        let root = (linear * linear + 4.0 * level * spread * squares * variances.z).sqrt();
+        (2.0 * squares * variances.z / (linear + root)).sqrt()
+    }
+}
+
+impl Account {
+    /// Square of the first amount in its standard errors.
+    pub(super) fn certainty(&self) -> f64 {
+        self.amounts.first().map_or(0.0, |(amount, std)| (amount / std).powi(2))
     }
 }
 
@@ -116,4 +131,24 @@ pub(super) fn factor((amount, std): (f64, f64), share: f64) -> (f64, f64) {
 pub(super) fn lean(of: &FlightBalance) -> Vector3<f64> {
     let lean: [f64; AXES] = of.lean;
     Vector3::from(lean)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_amount_is_as_many_standard_errors_as_are_asked_with_the_spread_that_follows_it() {
+        let rotor = Explanation { what: What::Rotor(0), directions: vec![Vector3::new(0.6, 0.8, 1.0)] };
+        let variances = Vector3::new(1e-6, 1e-6, 4e-6);
+        let least = rotor.least(&variances, 16.0);
+        let account = rotor.accounts(&(least * Vector3::new(0.6, 0.8, 1.0)), &variances);
+        assert!((account.amounts[0].0 - least).abs() < 1e-12 && (account.certainty() - 16.0).abs() < 1e-6);
+        // what does not turn the vehicle has no such spread: 4 standard errors of 0.001
+        let level = Explanation { what: What::Rotor(0), directions: vec![Vector3::new(0.6, 0.8, 0.0)] };
+        assert!((level.least(&variances, 16.0) - 0.004).abs() < 1e-12);
+        // and what is told about the vertical alone, 4 of 0.002
+        let torque = Explanation { what: What::YawTorque, directions: vec![Vector3::z()] };
+        assert!((torque.least(&variances, 16.0) - 0.008).abs() < 1e-12);
+    }
 }

@@ -2,6 +2,7 @@
 //! could not have been seen.
 
 mod balance_change;
+mod both_scales;
 mod explanation;
 mod groups;
 mod history;
@@ -9,6 +10,7 @@ mod parameter;
 mod pooled;
 
 pub use balance_change::{BalanceChange, BalanceFound, LOADED, Least, NAMED, NAMED_SIGMAS, judge_balance};
+pub use both_scales::judge_at_both_scales;
 pub use explanation::What;
 pub use groups::{Groups, Moved, interval_95};
 pub use history::{Step, find_returns, steps};

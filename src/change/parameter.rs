@@ -52,6 +52,16 @@ pub fn judge_parameter(
     groups: &Groups,
     spread: &Spread,
 ) -> Option<ParameterChange> {
+    judged(values, groups, spread, 0.0)
+}
+
+/// The same where the values of all later flights have a standard error in common, `in_common` as a share of the value.
+pub(super) fn judged(
+    values: &[Option<(f64, f64)>],
+    groups: &Groups,
+    spread: &Spread,
+    in_common: f64,
+) -> Option<ParameterChange> {
     // one size for all: by its own, a value that came out small would weigh more
     let size = groups.both().map(|group| mean_size(values, group)).into_iter().flatten().sum::<f64>() / 2.0;
     let of = |group: &[usize]| -> Vec<(usize, f64, f64)> {
@@ -67,12 +77,13 @@ pub fn judge_parameter(
         return None;
     }
     let scale = scatter(&before, &after);
-    let [first, second] = [&before, &after].map(|group| mean(group, scale));
+    let [first, (later, std)] = [&before, &after].map(|group| mean(group, scale));
+    let second = (later, std.hypot(in_common * later));
     let by = (second.0 - first.0, first.1.hypot(second.1));
     let moved = Moved { before: first, after: second, by };
     let alone = |(flight, value, variance): &(usize, f64, f64)| {
         let by = value - first.0;
-        let std = (variance * scale * scale + first.1 * first.1).sqrt();
+        let std = (variance * scale * scale + first.1 * first.1).sqrt().hypot(in_common * value);
         ((by > 0.0) == (moved.by.0 > 0.0) && by.abs() > SAYS * std).then_some(*flight)
     };
     let changed = moved.sigmas().powi(2) >= NAMED;

@@ -37,7 +37,7 @@ pub struct Base {
 }
 
 /// Force, mass and inertia follow the scale of thrust; lengths, angles, times and ratios do not.
-pub(super) fn follows_force(unit: &str) -> bool {
+pub(crate) fn follows_force(unit: &str) -> bool {
     unit.starts_with('N') || unit.starts_with("kg")
 }
 

@@ -15,6 +15,9 @@ pub const AIRFRAME: [&str; 6] =
 /// Parameters that say which one of a type it is.
 pub const SERIAL: [&str; 5] =
     ["BRD_SERIAL_NUM", "CAL_ACC0_ID", "CAL_GYRO0_ID", "COMPASS_DEV_ID", "INS_ACC_ID"];
+/// The same by the part that each is of: accelerometer and gyroscope are one.
+const PARTS: [&[&str]; 3] =
+    [&["BRD_SERIAL_NUM"], &["CAL_ACC0_ID", "CAL_GYRO0_ID", "INS_ACC_ID"], &["COMPASS_DEV_ID"]];
 
 /// Logs of different autopilots number the motors differently, and so do different frames.
 pub(super) fn refuse_others<'a>(mut flights: impl Iterator<Item = &'a Flight>) -> Result<(), StudyError> {
@@ -59,19 +62,31 @@ pub(super) fn refuse_other_builds<'a>(
 /// two vehicles, or of one that was rebuilt.
 pub(super) fn doubt_one_vehicle<'a>(mut flights: impl Iterator<Item = &'a Flight>) -> Vec<Note> {
     let Some(first) = flights.next() else { return Vec::new() };
-    let doubt = |flight: &Flight| {
-        let others = stated_otherwise(&flight.recording, &first.recording);
-        let about = || About::File(flight.input.path.clone());
-        let text = || {
-            format!(
-                "{} not as in {}: these flights are of two vehicles, or parts were replaced between them",
-                others.join(", "),
-                first.input.path
-            )
-        };
-        (!others.is_empty()).then(|| Note::warning(about(), text()))
+    flights.filter_map(|flight| other_parts(flight, first, |others| !others.is_empty())).collect()
+}
+
+/// The first of these warnings by which more than one part has another serial number: one that was replaced is no other vehicle.
+pub(super) fn serials_apart<'a>(mut flights: impl Iterator<Item = &'a Flight>) -> Option<Note> {
+    let first = flights.next()?;
+    flights.find_map(|flight| other_parts(flight, first, |others| parts(others) > 1))
+}
+
+/// The warning that a flight's log states other parts than that of `first`, if those are `enough`.
+fn other_parts(flight: &Flight, first: &Flight, enough: impl Fn(&[&str]) -> bool) -> Option<Note> {
+    let others = stated_otherwise(&flight.recording, &first.recording);
+    let text = || {
+        format!(
+            "{} not as in {}: these flights are of two vehicles, or parts were replaced between them",
+            others.join(", "),
+            first.input.path
+        )
     };
-    flights.filter_map(doubt).collect()
+    enough(&others).then(|| Note::warning(About::File(flight.input.path.clone()), text()))
+}
+
+/// Parts of which these are serial numbers.
+fn parts(names: &[&str]) -> usize {
+    PARTS.iter().filter(|part| names.iter().any(|name| part.contains(name))).count()
 }
 
 /// What identifies a vehicle and is stated in both logs, otherwise in `one` than in `other`.
@@ -146,6 +161,14 @@ mod tests {
         let other = of(&[("SYS_AUTOSTART", 4500.0), ("CAL_ACC0_ID", 2.0)]);
         assert_eq!(stated_otherwise(&one, &same), Vec::<&str>::new());
         assert_eq!(stated_otherwise(&other, &one), ["SYS_AUTOSTART", "CAL_ACC0_ID"]);
+    }
+
+    #[test]
+    fn a_compass_that_was_replaced_is_one_part_and_with_an_accelerometer_it_is_two() {
+        assert_eq!(parts(&["COMPASS_DEV_ID"]), 1);
+        assert_eq!(parts(&["CAL_ACC0_ID", "CAL_GYRO0_ID"]), 1);
+        assert_eq!(parts(&["SYS_AUTOSTART", "COMPASS_DEV_ID"]), 1);
+        assert_eq!(parts(&["COMPASS_DEV_ID", "INS_ACC_ID"]), 2);
     }
 
     #[test]

@@ -17,12 +17,12 @@ fn mavid(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_mavid")).args(arguments).output().unwrap()
 }
 
-fn config(name: &str) -> String {
+pub(super) fn config(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(name).display().to_string()
 }
 
 /// A fresh folder for one test.
-fn folder(name: &str) -> PathBuf {
+pub(super) fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("compare-{name}"));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
@@ -118,7 +118,7 @@ fn a_rotor_that_became_weak_is_found_and_an_unchanged_vehicle_is_not_called_chan
 }
 
 /// A flight of the x500 along Table 2 with another mass or drag.
-fn simulated(folder: &Path, name: &str, (mass_kg, drag): (f64, f64), seed: u32) -> String {
+pub(super) fn simulated(folder: &Path, name: &str, (mass_kg, drag): (f64, f64), seed: u32) -> String {
     let place = |name: String| folder.join(name).display().to_string();
     let (vehicle, effects, log) = (
         place(format!("{name}.toml")),

@@ -14,6 +14,7 @@ mod support;
 
 mod blind_flights;
 mod compare;
+mod compare_scale;
 mod every_effect;
 mod explain_at_bounds;
 mod explain_command;

@@ -50,7 +50,9 @@ impl Agreement {
         (self.held_out - self.identified) / self.identified_std.hypot(self.held_out_std)
     }
 
-    pub(super) fn share(&self) -> f64 {
+    /// Difference as a share of the model's value.
+    #[must_use]
+    pub fn share(&self) -> f64 {
         (self.held_out - self.identified) / self.identified
     }
 

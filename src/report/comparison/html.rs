@@ -82,7 +82,7 @@ fn row_from(study: &CompareStudy, from: usize, change: &Change) -> Vec<Cell> {
 }
 
 fn unseen(study: &CompareStudy) -> Markup {
-    let Some(all) = study.least() else { return Markup::default() };
+    let Some(all) = study.least_named() else { return Markup::default() };
     let rows: Vec<Vec<Cell>> =
         all.iter().map(|least| vec![text(name(study, least.what)), number(size(least))]).collect();
     section("What would have shown", &table(&capital(smallest_heading(study)), &["", "size|"], &rows))

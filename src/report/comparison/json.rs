@@ -1,6 +1,7 @@
 //! The JSON document of `compare`.
 
-use super::words::{answer, open, rival_name, sentence, two_vehicles};
+use super::own::doubt;
+use super::words::{answer, open, rival_name, sentence};
 use crate::change::{Moved, Undecided};
 use crate::diagnose::Owner;
 use crate::note::Note;
@@ -28,10 +29,12 @@ pub struct ComparisonDocument {
     undecided: Option<Vec<UndecidedEntry>>,
     /// full thrust over weight before and after, where it and several parameters say that this is hardly one vehicle; null elsewhere
     other_vehicle: Option<OtherVehicle>,
-    /// why the flights may be those of two vehicles, where full thrust over weight alone says so; no change. It is in the answer as well
+    /// why the flights may be those of two vehicles: by full thrust over weight where no parameter tells, or by serial numbers of different
+    /// sensors; no change. It is in the answer as well
     doubt: Option<String>,
     /// the smallest changes that would have been named: between the groups, or without groups in the middle of the row; null where no
-    /// groups were given and something changed
+    /// groups were given and something changed. Where the balance moved without a name, that of a rotor is the smallest that would be
+    /// seen, named or not
     smallest_changes: Option<Vec<LeastEntry>>,
     /// one entry a flight
     flights: Vec<FlightEntry>,
@@ -121,7 +124,7 @@ struct ChangeEntry {
     by: Option<Estimate>,
     /// of the values; `-`: none
     unit: &'static str,
-    /// standard deviations of the difference
+    /// size of the difference in its standard errors; of a balance without a name in standard deviations of what unchanged flights show
     sigmas: f64,
     /// places of the later flights that each show it alone
     carried_by: Vec<usize>,
@@ -241,7 +244,7 @@ impl ComparisonDocument {
             other_vehicle: compared
                 .and_then(|compared| compared.other_vehicle)
                 .map(|(before, after)| OtherVehicle { before, after }),
-            doubt: study.lifts_apart.map(|lifts| two_vehicles(study, lifts)),
+            doubt: doubt(study),
             smallest_changes: study
                 .least()
                 .map(|all| all.iter().map(|least| least_entry(study, least)).collect()),

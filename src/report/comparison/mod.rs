@@ -3,6 +3,7 @@
 mod drawing;
 mod html;
 mod json;
+mod own;
 mod plots;
 mod text;
 mod words;

@@ -47,9 +47,9 @@ fn changes(page: &mut String, study: &CompareStudy, compared: &Compared) {
 }
 
 fn smallest(page: &mut String, study: &CompareStudy) {
-    let Some(all) = study.least() else { return };
+    let Some(all) = study.least_named() else { return };
     let _ = writeln!(page, "\n  {}", smallest_heading(study));
-    for least in all {
+    for least in &all {
         let _ = writeln!(page, "    {:<32}  {}", name(study, least.what), size(least));
     }
 }
@@ -63,9 +63,10 @@ fn change_line(page: &mut String, study: &CompareStudy, change: &Change) {
         // three components moved, of which none is told alone
         None => ["-".to_owned(), "-".to_owned(), String::new()],
     };
+    let against = if change.moved.is_none() { " of what unchanged flights would show" } else { "" };
     let _ = writeln!(
         page,
-        "    {:<32}  {before:<18}  {after:<18}  {by}{} standard deviations",
+        "    {:<32}  {before:<18}  {after:<18}  {by}{} standard deviations{against}",
         name(study, change.what),
         significant(change.sigmas, 2)
     );

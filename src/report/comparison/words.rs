@@ -1,9 +1,9 @@
 //! A comparison in words.
 
-use crate::change::{Groups, NAMED_SIGMAS, Step, Undecided, What};
-use crate::estimate::NAMES;
+use super::own::{doubt, scale};
+use crate::change::{NAMED_SIGMAS, Step, Undecided, What};
 use crate::report::number::{significant, with_error};
-use crate::study::{Change, Changed, CompareStudy, Compared, LeastChange, LiftsApart, Track};
+use crate::study::{Change, Changed, CompareStudy, Compared, LeastChange, Track};
 use crate::text::capital;
 
 /// What the errors of parameters along the flights hold.
@@ -29,23 +29,10 @@ pub(super) fn changed_from(study: &CompareStudy, what: Changed) -> String {
     if from.is_empty() { String::new() } else { format!("changed from {} on", from.join(" and from ")) }
 }
 
-/// The answer in a sentence or two, with what speaks against one vehicle.
+/// The answer in a few sentences, with what is the flights' own and what speaks against one vehicle.
 pub(super) fn answer(study: &CompareStudy) -> String {
-    let doubt = study.lifts_apart.map(|lifts| format!(" {}", two_vehicles(study, lifts)));
-    format!("{}{}", what_changed(study), doubt.unwrap_or_default())
-}
-
-/// That full thrust over weight makes two vehicles of the flights, which nothing else tells.
-pub(super) fn two_vehicles(study: &CompareStudy, lifts: LiftsApart) -> String {
-    let [before, after] = [lifts.before, lifts.after].map(|lift| significant(lift, 3));
-    let of = match lifts.from.map(|from| study.flights[from].input.path.as_str()) {
-        None => format!("{before} before and {after} after"),
-        Some(from) => format!("{before} before {from} and {after} from it on"),
-    };
-    format!(
-        "It is doubtful that this is one vehicle: full thrust over weight is {of}, more than a battery or a load changes it, and no \
-         parameter was compared that could tell."
-    )
+    let doubt = doubt(study).map(|doubt| format!(" {doubt}"));
+    format!("{}{}{}", what_changed(study), scale(study), doubt.unwrap_or_default())
 }
 
 fn what_changed(study: &CompareStudy) -> String {
@@ -61,17 +48,16 @@ fn what_changed(study: &CompareStudy) -> String {
             }
             if compared.changes.is_empty() {
                 return format!(
-                    "Nothing changed {between} that these flights could show. {}{}{}",
-                    unseen(compared),
-                    all_open(study, compared),
-                    mass(study, groups)
+                    "Nothing changed {between} that these flights could show. {}{}",
+                    unseen(study, compared),
+                    all_open(study, compared)
                 );
             }
             let all: Vec<String> = compared.changes.iter().map(|change| sentence(study, change)).collect();
             capital(&format!("{} ({between}).", all.join("; ")))
         }
         _ if study.history.is_empty() => {
-            let seen = study.least_in_the_middle.as_deref().map(would_have_shown);
+            let seen = study.least_named().map(|least| would_have_shown(&least));
             let seen = seen.map_or_else(String::new, |seen| format!(" From the middle of them on {seen}."));
             format!(
                 "Nothing changed along {} that they could show.{seen}{}",
@@ -97,26 +83,6 @@ fn what_changed(study: &CompareStudy) -> String {
             )
         }
     }
-}
-
-/// A mass that differs by less is that of another battery, as a share. Only words depend on it.
-const BATTERY: f64 = 0.05;
-
-/// That the mass differs, which is each flight's own and may hide what is the vehicle's; empty where it does not.
-fn mass(study: &CompareStudy, groups: &Groups) -> String {
-    let own = study.tracks.iter().find(|track| track.effect.is_none() && track.name == NAMES[0]);
-    let of = |flights: &[usize]| own.and_then(|track| track.only(flights).pooled());
-    let Some((before, after)) = of(&groups.before).zip(of(&groups.after)) else { return String::new() };
-    let (apart, std) = ((after.0 - before.0).abs(), before.1.hypot(after.1));
-    if apart < NAMED_SIGMAS * std || apart < BATTERY * before.0 {
-        return String::new();
-    }
-    format!(
-        " But the mass by the thrust went from {} to {} kg, which is each flight's own: a payload, or rotors that give another thrust for \
-         a command. Weigh the vehicle to tell them apart.",
-        with_error(before.0, before.1),
-        with_error(after.0, after.1)
-    )
 }
 
 /// Flights that are hardly those of one vehicle.
@@ -296,30 +262,39 @@ pub(super) fn spaced(unit: &str) -> String {
 }
 
 /// What would have shown: the balance in a sentence.
-fn unseen(compared: &Compared) -> String {
+fn unseen(study: &CompareStudy, compared: &Compared) -> String {
     let balance = &compared.balance;
-    let by_a_load = if balance.by_a_load {
-        let [x, y, _] = balance.moved.map(|moved| with_error(moved.by.0, moved.by.1));
+    let [x, y, z] = balance.moved.map(|moved| with_error(moved.by.0, moved.by.1));
+    let moved = if balance.by_a_load {
         format!(
             "The balance did move, by {x} of an arm along body x and {y} along y: a load or a battery that sits elsewhere does the \
              same, and a flight may have its own. The rotors along the flights have it in their values. "
         )
+    } else if balance.moved_without_name() {
+        format!(
+            "The balance did move, by {x} of an arm along body x, {y} along y and {z} about the vertical: too little to name a rotor. The \
+             rotors along the flights have it in their values. "
+        )
     } else {
         String::new()
     };
-    format!("{by_a_load}{}.", capital(&would_have_shown(&compared.least)))
+    let least = study.least_named().unwrap_or_default();
+    format!("{moved}{}.", capital(&would_have_shown(&least)))
 }
 
-/// What would have shown of the balance, as a clause.
+/// What would have shown of the balance, as a clause. Where it moved without a name, no rotor is among it: it would not have had one either.
 fn would_have_shown(all: &[LeastChange]) -> String {
     let of_rotor = |least: &&LeastChange| matches!(least.what, Changed::Rotor(_));
-    let rotor = all.iter().filter(of_rotor).map(|least| least.size).fold(0.0, f64::max);
+    let rotor = all.iter().filter(of_rotor).map(|least| least.size).reduce(f64::max);
     let centre = all.iter().find(|least| matches!(least.what, Changed::CentreOfMass(_)));
-    format!(
-        "a rotor that gives {} % less thrust would have shown, or a centre of mass {} elsewhere",
-        significant(100.0 * rotor, 2),
-        centre.map(size).unwrap_or_default()
-    )
+    let centre = format!("a centre of mass {} elsewhere", centre.map(size).unwrap_or_default());
+    match rotor {
+        Some(rotor) => format!(
+            "a rotor that gives {} % less thrust would have shown, or {centre}",
+            significant(100.0 * rotor, 2)
+        ),
+        None => format!("{centre} would have shown"),
+    }
 }
 
 /// What the list of smallest changes is.

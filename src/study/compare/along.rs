@@ -267,6 +267,35 @@ mod tests {
     }
 
     #[test]
+    fn the_standard_deviations_of_a_named_rotor_are_its_loss_over_its_error() {
+        let vehicle = vehicle();
+        let balance = balance(&[Vector3::zeros(), weak(&vehicle, 2)]);
+        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], is_known: true };
+        let compared = judge.compared(&Groups::split(2, 1));
+        let [change] = compared.changes.as_slice() else { panic!("{compared:?}") };
+        let moved = change.moved.unwrap();
+        assert!(change.what == Changed::Rotor(2) && (moved.after.0 - 0.93).abs() < 1e-9, "{compared:?}");
+        assert!((change.sigmas - moved.sigmas().abs()).abs() < 1e-9, "{compared:?}");
+        // the same balance is further than that from what an unchanged vehicle would show
+        assert!(change.sigmas < compared.balance.strength.sqrt(), "{compared:?}");
+    }
+
+    #[test]
+    fn a_load_that_sits_elsewhere_leaves_no_rotor_among_what_would_have_been_named() {
+        let (vehicle, load) = (vehicle(), Vector3::new(0.03, 0.02, 0.0));
+        let is_moved = |leans: &[Vector3<f64>], groups: Option<&Groups>| {
+            let balance = balance(leans);
+            let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], is_known: true };
+            judge.moved_without_name(groups)
+        };
+        let none = Vector3::zeros();
+        assert!(is_moved(&[none, load], Some(&Groups::split(2, 1))));
+        assert!(is_moved(&[none, load], None) && !is_moved(&[none, none, none], None));
+        // a rotor with a name is one
+        assert!(!is_moved(&[none, weak(&vehicle, 2)], Some(&Groups::split(2, 1))));
+    }
+
+    #[test]
     fn a_rotor_and_a_centre_of_mass_that_changed_together_get_no_single_name() {
         let vehicle = vehicle();
         let together = weak(&vehicle, 2) + Vector3::new(-0.09, -0.02, 0.0);

@@ -1,13 +1,13 @@
 //! What changed between groups of flights whose balance and parameters are known.
 
 use super::result::{Change, Changed, Compared, LeastChange, LiftsApart, UndecidedAlong};
+use super::scale::ScaleMoved;
 use crate::change::{
-    BalanceChange, Groups, NAMED_SIGMAS, Step, UNDECIDED, What, find_returns, judge_balance, judge_parameter,
-    steps,
+    BalanceChange, Groups, NAMED_SIGMAS, ParameterChange, Step, UNDECIDED, What, find_returns,
+    judge_at_both_scales, judge_balance, judge_parameter, steps,
 };
-use crate::diagnose::Need;
-use crate::diagnose::Owner;
 use crate::diagnose::signatures::signature_of;
+use crate::diagnose::{Need, Owner, follows_force};
 use crate::study::Track;
 use crate::trim::{Balance, FlightBalance, mean_arm_m};
 use crate::vehicle::Vehicle;
@@ -106,8 +106,9 @@ impl Judge<'_> {
         let mut changes = self.of_balance(&balance);
         let mut least = self.least_of_balance(&balance);
         let mut undecided = Vec::new();
+        let scale = ScaleMoved::between(self.balance, groups);
         for (place, track) in self.tracks.iter().enumerate().filter(|(_, track)| is_of_vehicle(track)) {
-            let Some(judged) = judge_parameter(&track.values, groups, &track.spread) else { continue };
+            let Some(judged) = self.judged(track, groups, scale) else { continue };
             let (what, unit) = (Changed::Parameter(place), track.unit);
             least.push(LeastChange { what, size: judged.least, unit });
             let change = Change {
@@ -130,6 +131,40 @@ impl Judge<'_> {
         let moved = changes.iter().filter(of_motion).count() + undecided.len();
         let other_vehicle = self.lifts(groups).filter(|lifts| moved >= OTHER_PARAMETERS && are_apart(*lifts));
         Compared { balance, changes, undecided, least, other_vehicle }
+    }
+
+    /// Whether a parameter moved, where the scale that it goes with may have moved.
+    fn judged(&self, track: &Track, groups: &Groups, scale: Option<ScaleMoved>) -> Option<ParameterChange> {
+        let factor =
+            scale.filter(|_| follows_force(track.unit)).map(|scale| scale.factor(self.vehicle.anchor));
+        match factor {
+            Some(factor) => judge_at_both_scales(&track.values, groups, &track.spread, factor),
+            None => judge_parameter(&track.values, groups, &track.spread),
+        }
+    }
+
+    /// Where the scale of forces moved by enough to be told, if a parameter goes with it: between the groups, or along all flights.
+    #[must_use]
+    pub fn scale(&self, groups: Option<&Groups>) -> Option<ScaleMoved> {
+        if !self.tracks.iter().any(|track| follows_force(track.unit)) {
+            return None;
+        }
+        let moved = match groups {
+            Some(groups) => ScaleMoved::between(self.balance, groups),
+            None => ScaleMoved::along(self.balance),
+        };
+        moved.filter(ScaleMoved::is_told)
+    }
+
+    /// Whether the balance moved without a name: between the groups, or at a border between all flights.
+    #[must_use]
+    pub fn moved_without_name(&self, groups: Option<&Groups>) -> bool {
+        let has_none = |groups: &Groups| self.compared(groups).balance.moved_without_name();
+        let count = self.balance.flights.len();
+        match groups {
+            Some(groups) => has_none(groups),
+            None => (1..count).any(|from| has_none(&Groups::split(count, from))),
+        }
     }
 
     /// Full thrust over weight where it differs by more than one vehicle's does, also for the voltage where all flights have one, and no

@@ -7,6 +7,7 @@ mod order;
 mod request;
 mod result;
 mod run;
+mod scale;
 mod usable;
 
 pub use judge::Judge;
@@ -17,3 +18,4 @@ pub use result::{
 };
 pub use run::compare;
 pub(super) use run::{UNKNOWN, power_w};
+pub use scale::ScaleMoved;

@@ -1,5 +1,6 @@
 //! The result of comparing: every flight, what changed, and what could not have been seen.
 
+use super::scale::ScaleMoved;
 use crate::change::{BalanceChange, Groups, Moved, NAMED, Step, Undecided, What};
 use crate::note::{About, Note};
 use crate::study::{InputFile, StudyError, Track, lost};
@@ -35,6 +36,12 @@ pub struct CompareStudy {
     pub undecided_along: Option<UndecidedAlong>,
     /// full thrust over weight that says that this may be two vehicles, where no parameter is compared
     pub lifts_apart: Option<LiftsApart>,
+    /// serial numbers of different sensors that say the same
+    pub serials_apart: Option<Note>,
+    /// full thrust over weight that moved, where parameters that go with it are compared; each flight's own, and no change
+    pub scale: Option<ScaleMoved>,
+    /// the balance moved without a name: a rotor that lost as much as the smallest change would be seen, and not named
+    pub balance_unnamed: bool,
     /// flights that were given and are not compared
     pub left_out: Vec<LeftOut>,
     /// what the user should know
@@ -125,7 +132,7 @@ pub struct Change {
     pub moved: Option<Moved>,
     /// of [`Self::moved`]
     pub unit: &'static str,
-    /// standard deviations
+    /// size of the difference in its standard errors; of the whole balance standard deviations of what unchanged flights would show
     pub sigmas: f64,
     /// later flights that each show it alone
     pub carried_by: Vec<usize>,
@@ -215,6 +222,14 @@ impl CompareStudy {
         between.or(self.least_in_the_middle.as_deref())
     }
 
+    /// The same without what would be seen and not named.
+    #[must_use]
+    pub fn least_named(&self) -> Option<Vec<LeastChange>> {
+        let is_named =
+            |least: &&LeastChange| !(self.balance_unnamed && matches!(least.what, Changed::Rotor(_)));
+        self.least().map(|all| all.iter().filter(is_named).copied().collect())
+    }
+
     /// All flights that were given are compared, and nothing of their logs was lost.
     #[must_use]
     pub fn is_whole(&self) -> bool {
@@ -225,7 +240,7 @@ impl CompareStudy {
     #[must_use]
     pub fn is_of_one_vehicle(&self) -> bool {
         let other = self.compared.as_ref().is_some_and(|compared| compared.other_vehicle.is_some());
-        self.lifts_apart.is_none() && !other
+        self.lifts_apart.is_none() && self.serials_apart.is_none() && !other
     }
 
     /// Places of the flights from which on something is otherwise than before.

@@ -15,7 +15,7 @@ use crate::recording::{Quantity, Recording};
 use crate::signals::{Signals, best, other_settings};
 use crate::study::flight::Flight;
 use crate::study::flights::Prepared;
-use crate::study::one_vehicle::{doubt_one_vehicle, refuse_others};
+use crate::study::one_vehicle::{doubt_one_vehicle, refuse_others, serials_apart};
 use crate::study::same_flight::refuse_same_flight;
 use crate::study::vehicle_given::Known;
 use crate::study::{InputFile, Progress, Stage, StudyError, Track, VehicleGiven, said_of};
@@ -39,21 +39,13 @@ const UNWEIGHED: &str = "neither a vehicle nor a mass was given";
 /// [`StudyError`] where a file or a setting cannot be used, or a flight shows no balance.
 pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<CompareStudy, StudyError> {
     let _stage = tracing::info_span!("compare").entered();
-    request.check()?;
-    let given = request
-        .vehicle
-        .clone()
-        .unwrap_or(VehicleGiven::Weighed(GivenVehicle { frame: request.frame, ..UNKNOWN }));
-    let known = given.of_file()?;
-    let vehicle_file = match &given {
-        VehicleGiven::File(file) => Some(InputFile::of(file)?),
-        VehicleGiven::Weighed(_) => None,
-    };
+    let (given, known, vehicle_file) = given(request)?;
     progress.stage(Stage::Reading);
     let logs = Given::load(request, &given)?;
     refuse_same_flight(logs.groups.iter().flatten())?;
     refuse_others(logs.each())?;
     let mut notes = doubt_one_vehicle(logs.each());
+    let serials_apart = serials_apart(logs.each());
     refuse_single(logs.each())?;
     let (Usable { flights, legs, starts_utc_us, first, left_out }, known) =
         logs.conditioned(known, progress)?;
@@ -78,7 +70,9 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let is_unchanged = groups.is_none() && history.is_empty();
     let least_in_the_middle = is_unchanged.then(|| judge.least_in_the_middle(&order));
     let undecided_along = if is_unchanged { judge.undecided_along(&order) } else { None };
-    let lifts_apart = judge.lifts_apart(groups.as_ref());
+    let between = groups.as_ref();
+    let (lifts_apart, scale) = (judge.lifts_apart(between), judge.scale(between));
+    let balance_unnamed = judge.moved_without_name(between);
     if groups.is_none() {
         notes.extend(moved_by_loads(&judge, &flights.inputs, &history));
     }
@@ -96,9 +90,27 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         least_in_the_middle,
         undecided_along,
         lifts_apart,
+        serials_apart,
+        scale,
+        balance_unnamed,
         left_out,
         notes,
     })
+}
+
+/// How the vehicle of a request that can be met is given, and what of it is in a file.
+fn given(request: &CompareRequest) -> Result<(VehicleGiven, Option<Known>, Option<InputFile>), StudyError> {
+    request.check()?;
+    let given = request
+        .vehicle
+        .clone()
+        .unwrap_or(VehicleGiven::Weighed(GivenVehicle { frame: request.frame, ..UNKNOWN }));
+    let known = given.of_file()?;
+    let file = match &given {
+        VehicleGiven::File(file) => Some(InputFile::of(file)?),
+        VehicleGiven::Weighed(_) => None,
+    };
+    Ok((given, known, file))
 }
 
 /// What is to be known of the flights: their order, their logs, and what is doubtful about their data.

@@ -6,9 +6,9 @@ use crate::signals::{ConditionSettings, STEP_FOR_EFFECTS_S, Signals, SignalsErro
 use crate::study::flight::Flight;
 use crate::study::flights::{EXPLAINED, Prepared, load_each, ready};
 use crate::study::unflown::unflown_first;
-use crate::study::vehicle_given::Known;
+use crate::study::vehicle_given::{DRAFTED, Known};
 use crate::study::{Progress, Stage, StudyError, VehicleGiven};
-use crate::trim::{Leg, legs};
+use crate::trim::{LEAST_LEGS, LEG_S, Leg, TrimError, legs};
 use crate::vehicle::Vehicle;
 use rayon::prelude::*;
 use std::path::Path;
@@ -101,7 +101,7 @@ impl<'a> Given<'a> {
                 match log {
                     Ok(flights) => group.extend(flights),
                     Err(error) if is_of_the_flight(&error) => self.refused.push(error),
-                    Err(error) => return Err(self.or_unflown(error)),
+                    Err(error) => return Err(self.or_unflown(of_draft(error))),
                 }
             }
         }
@@ -153,13 +153,47 @@ fn made(
     settings: &ConditionSettings,
 ) -> Result<(Signals, Vec<Leg>), StudyError> {
     let signals = flight.conditioned(vehicle, settings)?;
-    let legs = legs(&signals, vehicle.0).map_err(|why| {
-        let warnings = flight.input.notes.iter().filter(|note| note.is_warning());
-        let all: Vec<String> =
-            std::iter::once(why.to_string()).chain(warnings.map(|note| note.text.clone())).collect();
-        StudyError::NoBalance { file: flight.input.path.clone(), why: all.join("; ") }
-    })?;
+    let begins_s = signals.quality.airborne_s.first().map_or(f64::NEG_INFINITY, |(lifts_s, _)| *lifts_s);
+    let begun = (begins_s, signals.grid.step_s);
+    let legs = legs(&signals, vehicle.0)
+        .map_err(|why| why.to_string())
+        .and_then(|legs| without_beginning(legs, begun, settings.transient_s.unwrap_or_default()))
+        .map_err(|why| {
+            let warnings = flight.input.notes.iter().filter(|note| note.is_warning());
+            let all: Vec<String> =
+                std::iter::once(why).chain(warnings.map(|note| note.text.clone())).collect();
+            StudyError::NoBalance { file: flight.input.path.clone(), why: all.join("; ") }
+        })?;
     Ok((signals, legs))
+}
+
+/// The legs of a flight without those in its first `transient_s` after lift-off at `begins_s`, both s; a leg's middle is known to a step of the
+/// grid, s. Otherwise why too few are left.
+fn without_beginning(
+    mut legs: Vec<Leg>,
+    (begins_s, step_s): (f64, f64),
+    transient_s: f64,
+) -> Result<Vec<Leg>, String> {
+    legs.retain(|leg| leg.time_s - 0.5 * LEG_S + step_s >= begins_s + transient_s);
+    if legs.len() < LEAST_LEGS {
+        let why = TrimError::TooShort { found: legs.len(), needed: LEAST_LEGS };
+        return Err(format!("{why} after the {transient_s} s that are left out at the beginning"));
+    }
+    Ok(legs)
+}
+
+/// A drafted vehicle by which nothing was flown has another mass than that which was given, or assumed.
+fn of_draft(error: StudyError) -> StudyError {
+    match error {
+        StudyError::Flight { flight, vehicle, source, .. }
+            if vehicle == DRAFTED && matches!(*source, SignalsError::ThrustTooLow { .. }) =>
+        {
+            let why = "the drafted vehicle contradicts the log: by it the rotors give less than its weight in this flight, and the log \
+                       shows a flight. Give --mass (kg, with battery) and --size of the vehicle that flew, or --vehicle";
+            StudyError::File { file: flight, why: why.to_owned() }
+        }
+        other => other,
+    }
 }
 
 /// Whether the flight itself cannot be used, and not the vehicle file with any flight.
@@ -170,5 +204,56 @@ fn is_of_the_flight(error: &StudyError) -> bool {
             !matches!(**source, SignalsError::OtherRotors { .. } | SignalsError::ThrustTooLow { .. })
         }
         _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ten legs one after the other from 3 s on, their middles at 4, 6, ... 22 s.
+    fn ten() -> Vec<Leg> {
+        let leg = |place: u32| Leg {
+            time_s: 4.0 + LEG_S * f64::from(place),
+            lean: [0.0; 3],
+            felt: [0.0; 2],
+            turning: [0.0; 3],
+            rate: [0.0; 3],
+            shares: vec![0.25; 4],
+            lift: None,
+            voltage_v: None,
+        };
+        (0..10).map(leg).collect()
+    }
+
+    #[test]
+    fn legs_in_the_time_that_is_left_out_at_the_beginning_are_left_out() {
+        let left = |transient_s: f64| without_beginning(ten(), (2.0, 0.02), transient_s);
+        // lift-off at 2 s: with 1 s the first leg just counts, with 5 s that from 7 s on
+        assert_eq!(left(1.0).unwrap().len(), 10);
+        let legs = left(5.0).unwrap();
+        assert!(legs.len() == 8 && legs[0].time_s == 8.0);
+        let why = left(11.0).unwrap_err();
+        assert!(
+            why.contains("at least 6 legs of 2 s")
+                && why.ends_with("got 5 after the 11 s that are left out at the beginning")
+        );
+    }
+
+    #[test]
+    fn a_drafted_vehicle_that_does_not_lift_asks_for_the_mass_and_not_for_its_file() {
+        let error = |vehicle: &str| StudyError::Flight {
+            flight: "a.bin".to_owned(),
+            vehicle: vehicle.to_owned(),
+            source: Box::new(SignalsError::ThrustTooLow { most_n: 5.0, weight_n: 9.8, share: 0.5 }),
+            losses: Vec::new(),
+        };
+        let said = of_draft(error(DRAFTED)).to_string();
+        assert!(
+            said.starts_with("a.bin: the drafted vehicle contradicts the log") && said.contains("--mass"),
+            "{said}"
+        );
+        assert!(!said.contains("vehicle file"), "{said}");
+        assert!(of_draft(error("own.toml")).to_string().contains("the vehicle file contradicts the log"));
     }
 }

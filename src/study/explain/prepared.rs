@@ -6,13 +6,13 @@ use super::result::{ExplainStudy, Given};
 use super::short::Short;
 use super::traces::traces_of;
 use super::validation_data::ValidationData;
-use crate::diagnose::holdout::HoldoutSettings;
+use crate::diagnose::holdout::{Agreement, HoldoutSettings};
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{
     ExplainError, ExplainSettings, Explanation, GyroscopicShare, Named, TorqueLaw, Verdict,
 };
 use crate::estimate::{
-    Contradiction, contradicted, contradicting_flights, contradicts_file, moved_by_guessed_curve,
+    Contradiction, NAMES, contradicted, contradicting_flights, contradicts_file, moved_by_guessed_curve,
 };
 use crate::note::Note;
 use crate::signals::Signals;
@@ -300,12 +300,21 @@ fn gone_with(
     ids.filter(|id| !stays(id)).collect()
 }
 
-/// The part held back is another's, or what is left of the part explained drifts with time.
+/// The part held back is another's, or what is left of the part explained drifts with time. Or its mass is another one, as after a drop
+/// shortly before: the part explained then has a mass between both, and its standard error hides the difference.
 fn changes_late(study: &ExplainStudy) -> bool {
     let drifts =
         study.located.state.iter().any(|state| ["time", "voltage"].contains(&state.variable.as_str()));
-    study.other_vehicle().is_some() || (study.verdict() == Verdict::Unexplained && drifts)
+    let is_mass = |of: &&Agreement| of.name == NAMES[0];
+    let mass = study.shown.iter().flat_map(|shown| &shown.agreement).find(is_mass);
+    let drops = mass.is_some_and(|of| of.share().abs() > DROP_SHARE && of.sigmas().abs() > DROP_SIGMAS);
+    study.other_vehicle().is_some() || drops || (study.verdict() == Verdict::Unexplained && drifts)
 }
+
+/// Share of the mass, and standard errors, from which on a drop is looked for in the whole flight. Only what is looked for depends on both:
+/// a name has its own conditions.
+const DROP_SHARE: f64 = 0.02;
+const DROP_SIGMAS: f64 = 3.0;
 
 /// The wind of the flight that was explained is in the model.
 fn names_wind(study: &ExplainStudy) -> bool {

@@ -1,0 +1,43 @@
+//! What is the flights' own, and what speaks against one vehicle, in words.
+
+use crate::report::number::significant;
+use crate::study::{CompareStudy, LiftsApart};
+
+/// That full thrust over weight moved, which is each flight's own and may hide what is the vehicle's, as sentences behind a space; empty
+/// where it did not, or where the answer says it already.
+pub(super) fn scale(study: &CompareStudy) -> String {
+    let is_said = study.compared.as_ref().is_some_and(|compared| compared.other_vehicle.is_some());
+    let Some(moved) = study.scale.filter(|_| !is_said) else { return String::new() };
+    let path = |flight: usize| format!(" in {}", study.flights[flight].input.path);
+    let [first, last] = moved.flights.map_or_else(Default::default, |flights| flights.map(path));
+    format!(
+        " The thrust for a command over the weight went from {}{first} to {}{last}: a payload, another battery or air density. These are \
+         each flight's own. Rotors that all give another thrust for a command do the same: weigh the vehicle to tell them from a payload.",
+        significant(moved.before.0, 3),
+        significant(moved.after.0, 3)
+    )
+}
+
+/// Why the flights may be those of two vehicles, in a sentence or two; `None`: nothing says so.
+pub(super) fn doubt(study: &CompareStudy) -> Option<String> {
+    let serials = study
+        .serials_apart
+        .as_ref()
+        .map(|note| format!("It is doubtful that this is one vehicle. {}.", note.sentence()));
+    let all: Vec<String> =
+        study.lifts_apart.map(|lifts| two_vehicles(study, lifts)).into_iter().chain(serials).collect();
+    (!all.is_empty()).then(|| all.join(" "))
+}
+
+/// That full thrust over weight makes two vehicles of the flights, which nothing else tells.
+fn two_vehicles(study: &CompareStudy, lifts: LiftsApart) -> String {
+    let [before, after] = [lifts.before, lifts.after].map(|lift| significant(lift, 3));
+    let of = match lifts.from.map(|from| study.flights[from].input.path.as_str()) {
+        None => format!("{before} before and {after} after"),
+        Some(from) => format!("{before} before {from} and {after} from it on"),
+    };
+    format!(
+        "It is doubtful that this is one vehicle: full thrust over weight is {of}, more than a battery or a load changes it, and no \
+         parameter was compared that could tell."
+    )
+}
