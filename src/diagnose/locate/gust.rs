@@ -33,6 +33,9 @@ pub struct GustFound {
 const LEAST_FORCE: f64 = 0.002;
 /// Air that moves by less is called still, m/s rms: a draught in a room. Four flights of one small quadrotor in a room showed 0.18.
 const STILL_M_S: f64 = 0.25;
+/// Strongest gusts, m/s rms: a wind of 25 m/s near the ground has a fifth of it, and no multirotor flies in more. A force that needs more has
+/// another cause than the air.
+const MOST_M_S: f64 = 5.0;
 /// Largest ratio of the strengths of a gust on the two horizontal axes. Gusts along the ground have no direction of
 /// their own; a larger ratio is that of another cause.
 const ALIKE: f64 = 3.0;
@@ -67,6 +70,9 @@ pub(super) fn gust(view: &View, fitted: &Fitted, redness: &[Redness]) -> Option<
     let (correlation_s, fit) = refined(view, &ordinates, at_s)?;
     let (relative_variance, correlation_std_s) = red_errors(view, &ordinates, &fit, correlation_s)?;
     let sigma_m_s = fit.coefficients[2].sqrt() / drag;
+    if sigma_m_s > MOST_M_S {
+        return None;
+    }
     let relative = (0.25 * relative_variance + (drag_std / drag).powi(2)).sqrt();
     Some(GustFound {
         sigma_m_s,
