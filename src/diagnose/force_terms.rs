@@ -3,6 +3,7 @@
 use super::base::Base;
 use super::pooled_estimate::PooledEstimate;
 use super::signature::EffectTerm;
+use super::signatures::is_near;
 use crate::physics::{Airframe, Condition, Hook, Input, MAX_ROTORS, Rotors, State, effects_wrench};
 use crate::reconstruction::Term;
 use nalgebra::Vector3;
@@ -21,12 +22,13 @@ pub(super) fn begin_at(terms: &mut [Term], opened: &[Term], pooled: &PooledEstim
 }
 
 /// The effects of the model with those of their parameters free that the forces tell; `None` where one of them has states or
-/// changes what sensors show.
+/// changes what sensors show, but for an accelerometer near the centre of mass.
 pub(super) fn terms(base: &Base) -> Option<Vec<Term>> {
     let airframe = Airframe::new(&base.vehicle).ok()?;
     let one = |term: &EffectTerm| {
         let effect = term.effect();
-        if effect.hooks().contains(&Hook::Sensors) || effect.state_count(&airframe) > 0 {
+        let shows_otherwise = effect.hooks().contains(&Hook::Sensors) && !is_near(term);
+        if shows_otherwise || effect.state_count(&airframe) > 0 {
             return None;
         }
         let role = &term.signature.role;

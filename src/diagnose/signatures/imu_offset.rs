@@ -2,7 +2,7 @@
 
 use crate::diagnose::picture::{Over, Picture};
 use crate::diagnose::recorded::Need;
-use crate::diagnose::signature::{Naming, Signature};
+use crate::diagnose::signature::{EffectTerm, Naming, Signature};
 use crate::diagnose::trace::Trace;
 use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Size, Words};
@@ -11,6 +11,15 @@ use crate::physics::effects::ImuOffset;
 /// Distance of the inertial unit from the centre of mass that ordinary vehicles have, m. Set by judgement: with less,
 /// ordinary vehicles would have it.
 const ORDINARY_M: f64 = 0.005;
+
+/// Distance up to which the forces may be told from the flight path as if it were none, m. Rotation makes it feel less than the
+/// accelerometer's noise there: 0.15 m/s^2 at 5 rad/s^2.
+const NEAR_M: f64 = 0.03;
+
+/// Whether a term is an accelerometer so near to the centre of mass that the forces are told without it.
+pub(in crate::diagnose) fn is_near(term: &EffectTerm) -> bool {
+    term.is(&SIGNATURE) && term.values[..3].iter().map(|along| along * along).sum::<f64>().sqrt() < NEAR_M
+}
 
 /// An accelerometer away from the centre of mass.
 pub static SIGNATURE: Signature = Signature {
@@ -33,3 +42,15 @@ pub static SIGNATURE: Signature = Signature {
         },
     )
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forces_are_told_beside_an_accelerometer_near_the_centre_of_mass() {
+        let at = |place: [f64; 3]| is_near(&SIGNATURE.term(&place, &[0, 1, 2]));
+        assert!(at([0.0, 0.012, 0.0]) && at([0.01, 0.02, 0.01]));
+        assert!(!at([0.02, 0.02, 0.02]));
+    }
+}

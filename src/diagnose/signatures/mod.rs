@@ -30,5 +30,6 @@ mod weak_rotor;
 
 pub(super) use com_offset::REPACKED_M;
 pub use effect_quantity::{DeterminedBy, EFFECT_QUANTITIES, EffectQuantity};
+pub(super) use imu_offset::is_near;
 pub use list::{ALL, is_irregular, latency_kind, latency_signature, signature_of, with_role};
 pub(super) use steady_wind::CALM_M_S;
