@@ -35,6 +35,8 @@ pub fn run(data: &[u8], seeded: bool) {
         "the seeded bug: records that were turned round"
     );
     let given = Given {
+        battery_voltage_v: None,
+        hover_command: None,
         vehicle: flight.vehicle.clone(),
         inputs: Vec::new(),
         quality: flights.iter().map(|signals| signals.quality.clone()).collect(),

@@ -96,7 +96,7 @@ impl Analysis {
     pub fn page(&self) -> String {
         let mut parts: Vec<String> = self.explained.iter().map(explanation_answer).collect();
         let mut places: Vec<String> =
-            self.report().map(|path| format!("report: {}", text::path(&path))).into_iter().collect();
+            self.report().map(|_| explain::places(&self.folder)).into_iter().collect();
         if self.identified.is_ok() && self.unwritten[0].is_none() {
             let place = |name| text::path(&self.folder.join(RIGID_BODY).join(name));
             places.push(format!("the rigid body alone, without effects: {}, {}", place(REPORT), place(PAGE)));
@@ -207,7 +207,7 @@ mod tests {
         assert_eq!(told, [&parameters, &explanation].map(|why| Word::Error(why.clone())));
         for (said, verb, names) in [
             (parameters, "mavid identify ", &["model.toml", "identification.txt"][..]),
-            (explanation, "mavid explain ", &["report.html", "explanation.json"]),
+            (explanation, "mavid explain ", &["report.html", "report.md", "explanation.json"]),
         ] {
             assert!(said.contains("cannot write") && said.contains(verb), "{said}");
             assert!(said.contains("flight.tlog --vehicle"), "{said}");

@@ -21,11 +21,13 @@ use crate::cli::{ExplainArgs, PageFormat};
 /// Names of what [`write`] writes.
 const MODEL: &str = "model.toml";
 pub const REPORT: &str = "report.html";
+/// The summary to paste into a forum or an issue: the text of `--format md`.
+pub const SUMMARY: &str = "report.md";
 const DOCUMENT: &str = "explanation.json";
 /// The vehicle file, where it was drafted.
 const VEHICLE: &str = "vehicle.toml";
 /// All of them.
-pub const WRITTEN: [&str; 3] = [MODEL, REPORT, DOCUMENT];
+pub const WRITTEN: [&str; 4] = [MODEL, REPORT, SUMMARY, DOCUMENT];
 
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Outcome, CommandError> {
@@ -52,9 +54,15 @@ pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Out
 fn closing(study: &ExplainStudy, args: &ExplainArgs, columns: usize) -> String {
     let answer = explanation_answer_line(study, columns);
     match &args.out {
-        Some(folder) => format!("{answer}\nreport: {}", text::path(&folder.join(REPORT))),
+        Some(folder) => format!("{answer}\n{}", places(folder)),
         None => answer,
     }
+}
+
+/// Where the summary and the report of a folder are, line by line.
+pub fn places(folder: &Path) -> String {
+    let [summary, report] = [SUMMARY, REPORT].map(|name| text::path(&folder.join(name)));
+    format!("summary to paste: {summary}\nreport: {report}")
 }
 
 /// Explains, and writes what is asked for. How far it is is told to `progress`.
@@ -80,10 +88,11 @@ pub fn make(progress: &dyn Progress, args: &ExplainArgs) -> Result<ExplainStudy,
     Ok(study)
 }
 
-/// Writes model, report and document into a folder, which is made.
+/// Writes model, report, summary and document into a folder, which is made.
 pub fn write(study: &ExplainStudy, folder: &Path) -> Result<(), CommandError> {
     output::folder(folder)?;
     output::file(&folder.join(REPORT), &explanation_html(study))?;
+    output::file(&folder.join(SUMMARY), &explanation_markdown(study))?;
     output::file(&folder.join(DOCUMENT), &output::json_text(&ExplanationDocument::new(study))?)?;
     if let Some(draft) = &study.drafted {
         output::file(&folder.join(VEHICLE), &draft_text(draft)?)?;

@@ -4,7 +4,7 @@ use super::named::{DetectionLimit, Named, NamedParameter};
 use super::signature::Signature;
 use super::signatures::signature_of;
 use super::wording::{Clause, Size};
-use super::words::{largest, norm, plain, range, said};
+use super::words::{largest, largest_across, norm, plain, range, range_across, said};
 use crate::text::{significant, spoken, with_error};
 use crate::vehicle::Vehicle;
 
@@ -57,6 +57,7 @@ pub fn known_to(named: &Named) -> Option<f64> {
     let of = |p: &NamedParameter| (p.unit != "-").then_some((p.value, p.std));
     let (value, std) = match signature_of(named.id).map_or(Size::First, |signature| signature.words.size) {
         Size::Axes => largest(named),
+        Size::Across(names) => largest_across(named, names),
         Size::Norm { .. } => Some(norm(&with_unit(named))),
         Size::Of { parameter, .. } => named.get(parameter).and_then(of),
         Size::Own(_, number) => number(named),
@@ -73,6 +74,7 @@ fn with_unit(named: &Named) -> Vec<&NamedParameter> {
 fn size(named: &Named, signature: Option<&Signature>) -> Option<String> {
     match signature.map_or(Size::First, |signature| signature.words.size) {
         Size::Axes => Some(range(named)),
+        Size::Across(names) => Some(range_across(named, names)),
         Size::Norm { factor, unit } => {
             let (norm, std) = norm(&with_unit(named));
             Some(format!("{} {unit}", plain(factor * norm, factor * std)))
@@ -139,6 +141,47 @@ mod tests {
         );
         let text = clause(&named("linear_drag", &[("dx", 0.41, 0.01), ("dy", 0.61, 0.02)]), &vehicle);
         assert!(text.contains("0.410 +- 0.010 along x and 0.61 +- 0.02 along y N per m/s"), "{text}");
+    }
+
+    /// 0.453 +- 0.055 and 0.449 +- 0.06: weights 330.6 and 277.8, mean 0.4512, error 1 / sqrt(608.4) = 0.0405.
+    #[test]
+    fn drag_along_z_is_said_with_that_across_only_where_it_agrees_and_is_known_as_well() {
+        let vehicle = vehicle();
+        let of = |z: (f64, f64)| {
+            named("linear_drag", &[("dx", 0.453, 0.055), ("dy", 0.449, 0.06), ("dz", z.0, z.1)])
+        };
+        // it agrees (0.107 apart, error 0.058), and is known worse: 12 % and not 9 %
+        let worse = of((0.344, 0.041));
+        let text = clause(&worse, &vehicle);
+        let expected =
+            "Drag was left out: 0.45 +- 0.04 across and 0.34 +- 0.04 along z N per m/s of the body (";
+        assert!(text.starts_with(expected), "{text}");
+        let expected = "drag (0.45 +- 0.04 across and 0.34 +- 0.04 along z N per m/s)";
+        assert_eq!(brief(&worse, &vehicle, true), expected);
+        assert!((known_to(&worse).unwrap() - 0.0898).abs() < 2e-4);
+        // it agrees, and is known as well: 7 %; the mean is that of x and y
+        let as_well = of((0.42, 0.03));
+        let text = clause(&as_well, &vehicle);
+        assert!(text.contains(": 0.45 +- 0.04 N per m/s along body x, y and z ("), "{text}");
+        assert_eq!(brief(&as_well, &vehicle, true), "drag (0.45 +- 0.04 N per m/s)");
+        // it is known well, and differs: 0.15 apart, error 0.045
+        let differs = clause(&of((0.30, 0.02)), &vehicle);
+        assert!(
+            differs.contains("0.45 +- 0.04 across and 0.30 +- 0.02 along z N per m/s of the body"),
+            "{differs}"
+        );
+        let square = named("quadratic_drag", &[("cx", 0.2, 0.02), ("cy", 0.2, 0.02), ("cz", 0.6, 0.1)]);
+        let text = clause(&square, &vehicle);
+        assert!(
+            text.ends_with("0.200 +- 0.014 across and 0.60 +- 0.10 along z N per (m/s)^2 of the body"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn one_axis_is_named_behind_the_unit() {
+        let text = clause(&named("linear_drag", &[("dx", 0.63, 0.16)]), &vehicle());
+        assert!(text.starts_with("Drag was left out: 0.63 +- 0.16 N per m/s along body x ("), "{text}");
     }
 
     #[test]

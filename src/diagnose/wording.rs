@@ -65,6 +65,8 @@ pub enum Size {
     First,
     /// one for each axis: their common value, or their range
     Axes,
+    /// the parameters for body x, y and z: the common value of x and y, and that of z beside it where it differs
+    Across([&'static str; 3]),
     /// norm of all parameters that have a unit, times a factor, with its standard error
     Norm {
         /// factor for the displayed unit

@@ -4,23 +4,90 @@ use super::named::{Named, NamedParameter};
 use crate::text::{significant, spoken, with_error};
 use crate::vehicle::AXIS_NAMES;
 
-/// One number if the axes agree within two standard errors, otherwise one for each axis, of the parameters `names` for
-/// x, y and z.
+/// One number if the axes agree within two standard errors, or there is one axis; otherwise one for each axis. Of the parameters
+/// `names` for x, y and z.
 #[must_use]
 pub fn axes(named: &Named, names: &[&str], unit: &str) -> String {
     let known: Vec<(&str, &NamedParameter)> =
         names.iter().zip(AXIS_NAMES).filter_map(|(name, axis)| Some((axis, named.get(name)?))).collect();
-    let list = |parts: Vec<String>| match parts.as_slice() {
-        [most @ .., last] if !most.is_empty() => format!("{} and {last}", most.join(", ")),
-        all => all.concat(),
-    };
+    if let [(axis, p)] = known.as_slice() {
+        return format!("{} {unit} along body {axis}", with_error(p.value, p.std));
+    }
     let parameters: Vec<&NamedParameter> = known.iter().map(|(_, p)| *p).collect();
     if let Some((mean, std)) = common(&parameters).filter(|_| known.len() > 1) {
-        let along = list(known.iter().map(|(axis, _)| (*axis).to_owned()).collect());
+        let along = list(&known.iter().map(|(axis, _)| (*axis).to_owned()).collect::<Vec<_>>());
         return format!("{} {unit} along body {along}", with_error(mean, std));
     }
     let each = known.iter().map(|(axis, p)| format!("{} along {axis}", with_error(p.value, p.std)));
-    format!("{} {unit} of the body", list(each.collect()))
+    format!("{} {unit} of the body", list(&each.collect::<Vec<_>>()))
+}
+
+fn list(parts: &[String]) -> String {
+    match parts {
+        [most @ .., last] if !most.is_empty() => format!("{} and {last}", most.join(", ")),
+        all => all.concat(),
+    }
+}
+
+/// A size across the vehicle, beside which stands the one along body z.
+struct Across<'a> {
+    /// weighted mean along body x and y
+    mean: f64,
+    /// its standard error
+    std: f64,
+    /// along body z, where it is stated
+    z: Option<&'a NamedParameter>,
+}
+
+impl<'a> Across<'a> {
+    /// Of the parameters `names` for x, y and z; `None` where x or y is not stated, or both differ.
+    fn of(named: &'a Named, [x, y, z]: [&str; 3]) -> Option<Self> {
+        let (mean, std) = common(&[named.get(x)?, named.get(y)?])?;
+        Some(Self { mean, std, z: named.get(z) })
+    }
+
+    /// The value along z where it is not said with the mean: it differs by two standard errors of the difference, or its
+    /// relative error is larger. It holds other effects of the rotors in climb too.
+    fn apart(&self) -> Option<&'a NamedParameter> {
+        let goes_with = |z: &NamedParameter| {
+            (z.value - self.mean).abs() < 2.0 * z.std.hypot(self.std)
+                && z.std * self.mean.abs() <= self.std * z.value.abs()
+        };
+        self.z.filter(|&z| !goes_with(z))
+    }
+}
+
+/// A size across the vehicle: the mean of body x and y, with which z is said if it agrees and is known as well, otherwise beside
+/// it; one for each axis where x and y differ or one of them is not stated. Of the parameters `names` for x, y and z.
+#[must_use]
+pub fn across(named: &Named, names: [&str; 3], unit: &str) -> String {
+    let Some(of) = Across::of(named, names) else { return axes(named, &names, unit) };
+    let mean = with_error(of.mean, of.std);
+    match (of.apart(), of.z) {
+        (Some(z), _) => {
+            format!("{mean} across and {} along z {unit} of the body", with_error(z.value, z.std))
+        }
+        (None, Some(_)) => format!("{mean} {unit} along body x, y and z"),
+        (None, None) => format!("{mean} {unit} along body x and y"),
+    }
+}
+
+/// The same without the axes that agree, and [`range`] where x and y differ or one of them is not stated.
+#[must_use]
+pub fn range_across(named: &Named, names: [&str; 3]) -> String {
+    let Some(of) = Across::of(named, names) else { return range(named) };
+    let unit = named.get(names[0]).map_or_else(String::new, |x| spoken(x.unit));
+    let mean = plain(of.mean, of.std);
+    match of.apart() {
+        Some(z) => format!("{mean} across and {} along z {unit}", plain(z.value, z.std)),
+        None => format!("{mean} {unit}"),
+    }
+}
+
+/// Value and standard error of [`range_across`]: of the mean across, otherwise of [`largest`].
+#[must_use]
+pub fn largest_across(named: &Named, names: [&str; 3]) -> Option<(f64, f64)> {
+    Across::of(named, names).map(|of| (of.mean, of.std)).or_else(|| largest(named))
 }
 
 /// Weighted mean and standard error of values that agree within two standard errors.

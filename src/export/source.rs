@@ -16,6 +16,11 @@ const USUAL_THRUST_COEFFICIENT: f64 = 0.1;
 /// Density of the standard atmosphere at sea level, kg/m^3.
 const AIR_KG_M3: f64 = 1.225;
 
+/// The effects between a command and its thrust.
+const LATENCIES: [&str; 2] = ["motor_lag", "transport_delay"];
+/// Latency below which none is lost, s.
+const LEAST_LATENCY_S: f64 = 0.005;
+
 /// Lag that is nearly none, s, for formats that need one.
 pub(super) const FAST_S: f64 = 0.001;
 
@@ -28,6 +33,8 @@ pub(super) struct Source<'a> {
     /// share of the gyroscopic torque that acts in the simulator
     gyroscopic: f64,
     effects: &'a [ActiveEffect],
+    /// effects that were identified, by the model's file; `None` where it does not say
+    named: Option<&'a Table>,
     costs: Costs<'a>,
     taken: Vec<&'static str>,
     left_out: Vec<String>,
@@ -42,12 +49,14 @@ impl<'a> Source<'a> {
     ) -> Result<Self, ExportError> {
         let airframe = Airframe::new(vehicle)?;
         let costs = Costs::of(identified);
+        let named = identified.and_then(|table| table.get("effects")?.as_table());
         Ok(Self {
             vehicle,
             airframe,
             altitude_m: None,
             gyroscopic: 1.0,
             effects,
+            named,
             costs,
             taken: Vec::new(),
             left_out: Vec::new(),
@@ -94,6 +103,11 @@ impl<'a> Source<'a> {
 
     pub(super) fn note(&mut self, text: impl Into<String>) {
         self.left_out.push(text.into());
+    }
+
+    /// What was told so far.
+    pub(super) fn notes(&self) -> &[String] {
+        &self.left_out
     }
 
     /// s, lag of a rotor that speeds up and of one that slows down: of the effect, else what the vehicle's file
@@ -198,7 +212,7 @@ impl<'a> Source<'a> {
     pub(super) fn finish(mut self, write: impl FnOnce(&[String]) -> String) -> Exported {
         for active in self.effects {
             let id = active.effect().id();
-            if self.taken.contains(&id) {
+            if self.taken.contains(&id) || self.is_no_latency(active) {
                 continue;
             }
             let lost = format!("{id} cannot be represented here: {}", self.values(active).join(", "));
@@ -211,6 +225,14 @@ impl<'a> Source<'a> {
         self.left_out.extend(of_gyroscopic(self.vehicle.body.gyroscopic, self.gyroscopic));
         let callback = self.callback.map(|callback| callback.program);
         Exported { text: write(&self.left_out), left_out: self.left_out, callback }
+    }
+
+    /// Whether this is a latency that nobody found: one without a name, or below [`LEAST_LATENCY_S`]. A model holds it beside the
+    /// one that has the name.
+    fn is_no_latency(&self, active: &ActiveEffect) -> bool {
+        let id = active.effect().id();
+        let is_slight = || active.parameters().first().is_some_and(|latency_s| *latency_s < LEAST_LATENCY_S);
+        LATENCIES.contains(&id) && (self.named.is_some_and(|named| !named.contains_key(id)) || is_slight())
     }
 
     /// The parameters of an effect in words; a rotor by the autopilot's number and its place.

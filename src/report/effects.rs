@@ -13,7 +13,7 @@ const COLUMNS: usize = 100;
 const NOT_APART: f64 = 0.1;
 
 /// What the number of a rotor is, where it stands for itself.
-const COUNTED: &str = "; motor 1 is 0: counted from 0 in the vehicle file's order";
+const COUNTED: &str = "; in files, counted from 0 in the vehicle file's order: motor 1 is 0";
 
 /// One line an effect.
 #[must_use]

@@ -51,6 +51,19 @@ pub(super) fn provenance(inputs: &[InputFile]) -> String {
     format!("\n[provenance]\nprogram = \"mavid {version}\"\ninputs = {}\n", files(inputs))
 }
 
+/// The lines of the battery's mean voltage in the air, V, and of the motors' command at hover (0 to 1); nothing of what was not recorded.
+pub(super) fn as_flown(voltage_v: Option<f64>, hover_command: Option<(f64, f64)>) -> String {
+    let mut text = String::new();
+    if let Some(volts) = voltage_v {
+        let _ = writeln!(text, "battery_voltage = {volts:.3} # V, mean in the air");
+    }
+    if let Some((value, std)) = hover_command {
+        let _ = writeln!(text, "# command of the motors at hover, as flown");
+        let _ = writeln!(text, "hover_command = {{ value = {value:.4}, std = {std:.4}, unit = \"-\" }}");
+    }
+    text
+}
+
 /// The line of a parameter that no flight determined, with the reason.
 pub(super) fn not_determined(name: &str, reason: &str) -> String {
     format!("{name} = {{ status = \"not_determined\", reason = {} }}", toml_string(reason))

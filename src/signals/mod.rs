@@ -14,6 +14,7 @@ mod filter;
 mod flight;
 mod grid;
 mod height;
+mod hover;
 mod lifts;
 mod noise;
 mod off_ground;
@@ -33,6 +34,7 @@ mod spectrum;
 mod stated_rotors;
 mod sufficient;
 mod usable;
+mod voltage;
 mod weak;
 
 pub use actuation::ThrustPreference;
@@ -49,6 +51,7 @@ pub use error::SignalsError;
 pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};
 pub use flight::{AsRecorded, Quality, Reference, Series, Signals};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
+pub use hover::hover_command;
 pub use noise::white_level;
 pub use off_ground::{SHORTEST_FLIGHT_S, off_ground, spans, within};
 pub use off_mixer::{OffMixer, outputs_off_mixer};
@@ -63,4 +66,5 @@ pub use sufficient::{
     LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, LEAST_FORCE_HZ, LEAST_TORQUE_HZ, flowing_rate_within_hz,
 };
 pub use usable::{Evidence, FLYING_SHARE, Usable, usable};
+pub use voltage::airborne_voltage_v;
 pub use weak::{MAX_ORDER, WeakKernel};

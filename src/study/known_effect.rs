@@ -10,7 +10,7 @@ use crate::diagnose::called;
 use crate::diagnose::signatures::signature_of;
 use crate::draft::Given;
 use crate::physics::effects::ALL;
-use crate::physics::{Effect, Parameter};
+use crate::physics::{Effect, Parameter, WHICH_ROTOR};
 use crate::text::{compact, excerpt, significant};
 use crate::vehicle::Vehicle;
 
@@ -43,7 +43,7 @@ pub struct KnownEffect {
     pub equation: &'static str,
     /// the finer ones last
     pub parameters: Vec<KnownParameter>,
-    /// an example of its size, by class of vehicle; without the parameters of [`KnownEffect::concealed`]
+    /// an example of its size, by class of vehicle; without the parameters of [`KnownEffect::concealed`], and without the number of a rotor
     pub usual: Vec<UsualOfClass>,
     /// size concealed in the tests on [`KnownEffect::table_of`], of parameters for which no size by class is known, in the unit of each
     pub concealed: BTreeMap<&'static str, f64>,
@@ -174,8 +174,10 @@ fn known(
         Some(values.map(scaled).collect::<Vec<(&'static str, f64)>>())
     };
     let is_of_tests = |name: &str| OF_TESTS.contains(&(id, name));
+    // which rotor it is, is no size
+    let has_size = |name: &str| name != WHICH_ROTOR && !is_of_tests(name);
     let of_class = |(class, vehicle): &(&'static str, Vehicle)| {
-        let values = usual(vehicle)?.into_iter().filter(|(name, _)| !is_of_tests(name)).collect();
+        let values = usual(vehicle)?.into_iter().filter(|(name, _)| has_size(name)).collect();
         Some(UsualOfClass { class, mass_kg: vehicle.body.mass_kg, values })
     };
     let run = measured.effects.iter().find(|run| run.id == id);
@@ -253,7 +255,9 @@ fn table(effect: &dyn Effect, of: &Vehicle, usual: &[(&str, f64)]) -> String {
         let unit = if parameter.unit == "-" { "" } else { parameter.unit };
         let of_tests = OF_TESTS.contains(&(effect.id(), parameter.name));
         let remark = match parameter.is_rotor() {
-            true => "; motor 1 is 0: counted from 0 in the vehicle file's order; its name is taken too",
+            true => {
+                "; in files, counted from 0 in the vehicle file's order: motor 1 is 0; its name is taken too"
+            }
             false if of_tests => ", the size concealed in the tests",
             false => "",
         };

@@ -76,6 +76,9 @@ fn a_complete_rigid_body_has_nothing_missing_and_says_what_it_would_have_seen() 
     let checked = mavid(&["vehicle", model.to_str().unwrap(), "--json"]);
     assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
     whole_report(&out.join("report.html"));
+    // the summary beside it is what `--format md` prints
+    let summary = std::fs::read_to_string(out.join("report.md")).unwrap();
+    assert!(summary.starts_with("**") && summary.contains("`mavid explain --format md`"), "{summary}");
 }
 
 /// One file, closed, with nothing loaded from anywhere.

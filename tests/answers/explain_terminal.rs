@@ -34,8 +34,9 @@ fn at_a_terminal_notes_are_said_once_and_the_answer_stands_at_the_end_again() {
     }
     let saw = person.saw();
     let lines: Vec<&str> = saw.lines().map(str::trim_end).filter(|line| !line.is_empty()).collect();
-    let [.., answer, last] = lines.as_slice() else { panic!("{saw}") };
+    let [.., answer, summary, last] = lines.as_slice() else { panic!("{saw}") };
     assert!(answer.starts_with("answer: ") && answer.chars().count() <= 120, "{saw}");
+    assert_eq!(*summary, format!("summary to paste: {}", out.join("report.md").display()));
     assert_eq!(*last, report);
     assert_eq!(saw.matches(NOTE).count(), 1, "{saw}");
 }

@@ -96,7 +96,8 @@ fn without_a_vehicle_it_ends_when_it_is_told_to() {
     let out = folder("fly_nobody");
     // results of an earlier flight would pass for those of this one
     std::fs::create_dir_all(out.join("rigid_body")).unwrap();
-    let earlier = ["report.html", "rigid_body/report.html", "mine.html"].map(|name| out.join(name));
+    let earlier =
+        ["report.html", "report.md", "rigid_body/report.html", "mine.html"].map(|name| out.join(name));
     earlier.iter().for_each(|path| std::fs::write(path, "earlier").unwrap());
     let child = nobody(&out).spawn().unwrap();
     // its first event is written once the handlers of signals stand
@@ -109,5 +110,5 @@ fn without_a_vehicle_it_ends_when_it_is_told_to() {
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(stderr(&output).contains("SIGTERM"), "{}", stderr(&output));
     assert!(std::fs::read_to_string(out.join("events.jsonl")).unwrap().contains("SIGTERM"));
-    assert_eq!(earlier.map(|path| path.exists()), [false, false, true]);
+    assert_eq!(earlier.map(|path| path.exists()), [false, false, false, true]);
 }

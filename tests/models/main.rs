@@ -10,6 +10,7 @@ mod rotorpy;
 mod support;
 
 mod export;
+mod export_aircraft;
 mod export_flown;
 mod plan;
 mod plan_command;

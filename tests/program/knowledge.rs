@@ -67,7 +67,12 @@ fn one_effect_is_told_with_its_size_on_a_vehicle() {
     let sag = said(&["effects", "battery_sag"]);
     assert!(sag.contains("size concealed in the tests; not known by class"), "{sag}");
     let weak = said(&["effects", "weak_rotor"]);
-    assert_eq!(weak.matches("motor 1 is 0: counted from 0 in the vehicle file's order").count(), 2, "{weak}");
+    let counted = "in files, counted from 0 in the vehicle file's order: motor 1 is 0";
+    assert_eq!(weak.matches(counted).count(), 2, "{weak}");
+    // which rotor it is has no usual size
+    let usual = weak.split_once("usual size, by class of vehicle").unwrap().1;
+    let usual = usual.split_once("confused with").unwrap().0;
+    assert!(usual.contains("factor") && !usual.contains("rotor"), "{usual}");
     let flapping = said(&["effects", "blade_flapping"]);
     assert!(!flapping.contains("palm-sized"), "{flapping}");
     let unknown = mavid(&["effects", "drag"]);

@@ -39,6 +39,7 @@ pub fn the_demo_names_what_it_conceals_with_its_size() {
     // one report and one model at the root, the rigid body in an appendix
     for file in [
         "report.html",
+        "report.md",
         "model.toml",
         "rigid_body/model.toml",
         "export/model.sdf",

@@ -79,6 +79,7 @@ pub fn both_autopilots_fly_over_every_link_and_are_identified() {
                 "vehicle.toml",
                 "model.toml",
                 "report.html",
+                "report.md",
                 "explanation.json",
                 "rigid_body/model.toml",
                 "rigid_body/report.html",

@@ -63,7 +63,7 @@ pub fn a_terminal_that_takes_nothing_costs_no_result() {
     let told = events(&out);
     assert!(told.iter().any(|event| event["kind"] == "view"), "{told:?}");
     assert!(is_in_phase(&out, "over"), "{told:?}");
-    for name in ["model.toml", "report.html", "rigid_body/identification.json"] {
+    for name in ["model.toml", "report.html", "report.md", "rigid_body/identification.json"] {
         assert!(out.join(name).is_file(), "{name}");
     }
     // all is done, and not all of it was told

@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::concealed::Compared;
 use super::context::Context;
 use super::folder::COMMANDS;
+use crate::commands::explain::{REPORT, SUMMARY};
 
 /// Everything that a run has made.
 pub struct Made<'a> {
@@ -65,7 +66,7 @@ impl<'a> Document<'a> {
             recorded_frames: record.map(|record| record.recorder.frames),
             dropped_frames: record.map(|record| record.recorder.dropped),
             explanation: ExplanationDocument::new(made.study),
-            report: text::path(&context.folder.of("report.html")),
+            report: text::path(&context.folder.of(REPORT)),
             model: text::path(&context.folder.of("model.toml")),
             exports: made.exports,
             parameters: made.parameters,
@@ -79,8 +80,11 @@ impl<'a> Document<'a> {
 /// The lines on where everything is.
 pub fn places(context: &Context<'_>, made: &Made<'_>) -> String {
     let place = |name: &str| text::path(&context.folder.of(name));
-    let mut lines =
-        vec![format!("report      {}", place("report.html")), format!("model       {}", place("model.toml"))];
+    let mut lines = vec![
+        format!("report      {}", place(REPORT)),
+        format!("summary     {} (to paste into a forum or an issue)", place(SUMMARY)),
+        format!("model       {}", place("model.toml")),
+    ];
     if !made.exports.is_empty() {
         lines.push(format!("simulators  {} ({} files)", place("export"), made.exports.len()));
     }

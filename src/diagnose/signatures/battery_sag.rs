@@ -43,6 +43,9 @@ pub static SIGNATURE: Signature = Signature {
                 },
                 |_| None,
             ),
+            limit: Some(|limit| {
+                format!("thrust that falls as the voltage to the power of {}", significant(limit, 2))
+            }),
             ..Words::of("battery sag")
         },
     )

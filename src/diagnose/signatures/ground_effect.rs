@@ -75,6 +75,9 @@ pub static SIGNATURE: Signature = Signature {
         Words {
             clause: Clause::Own(clause),
             size: Size::Own(size, |_| None),
+            limit: Some(|limit| {
+                format!("ground effect {} times that of Cheeseman and Bennett", significant(limit, 2))
+            }),
             told_if_absent: Some(3),
             expected_in_motion: Some(2),
             ..Words::of("ground effect")

@@ -6,7 +6,7 @@ use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Joint, Naming, OfTheVehicle, Role, Signature, Whence};
 use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
-use crate::diagnose::words::axes;
+use crate::diagnose::words::across;
 use crate::physics::effects::LinearDrag;
 use crate::text::significant;
 
@@ -68,11 +68,11 @@ pub static SIGNATURE: Signature = Signature {
             clause: Clause::Own(|named, vehicle| {
                 format!(
                     "Drag was left out: {} ({} 1/s), throughout the flight, growing with airspeed",
-                    axes(named, &["dx", "dy", "dz"], "N per m/s"),
+                    across(named, ["dx", "dy", "dz"], "N per m/s"),
                     significant(mean(named) / vehicle.body.mass_kg, 2)
                 )
             }),
-            size: Size::Axes,
+            size: Size::Across(["dx", "dy", "dz"]),
             told_if_absent: Some(0),
             expected_in_motion: Some(0),
             ..Words::of("drag")

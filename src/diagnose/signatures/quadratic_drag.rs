@@ -5,7 +5,7 @@ use crate::diagnose::recorded::Need;
 use crate::diagnose::signature::{Joint, Naming, Role, Signature};
 use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
-use crate::diagnose::words::axes;
+use crate::diagnose::words::across;
 use crate::physics::effects::QuadraticDrag;
 
 /// Drag with the square of the airspeed.
@@ -48,10 +48,10 @@ pub static SIGNATURE: Signature = Signature {
             clause: Clause::Own(|named, _| {
                 format!(
                     "Drag that grows with the square of the airspeed was left out: {}",
-                    axes(named, &["cx", "cy", "cz"], "N per (m/s)^2")
+                    across(named, ["cx", "cy", "cz"], "N per (m/s)^2")
                 )
             }),
-            size: Size::Axes,
+            size: Size::Across(["cx", "cy", "cz"]),
             ..Words::of("drag with the square of the airspeed")
         },
     )

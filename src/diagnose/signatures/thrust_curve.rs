@@ -5,6 +5,7 @@ use crate::diagnose::signature::{Joint, Naming, OfTheVehicle, Role, Signature};
 use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Size, Words};
 use crate::physics::effects::ThrustCurve;
+use crate::text::significant;
 
 /// Curvature up to which a thrust curve counts as known (-). Set by judgement: with less, ordinary vehicles would
 /// have it.
@@ -41,6 +42,9 @@ pub static SIGNATURE: Signature = Signature {
                 )
             }),
             size: Size::Of { parameter: "curvature", factor: 100.0, unit: "% about hover" },
+            limit: Some(|limit| {
+                format!("a thrust that changes {} % more about hover", significant(100.0 * limit, 2))
+            }),
             ..Words::of("a bent thrust curve")
         },
     )

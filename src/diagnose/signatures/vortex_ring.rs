@@ -6,6 +6,7 @@ use crate::diagnose::signature::{Role, Signature};
 use crate::diagnose::usual_size::UsualSize;
 use crate::diagnose::wording::{Clause, Words};
 use crate::physics::effects::VortexRing;
+use crate::text::significant;
 
 /// Loss of thrust in a descent into the vehicle's own wake.
 pub static SIGNATURE: Signature = Signature {
@@ -24,6 +25,9 @@ pub static SIGNATURE: Signature = Signature {
                 before: "The vehicle sank into its own wake: the loss of thrust is",
                 after: "times that of Leishman's vortex ring",
             },
+            limit: Some(|limit| {
+                format!("a loss of thrust {} times that of Leishman's vortex ring", significant(limit, 2))
+            }),
             ..Words::of("the vortex ring state")
         },
     )

@@ -2,6 +2,12 @@
 
 use toml::{Table, Value};
 
+/// Key of the battery's mean voltage in the air, V.
+const BATTERY_VOLTAGE: &str = "battery_voltage";
+
+/// Key of the motors' command at hover, -.
+const HOVER_COMMAND: &str = "hover_command";
+
 /// The table `[identified]` of a model.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Determined<'a>(Option<&'a Table>);
@@ -20,6 +26,28 @@ impl<'a> Determined<'a> {
     pub(super) fn std(&self, effect: &str, parameter: &str) -> Option<f64> {
         let effects = self.0?.get("effects")?.as_table()?;
         with_error(effects.get(effect)?.as_table()?.get(parameter)?).map(|(_, std)| std)
+    }
+
+    /// How the errors of two parameters of an effect go together (-1 to 1); `None` where the model does not state it.
+    pub(super) fn correlation(&self, effect: &str, [one, other]: [&str; 2]) -> Option<f64> {
+        let table = self.0?;
+        let names = table.get("correlation_of")?.as_array()?;
+        let place = |parameter: &str| {
+            let name = format!("{effect}.{parameter}");
+            names.iter().position(|known| known.as_str() == Some(name.as_str()))
+        };
+        let row = table.get("correlation")?.as_array()?.get(place(one)?)?.as_array()?;
+        row.get(place(other)?)?.as_float().filter(|together| (-1.0..=1.0).contains(together))
+    }
+
+    /// V, mean of the battery in the air, of the flights that the model was identified from; `None` where none was recorded.
+    pub(super) fn battery_voltage_v(&self) -> Option<f64> {
+        self.0?.get(BATTERY_VOLTAGE)?.as_float().filter(|volts| volts.is_finite() && *volts > 0.0)
+    }
+
+    /// Command of the motors at hover (0 to 1) and its standard error, as flown; `None` where the flights did not tell it.
+    pub(super) fn hover_command(&self) -> Option<(f64, f64)> {
+        self.own(HOVER_COMMAND).filter(|(command, _)| (0.0..=1.0).contains(command))
     }
 
     /// Relative standard error of weight over full thrust: of the mass, or of the thrust's scale where the mass was given.
@@ -61,5 +89,20 @@ mod tests {
         assert_eq!((determined.std("linear_drag", "dy"), determined.std("inflow", "kz")), (None, None));
         assert!((determined.load_relative_std().unwrap() - 0.05).abs() < 1e-12);
         assert_eq!(Determined::of(None).load_relative_std(), None);
+    }
+
+    #[test]
+    fn the_voltage_and_the_correlation_are_as_the_file_states_them() {
+        let table: Table = toml::from_str(
+            "battery_voltage = 16.2\ncorrelation_of = [\"ixx\", \"linear_drag.dx\", \"linear_drag.dy\"]\n\
+             correlation = [[1.0, 0.0, 0.1], [0.0, 1.0, 0.25], [0.1, 0.25, 1.0]]\n",
+        )
+        .unwrap();
+        let determined = Determined::of(Some(&table));
+        assert_eq!(determined.battery_voltage_v(), Some(16.2));
+        assert_eq!(determined.correlation("linear_drag", ["dx", "dy"]), Some(0.25));
+        assert_eq!(determined.correlation("linear_drag", ["dx", "dz"]), None);
+        let without = Determined::of(None);
+        assert_eq!((without.battery_voltage_v(), without.correlation("inflow", ["kz", "kz"])), (None, None));
     }
 }

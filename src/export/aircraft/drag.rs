@@ -20,16 +20,31 @@ const MOST_MOMENTUM: f64 = 1.0;
 /// Smallest coefficients that both take for more than none: of momentum drag, 1/s, and of a bluff body, kg/m^2.
 const LEAST_MOMENTUM: f64 = 0.001;
 const LEAST_BALLISTIC: f64 = 1.0;
-/// A drag is told from none where it is so many standard errors from none. It is the usual 95 %.
+/// A drag helps the estimator if its value is so many standard errors: its error is at most half of it.
+const HELPS: f64 = 2.0;
+/// Two axes differ if their drags are so many standard errors apart. It is the usual 95 %.
 const TOLD: f64 = 2.0;
 
 /// A coefficient of the estimator.
 enum Coefficient {
     Found(AircraftParameter),
-    /// the model has no such drag that is told from none: 0 says so
+    /// the model has no such drag: 0 says so
     Absent,
+    /// the model has one, and this is why no parameter follows from it
+    Unsure(String),
     /// there is one, and the parameter cannot hold it
     Beyond,
+}
+
+impl Coefficient {
+    fn is_found(&self) -> bool {
+        matches!(self, Self::Found(_))
+    }
+
+    /// Why a drag of the model has no coefficient.
+    fn unsure(&self) -> Option<&str> {
+        if let Self::Unsure(why) = self { Some(why) } else { None }
+    }
 }
 
 /// The estimator's drag, if one was identified.
@@ -49,52 +64,94 @@ pub(super) fn drag(
         EFFECTS.into_iter().for_each(|id| source.refuse(id));
         return Vec::new();
     }
-    if all.iter().all(|(_, found)| matches!(found, Coefficient::Absent)) {
+    if !all.iter().any(|(_, found)| found.is_found()) {
+        let reasons: Vec<&str> = all.iter().filter_map(|(_, found)| found.unsure()).collect();
+        let why =
+            if reasons.is_empty() { "the model contains no drag".to_owned() } else { reasons.join("; ") };
         source.note(format!(
-            "{} and {}/{} are not written: the model contains no significant drag",
+            "{} and {}/{} are not written: {why}",
             names.momentum, names.ballistic[0], names.ballistic[1]
         ));
-        EFFECTS.into_iter().for_each(|id| source.refuse(id));
         return Vec::new();
     }
-    let found = |found: &Coefficient| matches!(found, Coefficient::Found(_));
-    let [(_, linear), quadratic @ ..] = &all;
-    let held = [found(linear), quadratic.iter().any(|(_, of_axis)| found(of_axis))];
-    EFFECTS.into_iter().zip(held).filter(|(_, is_held)| !is_held).for_each(|(id, _)| source.refuse(id));
     tell_form(source, table);
     let control = names
         .control
         .map(|name| AircraftParameter::switch(name, 1.0, true, "the estimator takes drag to find the wind"));
     let each = all.into_iter().map(|(name, found)| match found {
         Coefficient::Found(parameter) => parameter,
-        _ => AircraftParameter::switch(name, 0.0, false, "no such drag was found, and 0 switches it off"),
+        Coefficient::Unsure(why) => {
+            AircraftParameter::switch(name, 0.0, false, format!("0 switches it off: {why}"))
+        }
+        Coefficient::Absent | Coefficient::Beyond => {
+            AircraftParameter::switch(name, 0.0, false, "no such drag was found, and 0 switches it off")
+        }
     });
     control.into_iter().chain(each).collect()
 }
 
+/// Why a drag without a standard error has no coefficient.
+fn without_error(drag: &str) -> Coefficient {
+    Coefficient::Unsure(format!("the model's file holds no standard error of {drag}"))
+}
+
+/// Why a drag whose error is above half of it has no coefficient; `unit` is that of both.
+fn hardly_known(drag: &str, value: f64, std: f64, unit: &str) -> Coefficient {
+    let [value, std] = [value, std].map(|number| significant(number, 2));
+    Coefficient::Unsure(format!("{drag} is known to {value} +- {std} {unit} only; fly again"))
+}
+
+/// Drag along x and y of the body, N/(m/s), each with its standard error.
+struct Across {
+    x: (f64, f64),
+    y: (f64, f64),
+    /// of both errors (-1 to 1)
+    correlation: f64,
+}
+
+impl Across {
+    /// Whether one coefficient cannot stand for both axes.
+    fn differs(&self) -> bool {
+        (self.x.0 - self.y.0).abs() > TOLD * self.x.1.hypot(self.y.1)
+    }
+
+    /// N/(m/s), the mean and its standard error. The better known axis says more of one coefficient, but of two it is not more.
+    fn mean(&self) -> (f64, f64) {
+        let ((x, std_x), (y, std_y)) = (self.x, self.y);
+        let share_x = if self.differs() { 0.5 } else { std_y * std_y / (std_x * std_x + std_y * std_y) };
+        let (part_x, part_y) = (share_x * std_x, (1.0 - share_x) * std_y);
+        let variance = part_x * part_x + part_y * part_y + 2.0 * self.correlation * part_x * part_y;
+        (share_x * x + (1.0 - share_x) * y, variance.max(0.0).sqrt())
+    }
+}
+
 /// From the drag in proportion to the airspeed.
 fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) -> Coefficient {
-    let std = |axis| determined.std("linear_drag", axis);
-    let (Some(std_x), Some(std_y)) = (std("dx"), std("dy")) else { return Coefficient::Absent };
-    let (dx, dy) = (source.take("linear_drag", "dx"), source.take("linear_drag", "dy"));
-    let (mass_kg, mass_std) = mass(source, determined);
-    let differ = (dx - dy).abs() > TOLD * std_x.hypot(std_y);
-    // the better known axis says more of one coefficient, but of two it is not more
-    let share_x = if differ { 0.5 } else { std_y * std_y / (std_x * std_x + std_y * std_y) };
-    // what errors along x and y have in common is not known: as if it were all
-    let mean = share_x * dx + (1.0 - share_x) * dy;
-    let mean_std = share_x * std_x + (1.0 - share_x) * std_y;
-    let (air_ratio, air) = air(source);
-    let value = mean / mass_kg / air_ratio.sqrt();
-    if mean < TOLD * mean_std || value < LEAST_MOMENTUM {
+    if !source.has("linear_drag") {
         return Coefficient::Absent;
     }
-    if differ {
-        source.note(format!(
-            "{name} is the same along x and y: from the mean of {} and {} N per m/s",
-            with_error(dx, std_x),
-            with_error(dy, std_y)
+    let std = |axis| determined.std("linear_drag", axis);
+    let (dx, dy) = (source.take("linear_drag", "dx"), source.take("linear_drag", "dy"));
+    let (Some(std_x), Some(std_y)) = (std("dx"), std("dy")) else { return without_error("the drag") };
+    // without a word of it, as if the errors along x and y were all the same
+    let correlation = determined.correlation("linear_drag", ["dx", "dy"]).unwrap_or(1.0);
+    let across = Across { x: (dx, std_x), y: (dy, std_y), correlation };
+    let (mean, mean_std) = across.mean();
+    let (mass_kg, mass_std) = mass(source, determined);
+    let (air_ratio, air) = air(source);
+    let value = mean / mass_kg / air_ratio.sqrt();
+    if mean < HELPS * mean_std {
+        return hardly_known("the drag", mean, mean_std, "N/(m/s)");
+    }
+    if value < LEAST_MOMENTUM {
+        return Coefficient::Unsure(format!(
+            "the drag would be {} 1/s, and the autopilot takes less than {LEAST_MOMENTUM} for none",
+            significant(value, 2)
         ));
+    }
+    let [x, y] = [across.x, across.y].map(|(drag, std)| with_error(drag, std));
+    if across.differs() {
+        source.note(format!("{name} is the same along x and y: from the mean of {x} and {y} N per m/s"));
     }
     if value > MOST_MOMENTUM {
         source.note(format!(
@@ -102,12 +159,16 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
         ));
         return Coefficient::Beyond;
     }
-    let of = format!("{} along x and {} along y of the body", with_error(dx, std_x), with_error(dy, std_y));
     // the answer has one figure for all axes that agree, also z, which the estimator does not take
-    let z = if determined.std("linear_drag", "dz").is_some() { ", without the report's z" } else { "" };
+    let has_z = determined.std("linear_drag", "dz").is_some();
+    let z = if has_z {
+        ", without the report's z: its one figure for x, y and z has a smaller error, as if those of the axes were independent"
+    } else {
+        ""
+    };
     let why = format!(
-        "drag at hover of {} N per m/s ({of}{z}) over the mass of {mass_kg:.4} kg, {air}; wind was estimated with it where \
-         there was one",
+        "drag at hover of {} N per m/s ({x} along x and {y} along y of the body{z}) over the mass of {mass_kg:.4} kg, {air}; wind was \
+         estimated with it where there was one",
         with_error(mean, mean_std)
     );
     let std = value * (mean_std / mean).hypot(mass_std);
@@ -122,14 +183,23 @@ fn bluff(
     along: usize,
 ) -> Coefficient {
     let (axis, name) = (["cx", "cy"][along], names.ballistic[along]);
+    if !source.has("quadratic_drag") {
+        return Coefficient::Absent;
+    }
+    let said = format!("the drag with the square of the airspeed along {}", ["x", "y"][along]);
     let (mass_kg, mass_std) = mass(source, determined);
-    let Some(std) = determined.std("quadratic_drag", axis) else { return Coefficient::Absent };
     let drag = source.take("quadratic_drag", axis);
+    let Some(std) = determined.std("quadratic_drag", axis) else { return without_error(&said) };
     let (air_ratio, air) = air(source);
     let value = 0.5 * AIR_DENSITY_KG_M3 * air_ratio * mass_kg / drag;
-    // so slight that the autopilot has no number for it
-    if drag < TOLD * std || value > names.most_ballistic {
-        return Coefficient::Absent;
+    if drag < HELPS * std {
+        return hardly_known(&said, drag, std, "N/(m/s)^2");
+    }
+    if value > names.most_ballistic {
+        return Coefficient::Unsure(format!(
+            "{said} is so slight that it would need {value:.0} kg/m^2, and the autopilot documents up to {}",
+            names.most_ballistic
+        ));
     }
     if value <= LEAST_BALLISTIC {
         source.note(format!(
@@ -174,4 +244,23 @@ fn tell_form(source: &mut Source<'_>, table: &Table) {
 fn mass(source: &Source<'_>, determined: &Determined<'_>) -> (f64, f64) {
     let mass_kg = source.vehicle.body.mass_kg;
     (mass_kg, determined.own("mass").map_or(0.0, |(value, std)| std / value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_of_a_mean_is_that_of_its_axes_and_of_how_they_go_together() {
+        let of = |correlation| Across { x: (0.3, 0.04), y: (0.4, 0.04), correlation }.mean();
+        // (0.04^2 + 0.04^2) / 4 is 0.0283^2, and two errors that are the same stay 0.04
+        for (correlation, std) in [(0.0, 0.028_284), (1.0, 0.04), (-1.0, 0.0)] {
+            assert!((of(correlation).0 - 0.35).abs() < 1e-12, "{correlation}");
+            assert!((of(correlation).1 - std).abs() < 1e-6, "{correlation}: {}", of(correlation).1);
+        }
+        // axes that differ count alike: 0.3 and 0.9 by 0.01 and 0.03
+        let apart = Across { x: (0.3, 0.01), y: (0.9, 0.03), correlation: 1.0 };
+        assert!(apart.differs() && (apart.mean().0 - 0.6).abs() < 1e-12);
+        assert!((apart.mean().1 - 0.02).abs() < 1e-12);
+    }
 }

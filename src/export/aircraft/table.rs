@@ -1,6 +1,7 @@
 //! The autopilots for whose parameters a model is written, one table each.
 
 use crate::autopilot::Autopilot;
+use crate::vehicle::Vehicle;
 
 /// An autopilot's parameters that can follow from a model.
 pub(super) struct Table {
@@ -87,6 +88,15 @@ impl Table {
     /// The table of an autopilot; `None` of one whose parameters are not known.
     pub(super) fn of(autopilot: Autopilot) -> Option<&'static Self> {
         TABLES.iter().find(|table| table.autopilot == autopilot)
+    }
+
+    /// The autopilot whose parameter the vehicle's guesses name, where it is another one than this: its name, and that parameter.
+    pub(super) fn other_of(&self, vehicle: &Vehicle) -> Option<(&'static str, &'static str)> {
+        let others = TABLES.iter().filter(|table| table.autopilot != self.autopilot);
+        let named = |name: &str| vehicle.guesses.iter().any(|guess| guess.why.contains(name));
+        let mut each =
+            others.flat_map(|table| [table.thrust.curve, table.thrust.hover].map(|name| (table.name, name)));
+        each.find(|(_, name)| named(name))
     }
 
     /// PX4: its allocation holds places and coefficients of the rotors, and its file types.

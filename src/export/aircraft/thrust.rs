@@ -7,9 +7,9 @@ use super::determined::Determined;
 use super::parameter::AircraftParameter;
 use super::table::{Table, ThrustNames};
 use crate::export::source::Source;
-use crate::text::with_error;
+use crate::text::{significant, with_error};
 use crate::units::{AIR_DENSITY_KG_M3, air_density_ratio};
-use crate::vehicle::ThrustLaw;
+use crate::vehicle::{Guessed, ThrustLaw, Vehicle};
 
 /// A rotor's thrust about hover: its command there, and by how many per cent the thrust grows with one per cent of command.
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +41,10 @@ pub(super) fn thrust(
     let propulsion = source.vehicle.propulsion;
     // one rotor that gives less needs more of the command
     let more = hover_commands(source);
-    let command = propulsion.command_from_thrust(more * source.airframe.hover_thrust_n);
+    let flown = determined.hover_command();
+    let by_model = propulsion.command_from_thrust(more * source.airframe.hover_thrust_n);
+    // what was flown needs no curve
+    let command = flown.map_or(by_model, |(command, _)| command);
     let stated = match propulsion.law {
         ThrustLaw::Speed { .. } => 1.0,
         ThrustLaw::Curve { expo, .. } => expo,
@@ -51,8 +54,10 @@ pub(super) fn thrust(
     let curve = curve(source, determined, law, names);
     let factor = curve.as_ref().map_or(stated, |curve| curve.value);
     let factor_std = curve.as_ref().and_then(|curve| curve.std).unwrap_or(0.0);
+    let flown_std = flown.map(|(_, std)| std);
+    let behind = Behind { factor, factor_std, is_written: curve.is_some(), command, flown_std };
     parameters.extend(curve);
-    parameters.extend(hover(source, determined, (factor, factor_std, command), names));
+    parameters.extend(hover(source, determined, &behind, names));
     parameters.extend(battery(source, determined, (factor, command), table));
     parameters
 }
@@ -97,21 +102,61 @@ fn curve(
     Some(AircraftParameter::number(names.curve, (value, value_std), "-", why))
 }
 
+/// Largest relative standard error of a hover throttle that is written. Autopilots learn it in flight, and find it by themselves from a
+/// value that is 5 % off.
+const MOST_HOVER_STD: f64 = 0.05;
+
+/// The curve behind which the hover throttle is a share of thrust.
+struct Behind {
+    factor: f64,
+    factor_std: f64,
+    /// it was identified, and the file sets it
+    is_written: bool,
+    /// of the motors at hover
+    command: f64,
+    /// its standard error, where it was flown and is not from the model
+    flown_std: Option<f64>,
+}
+
+impl Behind {
+    /// Standard error of the share of thrust at hover, -. A command that was flown is behind the curve that the autopilot has, so that
+    /// the curve's own error is none of it.
+    fn command_std(&self, determined: &Determined<'_>) -> Option<f64> {
+        let Self { factor, factor_std, command, .. } = *self;
+        if let Some(std) = self.flown_std {
+            return Some((1.0 - factor + 2.0 * factor * command) * std);
+        }
+        let by_load = share(factor, command) * determined.load_relative_std()?;
+        Some(by_load.hypot(factor_std * command * (1.0 - command)))
+    }
+
+    /// What is said of it, `name` being the autopilot's parameter.
+    fn words(&self, name: &str) -> String {
+        let factor = self.factor;
+        if self.is_written {
+            format!("with {name} = {factor:.3}")
+        } else {
+            format!("for a vehicle that has {name} = {factor:.3}, which this file does not set")
+        }
+    }
+}
+
 fn hover(
     source: &mut Source<'_>,
     determined: &Determined<'_>,
-    (factor, factor_std, command): (f64, f64, f64),
+    behind: &Behind,
     names: &ThrustNames,
 ) -> Option<AircraftParameter> {
-    let Some(load_std) = determined.load_relative_std() else {
+    let Some(command_std) = behind.command_std(determined) else {
         source.note(format!(
             "{} does not follow from this model: neither mass nor thrust was identified with a standard error",
             names.hover
         ));
         return None;
     };
+    let command = behind.command;
     let (air_ratio, air) = air(source.altitude_m, names.by_density);
-    let value = air_ratio * share(factor, command);
+    let value = air_ratio * share(behind.factor, command);
     let (least, most) = names.hover_bounds;
     if !(least..=most).contains(&value) {
         source.note(format!(
@@ -120,17 +165,58 @@ fn hover(
         ));
         return None;
     }
-    let by_curve = air_ratio * factor_std * command * (1.0 - command);
-    let voltage = source.value("battery_sag", "full_voltage");
-    let voltage = voltage.map_or_else(
-        || "at the battery voltage of the flight (the model file does not hold the voltage)".to_owned(),
-        |full_v| format!("at a battery voltage of {full_v:.2} V"),
-    );
-    let why = format!(
-        "weight of {:.4} kg over full thrust of all rotors {voltage}, with {} = {factor:.3}; {air}",
-        source.vehicle.body.mass_kg, names.curve
-    );
-    Some(AircraftParameter::number(names.hover, (value, (value * load_std).hypot(by_curve)), "-", why))
+    let std = air_ratio * command_std;
+    if std > MOST_HOVER_STD * value {
+        let why = too_rough((value, std), &cause(source.vehicle, determined, behind));
+        source.note(format!("{} {why}", names.hover));
+        return None;
+    }
+    let what = match behind.flown_std {
+        Some(_) => "the motors' command at hover, as flown",
+        None => "weight over full thrust of all rotors",
+    };
+    let why = format!("{what}, {}, {}; {air}", held_at(source, determined), behind.words(names.curve));
+    Some(AircraftParameter::number(names.hover, (value, std), "-", why))
+}
+
+/// At which voltage and mass a hover throttle holds.
+fn held_at(source: &Source<'_>, determined: &Determined<'_>) -> String {
+    let mass = significant(source.vehicle.body.mass_kg, 4);
+    // full thrust of a model of the battery is that at its full voltage
+    let voltage_v = source.value("battery_sag", "full_voltage").or_else(|| determined.battery_voltage_v());
+    voltage_v.map_or_else(
+        || format!("at {mass} kg and the battery voltage of the flight (the model file does not hold the voltage)"),
+        |volts| format!("at {volts:.1} V and {mass} kg"),
+    )
+}
+
+/// Why a hover throttle with this standard error is not written.
+fn too_rough((value, std): (f64, f64), cause: &str) -> String {
+    format!(
+        "is not written: it would be {}, an error of {:.0} %, and the autopilot's own value may be nearer than with more than {:.0} %. {cause}",
+        with_error(value, std),
+        100.0 * std / value,
+        100.0 * MOST_HOVER_STD
+    )
+}
+
+/// On what most of a hover throttle's error rests, and what makes it smaller.
+fn cause(vehicle: &Vehicle, determined: &Determined<'_>, behind: &Behind) -> String {
+    // how far the thrust at hover moves, at one full thrust, with one standard error of the curve
+    let by_guess = vehicle.guessed(Guessed::Expo) * behind.command * (1.0 - behind.command)
+        / share(behind.factor, behind.command);
+    let load_std = determined.load_relative_std().unwrap_or(0.0);
+    if !behind.is_written && by_guess > 0.5 * load_std {
+        format!(
+            "Most of it is the thrust curve's, which is a guess of +- {:.0} %: measure it on a thrust stand and draft the vehicle file \
+             with --thrust-stand",
+            100.0 * vehicle.guessed(Guessed::Expo)
+        )
+    } else if determined.own("mass").is_some() {
+        "Weigh the vehicle and state its mass with anchor = \"mass\", or fly longer".to_owned()
+    } else {
+        "Fly longer".to_owned()
+    }
 }
 
 /// What a hover throttle is multiplied by for the air of the flight's place, and the reason.
@@ -199,6 +285,22 @@ mod tests {
         assert!(
             (air_density_ratio(540.0) - 0.95).abs() < 2e-3 && (air_density_ratio(1100.0) - 0.9).abs() < 2e-3
         );
+    }
+
+    #[test]
+    fn a_rough_hover_throttle_says_its_error() {
+        let told = too_rough((0.5, 0.07), "Fly longer");
+        assert!(told.starts_with("is not written: it would be 0.50 +- 0.07, an error of 14 %"), "{told}");
+        assert!(told.ends_with("with more than 5 %. Fly longer"), "{told}");
+    }
+
+    #[test]
+    fn a_curve_that_is_assumed_is_what_the_vehicle_must_have() {
+        let of =
+            |is_written| Behind { factor: 0.65, factor_std: 0.0, is_written, command: 0.4, flown_std: None };
+        assert_eq!(of(true).words("MOT_THST_EXPO"), "with MOT_THST_EXPO = 0.650");
+        let assumed = of(false).words("MOT_THST_EXPO");
+        assert_eq!(assumed, "for a vehicle that has MOT_THST_EXPO = 0.650, which this file does not set");
     }
 
     #[test]

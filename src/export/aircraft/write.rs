@@ -40,17 +40,26 @@ pub fn aircraft_parameters(
     let determined = Determined::of(identified);
     let mut source = Source::new(vehicle, effects, identified)?;
     source.altitude_m = altitude_m;
+    if let Some((other, named)) = table.other_of(vehicle) {
+        source.note(format!(
+            "the model is of a vehicle with {other} (its guesses name {named}), and these parameters are for {}: another autopilot",
+            table.name
+        ));
+    }
     let mut parameters = thrust(&mut source, &determined, table);
     parameters.extend(drag(&mut source, &determined, table));
     parameters.extend(geometry(&mut source, &determined, table));
-    source.note(table.never);
     if parameters.is_empty() {
         return Err(ExportError::Unfit {
             format: table.format,
             expected: "a model that `mavid identify` or `mavid explain` wrote, with standard errors",
-            got: "no identified value that the autopilot has a parameter for".to_owned(),
+            got: format!(
+                "no identified value that the autopilot has a parameter for: {}",
+                source.notes().join("; ")
+            ),
         });
     }
+    source.note(table.never);
     let exported = source.finish(|notes| file(&vehicle.name, &parameters, notes, table));
     Ok(AircraftParameters { parameters, left_out: exported.left_out, text: exported.text })
 }

@@ -4,8 +4,8 @@ use crate::physics::equation::documented;
 use crate::physics::{Bounds, Condition, Effect, Hook, MAX_ROTORS, Own, Parameter, Rotors, Wrench};
 
 documented! {
-    /// `T_i = factor T`, and the reaction torque changes by the same factor, for the rotor of this number. Rotors are
-    /// counted from 0 in the order of the vehicle file.
+    /// `T_i = factor T`, and the reaction torque changes by the same factor, for the rotor of this number. In
+    /// files, rotors are counted from 0 in the order of the vehicle file: the autopilot's motor 1 is 0.
     #[derive(Debug, Clone, Copy)]
     pub struct WeakRotor;
 }

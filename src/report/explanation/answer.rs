@@ -1,10 +1,10 @@
 //! The answer in one sentence.
 
+use super::limits::{unseen_of_usual_size, would_show};
+use super::list::{list, list_or};
 use super::whereabouts::whereabouts;
 use crate::diagnose::holdout::HoldoutFit;
-use crate::diagnose::signatures::ALL;
-use crate::diagnose::wording::Words;
-use crate::diagnose::{Along, DetectionLimit, Named, Verdict, brief, called, clause, limit};
+use crate::diagnose::{Along, Named, Verdict, brief, called, clause};
 use crate::report::number::significant;
 use crate::study::{ExplainStudy, Predicted, Refuted, ValidationData};
 use crate::vehicle::AXIS_NAMES;
@@ -221,13 +221,8 @@ fn whose(study: &ExplainStudy) -> &'static str {
 }
 
 fn nothing(study: &ExplainStudy) -> String {
-    let seen: Vec<String> = ranked(|words| words.told_if_absent)
-        .iter()
-        .filter_map(|id| detection_limit(study, id))
-        .filter(|limit| limit.is_possible() && limit.usual.is_none_or(|usual| limit.limit < usual))
-        .map(|of| limit(&of))
-        .take(3)
-        .collect();
+    let limits = &study.explanation.limits;
+    let seen = would_show(limits);
     let other = study
         .other_vehicle()
         .map_or_else(String::new, |by| format!(" But {} ({by}), so nothing is shown on it.", whose(study)));
@@ -246,15 +241,7 @@ fn nothing(study: &ExplainStudy) -> String {
     }
     let would =
         if seen.is_empty() { String::new() } else { format!("; it would have shown {}", list_or(&seen)) };
-    let unseen: Vec<String> = ranked(|words| words.expected_in_motion)
-        .iter()
-        .filter(|id| {
-            let limit = detection_limit(study, id);
-            limit.is_some_and(|limit| limit.usual.is_some_and(|usual| limit.limit > usual))
-        })
-        .map(|id| called(id).to_owned())
-        .collect();
-    let would = match unseen.as_slice() {
+    let would = match unseen_of_usual_size(limits).as_slice() {
         [] => would,
         unseen => format!("{would}, but not {} of usual size", list_or(unseen)),
     };
@@ -346,35 +333,6 @@ fn each_alone(study: &ExplainStudy) -> String {
         " Alone, {}. No one model explains these flights together: explain each by itself.",
         each.join("; ")
     )
-}
-
-/// The largest limit of an effect's parameters.
-fn detection_limit(study: &ExplainStudy, id: &str) -> Option<DetectionLimit> {
-    let limits = study.explanation.limits.iter().filter(|limit| limit.id == id);
-    limits.copied().max_by(|a, b| a.limit.total_cmp(&b.limit))
-}
-
-/// Identifiers of the effects that have such a rank, in its order.
-fn ranked(rank: fn(&Words) -> Option<usize>) -> Vec<&'static str> {
-    let mut all: Vec<(usize, &str)> =
-        ALL.iter().filter_map(|signature| Some((rank(&signature.words)?, signature.id()))).collect();
-    all.sort_unstable();
-    all.into_iter().map(|(_, id)| id).collect()
-}
-
-pub(super) fn list(parts: &[String]) -> String {
-    joined(parts, "and")
-}
-
-fn list_or(parts: &[String]) -> String {
-    joined(parts, "or")
-}
-
-fn joined(parts: &[String], word: &str) -> String {
-    match parts {
-        [most @ .., last] if !most.is_empty() => format!("{} {word} {last}", most.join(", ")),
-        all => all.concat(),
-    }
 }
 
 /// The quantity on which an empirical term depends, in words.

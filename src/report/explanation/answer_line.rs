@@ -1,6 +1,7 @@
 //! The answer in one line of a terminal.
 
-use super::answer::{list, much_left};
+use super::answer::much_left;
+use super::list::list;
 use crate::diagnose::{Verdict, brief};
 use crate::study::ExplainStudy;
 

@@ -3,10 +3,12 @@
 use super::along::along_section;
 use super::answer::answer;
 use super::hold_out::{hold_out, hold_out_details};
+use super::limits::{named_from, not_possible};
 use super::motor::{motor, sizes};
 use super::pictures;
 use super::rivals::rival;
-use super::text::{ERRORS, after, scale, unseen};
+use super::shown_by::shown_by;
+use super::text::{ERRORS, after, scale};
 use crate::diagnose::holdout::RateLaw;
 use crate::diagnose::{Empirical, NO_LATENCY, Named, Slight, Verdict, called, clause};
 use crate::report::html::{
@@ -88,13 +90,12 @@ fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
             None => vec![text(p.name), number(with_error(p.value, p.std)), text(spoken(p.unit))],
         })
         .collect();
-    let strength = &effect.strength;
     let caption = format!(
-        "{}: z {:.1}, chance {}, {} % of the residual energy, change of BIC {}",
+        "{}: z {:.1}, chance {}, {}, change of BIC {}",
         effect.id,
-        strength.z,
+        effect.strength.z,
         chance(study.p_value(effect)),
-        significant(100.0 * strength.gain, 2),
+        shown_by(effect),
         significant(study.delta_bic(effect), 3)
     );
     html! {
@@ -230,7 +231,7 @@ fn evidence(study: &ExplainStudy) -> Markup {
     let gates = &study.given.settings.gates;
     let caption = format!(
         "A name needs z above {}, distributed over the flight, {} % of the residual energy, and a physically possible \
-         size",
+         size. A lag, a delay and gusts have tests of their own",
         gates.z,
         100.0 * gates.gain
     );
@@ -258,16 +259,9 @@ fn next_flight(study: &ExplainStudy) -> Markup {
 }
 
 fn limits(study: &ExplainStudy) -> Markup {
-    let possible: Vec<_> = study.explanation.limits.iter().filter(|limit| limit.is_possible()).collect();
-    let rows: Vec<Vec<Cell>> = possible
-        .chunk_by(|one, next| one.id == next.id && one.unit == next.unit)
-        .filter_map(|of| {
-            let first = of.first()?;
-            let each = of.iter().map(|limit| format!("{} {}", limit.parameter, significant(limit.limit, 2)));
-            let from = format!("{} {}", each.collect::<Vec<_>>().join(", "), spoken(first.unit));
-            Some(vec![text(called(first.id)), text(first.id), text(from.trim_end())])
-        })
-        .collect();
+    let limits = &study.explanation.limits;
+    let row = |(id, from): (&'static str, String)| vec![text(called(id)), text(id), text(from)];
+    let rows: Vec<Vec<Cell>> = named_from(limits).into_iter().map(row).collect();
     let content = table(
         &format!("The smallest size of each effect that {} would have shown", study.these_flights()),
         &["effect", "identifier", "from"],
@@ -275,7 +269,7 @@ fn limits(study: &ExplainStudy) -> Markup {
     );
     let content = html! {
         (content)
-        @if let Some(unseen) = unseen(study) { (note(&unseen)) }
+        @if let Some(unseen) = not_possible(limits) { (note(&unseen)) }
     };
     section("What else would have been seen", &content)
 }

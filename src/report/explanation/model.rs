@@ -50,6 +50,7 @@ fn identified(text: &mut String, study: &ExplainStudy) {
     } else {
         writeln!(text, "{}", model_parts::not_determined("latency", NO_LATENCY))
     };
+    text.push_str(&model_parts::as_flown(study.given.battery_voltage_v, study.given.hover_command));
     text.push_str(&correlation_lines(&study.correlation()));
     for effect in &study.effects {
         let _ = writeln!(text, "\n[identified.effects.{}]", effect.id);

@@ -6,13 +6,13 @@ use crate::report::chart::inline;
 use crate::report::html::{figure, note, section};
 use crate::report::number::significant;
 use crate::report::vehicle_drawing::{MEANT, Mark, vehicle_drawing};
-use crate::study::{ExplainStudy, Figures};
+use crate::study::{ExplainStudy, Figures, RecordedAndSimulated};
 use maud::{Markup, html};
 
 /// Number of flights whose recorded and simulated motion is drawn.
 const DRAWN: usize = 3;
-const RECORDED: &str = "Weighted with the weak form's kernel of 0.4 s. Shaded: the error of the rigid body alone is larger than \
-                        noise.";
+const RECORDED: &str = "Weighted with the weak form's kernel of 0.4 s.";
+const SHADED: &str = "Shaded: the error of the rigid body alone is larger than noise.";
 const PORTRAIT: &str = "Dots: recorded, less everything else of the model, mean in bins with 95 % bands of a bootstrap over the \
                         flight's periods. Line: what this effect does in the model found. Without the effect the dots would lie \
                         at zero.";
@@ -27,7 +27,7 @@ pub(super) fn proof(study: &ExplainStudy, numbers: &Figures) -> Markup {
             "Mean residual in bins of the state, with 95 % bands of a bootstrap over the flight's periods.",
         )
     } else if let Some(of) = numbers.recorded.first() {
-        figure(&inline(&figures::recorded_and_simulated(of, figures::model_after(study))), RECORDED)
+        recorded(of, figures::model_after(study))
     } else {
         Markup::default()
     };
@@ -36,6 +36,16 @@ pub(super) fn proof(study: &ExplainStudy, numbers: &Figures) -> Markup {
         p.note.live-only { "Drag over a plot to zoom in, double-click to see all. The cursor shows the values." }
     };
     section("What shows it", &content)
+}
+
+/// Recorded and simulated motion.
+fn recorded(of: &RecordedAndSimulated, after: &str) -> Markup {
+    figure(&inline(&figures::recorded_and_simulated(of, after)), &recorded_caption(&of.spans_s))
+}
+
+/// What is shaded is said where something is: `spans_s` are the times of it, s.
+fn recorded_caption(spans_s: &[[f64; 2]]) -> String {
+    if spans_s.is_empty() { RECORDED.to_owned() } else { format!("{RECORDED} {SHADED}") }
 }
 
 fn portrait_caption(study: &ExplainStudy, of: &Portrait) -> String {
@@ -73,7 +83,7 @@ pub(super) fn places(study: &ExplainStudy, numbers: &Figures) -> Markup {
     let shown_above = numbers.portrait.is_none() && (numbers.followed.is_none() || !study.effects.is_empty());
     let content = html! {
         @for of in numbers.recorded.iter().take(DRAWN).skip(usize::from(shown_above)) {
-            (figure(&inline(&figures::recorded_and_simulated(of, after)), RECORDED))
+            (recorded(of, after))
         }
         @if let Some(of) = &study.path() {
             (figure(&figures::path(of, after).inline(), ""))
@@ -109,4 +119,15 @@ pub(super) fn details(study: &ExplainStudy, numbers: &Figures) -> Markup {
         (note("The kernel of the weak form averages over 0.4 s: each point holds a fifth of a second before and after it."))
     };
     section("More pictures", &content)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shade_is_explained_where_there_is_one() {
+        assert_eq!(recorded_caption(&[]), RECORDED);
+        assert!(recorded_caption(&[[1.0, 2.5]]).ends_with(SHADED));
+    }
 }

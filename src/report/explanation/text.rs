@@ -2,8 +2,10 @@
 
 use super::along::along_lines;
 use super::answer::answer;
+use super::limits::{named_from, not_possible};
 use super::motor::{motor, sizes};
 use super::rivals::rival;
+use super::shown_by::shown_by;
 use crate::diagnose::{NO_LATENCY, Named, Verdict, clause};
 use crate::estimate::{Finding, ThrustScale};
 use crate::note::Note;
@@ -71,13 +73,12 @@ fn effect_lines(page: &mut String, study: &ExplainStudy, effect: &Named) {
         };
         let _ = writeln!(page, "    {:<16}{value:>22}  {unit}", p.name);
     }
-    let strength = &effect.strength;
     let _ = writeln!(
         page,
-        "    evidence: z {:.1}, p {}, {} % of the residual energy",
-        strength.z,
+        "    evidence: z {:.1}, p {}, {}",
+        effect.strength.z,
         chance(study.p_value(effect)),
-        significant(100.0 * strength.gain, 2)
+        shown_by(effect)
     );
     for other in &effect.confusable_with {
         let _ = writeln!(page, "    {}", rival(study, other));
@@ -247,26 +248,12 @@ fn limit_lines(page: &mut String, study: &ExplainStudy) {
         return;
     }
     let _ = writeln!(page, "\n  what would have been named in {}", study.these_flights());
-    for limit in study.explanation.limits.iter().filter(|limit| limit.is_possible()) {
-        let _ = writeln!(
-            page,
-            "    {:<20}{:<14} from {:>9} {}",
-            limit.id,
-            limit.parameter,
-            significant(limit.limit, 2),
-            limit.unit
-        );
+    for (id, from) in named_from(&study.explanation.limits) {
+        let _ = writeln!(page, "    {id:<20} from {from}");
     }
-    if let Some(unseen) = unseen(study) {
+    if let Some(unseen) = not_possible(&study.explanation.limits) {
         let _ = writeln!(page, "    {unseen}");
     }
-}
-
-/// What this flight would not have shown even at the greatest size that is searched.
-pub(super) fn unseen(study: &ExplainStudy) -> Option<String> {
-    let unseen = study.explanation.limits.iter().filter(|limit| !limit.is_possible());
-    let each: Vec<String> = unseen.map(|limit| format!("{} {}", limit.id, limit.parameter)).collect();
-    (!each.is_empty()).then(|| format!("not at any possible size: {}", each.join(", ")))
 }
 
 fn quality_lines(page: &mut String, study: &ExplainStudy) {

@@ -7,7 +7,8 @@ use crate::estimate::{
     Finding, Identification, MethodResult, NAMES, THETA, ThrustScale, UNITS, identified_vehicle,
 };
 use crate::report::chart::{Line, Panel};
-use crate::report::model_parts::{correlation_lines, effect_tables, not_determined, provenance};
+use crate::report::model_parts::{as_flown, correlation_lines, effect_tables, not_determined, provenance};
+use crate::signals::{airborne_voltage_v, hover_command};
 use crate::study::{IdentifyStudy, WithEffects};
 use std::fmt::Write;
 
@@ -40,10 +41,16 @@ pub fn identified_model(study: &IdentifyStudy) -> Result<String, ConfigError> {
     }
     let _ = writeln!(text, "# what the flight did not determine keeps its nominal value in [body]");
     text.push_str(&identified_entries(best, scale));
+    text.push_str(&flown(study));
     text.push_str(&correlation_lines(&study.correlation()));
     text.push_str(&provenance(&study.inputs));
     let _ = writeln!(text, "cutoff_hz = {:.4}", study.identification.cutoff_hz);
     Ok(text)
+}
+
+/// What the flights were flown with.
+fn flown(study: &IdentifyStudy) -> String {
+    as_flown(airborne_voltage_v(&study.flights), hover_command(&study.flights, &study.vehicle))
 }
 
 /// The vehicle with the effects that were identified together with it.
@@ -62,6 +69,7 @@ fn model_with(study: &IdentifyStudy, with: &WithEffects) -> Result<String, Confi
     } else {
         writeln!(text, "{}", not_determined("latency", NO_LATENCY))
     };
+    text.push_str(&flown(study));
     text.push_str(&correlation_lines(&study.correlation()));
     for effect in &joint.effects {
         let _ = writeln!(text, "\n[identified.effects.{}]\nz = {:e}", effect.effect.id(), effect.z);

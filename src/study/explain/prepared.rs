@@ -15,7 +15,7 @@ use crate::estimate::{
     Contradiction, NAMES, contradicted, contradicting_flights, contradicts_file, moved_by_guessed_curve,
 };
 use crate::note::Note;
-use crate::signals::Signals;
+use crate::signals::{Signals, airborne_voltage_v, hover_command};
 use crate::study::flights::{Prepared, names};
 use crate::study::{Progress, Stage, StudyError};
 use crate::vehicle::Vehicle;
@@ -219,6 +219,8 @@ impl Task<'_> {
             vehicle: self.asked.vehicle.clone(),
             inputs: flights.inputs.clone(),
             quality: flights.signals.iter().map(|signals| signals.quality.clone()).collect(),
+            battery_voltage_v: airborne_voltage_v(&flights.signals),
+            hover_command: hover_command(&flights.signals, self.asked.vehicle),
             by_guessed_curve: moved_by_guessed_curve(&flights.signals, self.asked.vehicle),
             contradicting,
             settings,

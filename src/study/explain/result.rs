@@ -39,6 +39,10 @@ pub struct Given {
     pub inputs: Vec<InputFile>,
     /// where their signals come from
     pub quality: Vec<Quality>,
+    /// V, mean of the battery in the air over those flights; `None` where none was recorded
+    pub battery_voltage_v: Option<f64>,
+    /// command of the motors at hover (0 to 1) and its standard error, where those flights tell it
+    pub hover_command: Option<(f64, f64)>,
     /// how far mass and inertia move with one standard error of a guessed thrust curve
     pub by_guessed_curve: Option<MovedByCurve>,
     /// flights whose masses or moments of inertia, by the rigid body alone, contradict those of the first one
