@@ -79,6 +79,7 @@ mod substitution;
 mod tested;
 mod thrust_slope;
 mod timing;
+mod told_apart;
 mod torque_law;
 mod torques_by_instruments;
 mod trace;

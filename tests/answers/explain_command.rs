@@ -217,12 +217,12 @@ fn a_hold_out_of_another_vehicle_is_found_out_and_said() {
         warning
             .as_str()
             .unwrap()
-            .starts_with("the hold-out is not of the vehicle that was identified: mass 0.9")
+            .starts_with("the hold-out is not of the vehicle that was identified: mass 2.5")
     });
     assert!(said, "{warnings:?}");
     let answer = document["answer"].as_str().unwrap();
     assert!(
-        answer.contains("the hold-out is of another vehicle (mass 0.9") && !answer.contains("falls"),
+        answer.contains("the hold-out is of another vehicle (mass 2.5") && !answer.contains("falls"),
         "{answer}"
     );
     assert!(document["fit"]["holdout"]["improvement_percent"].is_null());

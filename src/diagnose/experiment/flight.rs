@@ -1,7 +1,7 @@
 //! The next flight and its expected results.
 
-use crate::diagnose::named::apart_from;
 use crate::diagnose::signatures::latency_kind;
+use crate::diagnose::told_apart::apart_from;
 use crate::trajectory::FourierTrajectory;
 use crate::vehicle::Limits;
 

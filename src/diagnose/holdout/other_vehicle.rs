@@ -13,6 +13,7 @@ use crate::diagnose::signature::EffectTerm;
 use crate::diagnose::tested::Search;
 use crate::estimate::{INERTIA_ENTRIES, NAMES, UNITS, depends_on_band, inertia_by_wider_window};
 use crate::physics::PhysicsError;
+use crate::text::with_error;
 use crate::vehicle::Vehicle;
 
 /// Least ratio of the residual of the held-out flight's own fit to that of the identified flights. A rotor 10 % weak, a
@@ -217,13 +218,11 @@ pub(super) fn speed_share(ready: &[Ready], explanation: &Explanation) -> f64 {
 
 fn described(agreement: &Agreement) -> String {
     format!(
-        "{} {:.4} +- {:.4} {} there, {:.4} +- {:.4} here ({:+.0} %, {:.0} sigma)",
+        "{} {}{} there, {} here ({:+.0} %, {:.0} sigma)",
         agreement.name,
-        agreement.held_out,
-        agreement.held_out_std,
-        agreement.unit,
-        agreement.identified,
-        agreement.identified_std,
+        with_error(agreement.held_out, agreement.held_out_std),
+        if agreement.unit.is_empty() { String::new() } else { format!(" {}", agreement.unit) },
+        with_error(agreement.identified, agreement.identified_std),
         100.0 * agreement.share(),
         agreement.sigmas().abs()
     )
