@@ -1,7 +1,7 @@
 //! Numbers of a named effect in words.
 
 use super::named::{Named, NamedParameter};
-use crate::text::{significant, spoken, with_error};
+use crate::text::{list, significant, spoken, with_error};
 use crate::vehicle::AXIS_NAMES;
 
 /// One number if the axes agree within two standard errors, or there is one axis; otherwise one for each axis. Of the parameters
@@ -20,13 +20,6 @@ pub fn axes(named: &Named, names: &[&str], unit: &str) -> String {
     }
     let each = known.iter().map(|(axis, p)| format!("{} along {axis}", with_error(p.value, p.std)));
     format!("{} {unit} of the body", list(&each.collect::<Vec<_>>()))
-}
-
-fn list(parts: &[String]) -> String {
-    match parts {
-        [most @ .., last] if !most.is_empty() => format!("{} and {last}", most.join(", ")),
-        all => all.concat(),
-    }
 }
 
 /// A size across the vehicle, beside which stands the one along body z.

@@ -1,12 +1,12 @@
 //! The answer in one sentence.
 
 use super::limits::{unseen_of_usual_size, would_show};
-use super::list::{list, list_or};
 use super::whereabouts::whereabouts;
 use crate::diagnose::holdout::HoldoutFit;
 use crate::diagnose::{Along, Named, Verdict, brief, called, clause};
 use crate::report::number::significant;
 use crate::study::{ExplainStudy, Predicted, Refuted, ValidationData};
+use crate::text::{list, list_or};
 use crate::vehicle::AXIS_NAMES;
 
 /// Largest number of effects that are listed with their sizes.

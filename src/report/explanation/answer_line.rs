@@ -1,9 +1,9 @@
 //! The answer in one line of a terminal.
 
 use super::answer::much_left;
-use super::list::list;
 use crate::diagnose::{Verdict, brief};
 use crate::study::ExplainStudy;
+use crate::text::list;
 
 /// The answer in so many columns: with the sizes of the effects where they find room, else with their names, else with their
 /// number.

@@ -1,10 +1,10 @@
 //! What flights would have shown, in words.
 
-use super::list::list;
 use crate::diagnose::signatures::{ALL, signature_of};
 use crate::diagnose::wording::Words;
 use crate::diagnose::{DetectionLimit, called, limit};
 use crate::report::number::{significant, spoken};
+use crate::text::list;
 use crate::vehicle::AXIS_NAMES;
 
 /// Largest number of effects that the answer lists as visible.

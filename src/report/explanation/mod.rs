@@ -10,7 +10,6 @@ mod hold_out;
 mod html;
 mod json;
 mod limits;
-mod list;
 mod markdown;
 mod model;
 mod motor;

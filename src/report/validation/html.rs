@@ -7,6 +7,7 @@ use crate::report::number::significant;
 use crate::report::page::page;
 use crate::report::quality::data_quality;
 use crate::study::{ErrorTable, Rank, ValidateStudy, ValidatedFlight, lost};
+use crate::text::list;
 use maud::{Markup, html};
 
 /// The report: one file, nothing loaded from anywhere.
@@ -75,10 +76,6 @@ fn provenance(study: &ValidateStudy) -> Markup {
 /// Which model predicts best, in one sentence.
 fn answer(study: &ValidateStudy) -> String {
     let names: Vec<&str> = study.models.iter().map(|model| model.name.as_str()).collect();
-    let list = |parts: Vec<String>| match parts.as_slice() {
-        [most @ .., last] if !most.is_empty() => format!("{} and {last}", most.join(", ")),
-        all => all.concat(),
-    };
     let Some(first) = names.first().filter(|_| study.is_predicted(0)) else {
         return "Nothing could be predicted over 0.5 s; the tables say why.".to_owned();
     };
@@ -87,7 +84,7 @@ fn answer(study: &ValidateStudy) -> String {
             .half_second()
             .into_iter()
             .filter_map(|row| Some(format!("{} to {} {}", row.name, significant(row.rms[0]?, 2), row.unit)));
-        return format!("Over 0.5 s {first} predicts {}, rms.", list(errors.collect()));
+        return format!("Over 0.5 s {first} predicts {}, rms.", list(&errors.collect::<Vec<_>>()));
     };
     let changes = study.gains(best).into_iter().map(|(name, percent)| {
         let how = if percent < 0.0 { "larger" } else { "smaller" };
@@ -100,7 +97,7 @@ fn answer(study: &ValidateStudy) -> String {
         (Rank::Better, 0..=2) => format!("{name} predicts better than {first}: its"),
         (Rank::Better, count) => format!("{name} predicts best of {count} models: against {first} its"),
     };
-    format!("{verdict} 0.5 s errors are {}.", list(changes.collect()))
+    format!("{verdict} 0.5 s errors are {}.", list(&changes.collect::<Vec<_>>()))
 }
 
 fn error_table(of: &ErrorTable) -> Markup {

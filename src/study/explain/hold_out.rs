@@ -123,8 +123,7 @@ impl ExplainStudy {
     /// the hold-out is of another vehicle.
     pub(super) fn refuted_by_holdout(&self) -> Option<Refuted> {
         let named = self.explanation.named.iter();
-        let has_power = |named: &Named| self.judges(named.id);
-        if !self.explanation.named.iter().all(has_power) {
+        if !self.explanation.named.iter().all(|named| self.judges(named.id)) {
             return None;
         }
         let worse_percent = -self.holdout.as_ref()?.work_of_effects()?;

@@ -1,12 +1,14 @@
 //! Words in a row.
 
 /// `a, b and c`
-pub(super) fn list(parts: &[String]) -> String {
+#[must_use]
+pub fn list(parts: &[String]) -> String {
     joined(parts, "and")
 }
 
 /// `a, b or c`
-pub(super) fn list_or(parts: &[String]) -> String {
+#[must_use]
+pub fn list_or(parts: &[String]) -> String {
     joined(parts, "or")
 }
 
