@@ -50,6 +50,23 @@ impl<'a> Determined<'a> {
         self.own(HOVER_COMMAND).filter(|(command, _)| (0.0..=1.0).contains(command))
     }
 
+    /// What the file states of the flights that cannot be used, as sentences.
+    pub(super) fn unusable(&self) -> Vec<String> {
+        let stated = |key: &str| self.0.and_then(|table| table.get(key));
+        let hover = stated(HOVER_COMMAND).filter(|_| self.hover_command().is_none());
+        let hover = hover.map(|got| {
+            format!(
+                "{HOVER_COMMAND} in [identified] is not used: expected {{ value, std }} with a command from 0 to 1 and a standard error \
+                 above 0, got {got}"
+            )
+        });
+        let voltage = stated(BATTERY_VOLTAGE).filter(|_| self.battery_voltage_v().is_none());
+        let voltage = voltage.map(|got| {
+            format!("{BATTERY_VOLTAGE} in [identified] is not used: expected a number above 0, V, got {got}")
+        });
+        hover.into_iter().chain(voltage).collect()
+    }
+
     /// Relative standard error of weight over full thrust: of the mass, or of the thrust's scale where the mass was given.
     /// Estimators know only the ratio of both.
     pub(super) fn load_relative_std(&self) -> Option<f64> {
@@ -102,6 +119,14 @@ mod tests {
         assert_eq!(determined.battery_voltage_v(), Some(16.2));
         assert_eq!(determined.correlation("linear_drag", ["dx", "dy"]), Some(0.25));
         assert_eq!(determined.correlation("linear_drag", ["dx", "dz"]), None);
+        assert!(determined.unusable().is_empty());
+        let wrong: Table =
+            toml::from_str("battery_voltage = -3.0\nhover_command = { value = 1.7, std = 0.01 }\n").unwrap();
+        let wrong = Determined::of(Some(&wrong));
+        assert_eq!((wrong.hover_command(), wrong.battery_voltage_v()), (None, None));
+        let [hover, voltage] = wrong.unusable().try_into().unwrap();
+        assert!(hover.contains("expected { value, std }") && hover.contains("got { value = 1.7"), "{hover}");
+        assert!(voltage.ends_with("expected a number above 0, V, got -3.0"), "{voltage}");
         let without = Determined::of(None);
         assert_eq!((without.battery_voltage_v(), without.correlation("inflow", ["kz", "kz"])), (None, None));
     }

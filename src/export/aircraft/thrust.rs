@@ -41,6 +41,7 @@ pub(super) fn thrust(
     let propulsion = source.vehicle.propulsion;
     // one rotor that gives less needs more of the command
     let more = hover_commands(source);
+    determined.unusable().into_iter().for_each(|why| source.note(why));
     let flown = determined.hover_command();
     let by_model = propulsion.command_from_thrust(more * source.airframe.hover_thrust_n);
     // what was flown needs no curve
