@@ -34,6 +34,8 @@ pub struct Base {
     pub weighed_kg: Option<f64>,
     /// a simulator flew, and it leaves the gyroscopic torque out: the share that acts is estimated
     pub estimates_gyroscopic: bool,
+    /// inertia of the vehicle that the base began with, kg m^2: about its products lies what is known of them
+    pub begun_kg_m2: Matrix3<f64>,
 }
 
 /// Force, mass and inertia follow the scale of thrust; lengths, angles, times and ratios do not.
@@ -70,6 +72,7 @@ impl Base {
             effects: Vec::new(),
             weighed_kg: None,
             estimates_gyroscopic: false,
+            begun_kg_m2: vehicle.body.inertia_kg_m2,
         }
     }
 

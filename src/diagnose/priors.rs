@@ -27,8 +27,11 @@ impl Priors {
         let mut priors = Self { precision: zeros(), meat: zeros(), pull: zeros() };
         for (index, column) in nuisances.iter().enumerate() {
             let Some(std) = column.prior_std else { continue };
-            let counts =
-                if column.nuisance == Nuisance::VelocityError { alike * readings(column) } else { 1.0 };
+            let counts = match column.nuisance {
+                Nuisance::VelocityError => alike * readings(column),
+                Nuisance::Inertia(_) => alike,
+                _ => 1.0,
+            };
             priors.precision[index] = counts * std.powi(-2);
             priors.meat[index] = counts * priors.precision[index];
             priors.pull[index] = priors.precision[index] * column.prior_mean;

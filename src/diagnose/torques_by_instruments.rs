@@ -9,6 +9,7 @@ use super::evidence::weighted;
 use super::fit::{CONVERGED, Coefficients, Fitted, Newton, PASSES, linearised, step};
 use super::hausman::holds;
 use super::left_over::of_left_over;
+use super::priors::Priors;
 use super::trace::Trace;
 use crate::estimate::{Estimated, MOMENTS};
 use crate::physics::PhysicsError;
@@ -90,6 +91,8 @@ struct Projected {
     given: DMatrix<f64>,
     asked: DMatrix<f64>,
     bread: DMatrix<f64>,
+    /// what is known of each before: its pull, and its part in the variance of the scores
+    known: (DVector<f64>, DVector<f64>),
 }
 
 impl Projected {
@@ -111,7 +114,9 @@ impl Projected {
             asked.view_mut((rows.start, 0), (rows.len(), count)).copy_from(&along);
             given.view_mut((rows.start, 0), (rows.len(), count)).copy_from(&own);
         }
-        let normal = asked.tr_mul(&asked);
+        let alike = fitted.weighted.long_run_deviation().powi(2);
+        let priors = Priors::of(&fitted.rows.nuisances, fitted.coefficients.len(), alike);
+        let normal = asked.tr_mul(&asked) + DMatrix::from_diagonal(&priors.precision.select_rows(&places));
         let scale = normal.diagonal().map(f64::sqrt);
         if scale.iter().any(|scale| *scale <= 0.0) {
             return None;
@@ -119,7 +124,8 @@ impl Projected {
         let scaled = DMatrix::from_fn(count, count, |i, j| normal[(i, j)] / (scale[i] * scale[j]));
         let inverse = scaled.cholesky()?.inverse();
         let bread = DMatrix::from_fn(count, count, |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
-        Some(Self { places, given, asked, bread })
+        let known = (priors.pull.select_rows(&places), priors.meat.select_rows(&places));
+        Some(Self { places, given, asked, bread, known })
     }
 
     /// Coefficients for a column of the torque rows.
@@ -177,13 +183,12 @@ fn brought_by_latency(flights: &[Trace], fitted: &Fitted) -> Option<DVector<f64>
 /// Inertia, latency and what damps the rotation by instruments; `None` where they do not tell them apart.
 fn by_instruments(flights: &[Trace], fitted: &Fitted, newton: Newton) -> Option<Coefficients> {
     let projected = Projected::of(flights, fitted, newton)?;
-    let Projected { places, given, asked, bread } = &projected;
+    let Projected { places, given, asked, bread, known: (pull, meat) } = &projected;
     let y = of_torques(&fitted.rows.residual, flights, fitted);
-    let told = projected.part_in(&y);
+    let told = projected.part_in(&y) + bread * pull;
     let left = y - given * &told;
     let tested = Columns::of(asked, fitted.rows.len());
-    let nothing_known = DMatrix::zeros(places.len(), places.len());
-    let told_covariance = fitted.weighted.sandwich(bread, &tested, &left, &nothing_known);
+    let told_covariance = fitted.weighted.sandwich(bread, &tested, &left, &DMatrix::from_diagonal(meat));
     if told_covariance.diagonal().iter().any(|variance| variance.is_nan() || *variance <= 0.0) {
         return None;
     }
