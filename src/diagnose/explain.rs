@@ -18,7 +18,7 @@ use super::refinement::{fitted_strength, refine};
 use super::search::search;
 use super::signature::{EffectTerm, Signature};
 use super::signatures::ALL;
-use super::slight::{FoundEffect, Slight, named_and_slight};
+use super::slight::{FoundEffect, Slight, named_and_slight, stated, uncertain};
 use super::tested::{Search, Step, Tested};
 use super::torque_law::torque_law;
 use super::trace::Trace;
@@ -139,9 +139,20 @@ pub fn explain_watched(
         return Err(ExplainError::TooShort { seconds, needed_s });
     }
     let mut pace = Pace::new(tell);
-    let mut found =
-        search(&traces, vehicle, &settings.gates, (settings.signatures, &settings.refused, &mut pace))?;
-    refine((flights, &traces), vehicle, (&mut found, &settings.refused, &mut pace))?;
+    let mut refused = settings.refused.clone();
+    let found = loop {
+        let mut found =
+            search(&traces, vehicle, &settings.gates, (settings.signatures, &refused, &mut pace))?;
+        refine((flights, &traces), vehicle, (&mut found, &refused, &mut pace))?;
+        // what its size does not tell from nothing stood in the place of another one
+        match uncertain(&found.after).filter(|id| !refused.contains(id)) {
+            Some(id) => {
+                tracing::debug!(effect = id, "explained again without what is not told from nothing");
+                refused.push(id);
+            }
+            None => break found,
+        }
+    };
     let beyond = tracing::info_span!("locate").in_scope(|| beyond(&traces, &found));
     let explanation = judge(&traces, vehicle, found, beyond);
     explanation.emit();
@@ -318,25 +329,8 @@ fn names(traces: &[Trace], found: &Search) -> (Vec<Named>, Vec<Slight>) {
     let mut index = fitted.rows.nuisances.len();
     let mut found_effects = Vec::new();
     for (place, present) in fitted.base.effects.iter().enumerate() {
-        let mut parameters = Vec::new();
-        let first = index;
-        for slot in 0..present.values.len() {
-            let Some(parameter) = present.parameter(slot) else { continue };
-            let free = present.free.contains(&slot);
-            let std = if free {
-                index += 1;
-                fitted.std_of(index - 1, (present.values[slot], parameter.unit))
-            } else {
-                0.0
-            };
-            let is_amount = free && present.is_amount(slot);
-            let std = if is_amount { std.hypot(present.signature.naming.least_std) } else { std };
-            let is_shown = fitted.rows.compares_torques || !present.is_share_at_hubs(slot);
-            if is_shown && (free || (present.signature.naming.says)(present, slot)) {
-                let value = present.values[slot];
-                parameters.push(NamedParameter { name: parameter.name, value, std, unit: parameter.unit });
-            }
-        }
+        let (first, parameters) = (index, stated(fitted, present, index));
+        index += present.free.len();
         let step = found
             .steps
             .iter()

@@ -86,6 +86,15 @@ fn together(fitted: &Fitted, axis: usize, place: usize) -> f64 {
     if own > 0.0 { forces.iter().sum::<f64>() / own } else { 1.0 }
 }
 
+/// Standard error of an amount by its law and by what the vehicle's description guesses: a share of the amount, so that it says nothing
+/// against its being there. Zero of what is no amount; `column` is that of the value among the coefficients.
+pub(super) fn of_law(fitted: &Fitted, term: &EffectTerm, (slot, column): (usize, usize)) -> f64 {
+    let Some(parameter) = term.parameter(slot).filter(|_| term.is_amount(slot)) else { return 0.0 };
+    let form = FORM * together(fitted, slot, column - fitted.rows.nuisances.len());
+    let scale = if follows_force(parameter.unit) { of_scale(&fitted.base) } else { 0.0 };
+    form.hypot(scale).hypot(guessed(&fitted.base.vehicle, parameter)) * term.from_nothing(slot)
+}
+
 /// Adds the errors of the laws to those of a fit's mass, moments of inertia and sizes of effects.
 pub(super) fn add_floors(fitted: &mut Fitted) {
     add_slope(fitted);
@@ -94,12 +103,8 @@ pub(super) fn add_floors(fitted: &mut Fitted) {
     let mut index = fitted.rows.nuisances.len();
     for term in &fitted.base.effects {
         for &slot in &term.free {
-            if term.is_amount(slot) && fitted.covariance[(index, index)] > 0.0 {
-                let on_scale = term.parameter(slot).is_some_and(|of| follows_force(of.unit));
-                let guess = term.parameter(slot).map_or(0.0, |of| guessed(&fitted.base.vehicle, of));
-                let form = FORM * together(fitted, slot, index - fitted.rows.nuisances.len());
-                let law = if on_scale { form.hypot(scale) } else { form }.hypot(guess);
-                fitted.covariance[(index, index)] += (law * term.from_nothing(slot)).powi(2);
+            if fitted.covariance[(index, index)] > 0.0 {
+                fitted.covariance[(index, index)] += of_law(fitted, term, (slot, index)).powi(2);
             }
             index += 1;
         }

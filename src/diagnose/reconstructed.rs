@@ -31,6 +31,8 @@ const MOST_SCALE: f64 = 1.5;
 
 /// Standard errors by which an estimate may be beyond what is possible. The usual two.
 const BEYOND_BOUND: f64 = 2.0;
+/// The same of a law of the drag beside another one, which takes over what it gives up: the sum of both is what the flight tells.
+const BEYOND_BOUND_BESIDE_A_LAW: f64 = 10.0;
 
 /// Whether the forms of effects are open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -292,10 +294,18 @@ fn within_bounds(
     for (index, (place, slot)) in slots().enumerate() {
         let (at, present) = (1 + index, &base.effects[place]);
         let (estimate, bound) = (pooled.values[at], present.possible(slot, pooled.values[at], &base.size));
-        // a law of the drag that the search took for another one comes out at nothing; other effects are left as they were
-        let may_be_held = present.signature.is_drag();
-        let most = if may_be_held { BEYOND_BOUND * pooled.std(at) } else { 0.0 };
-        if (bound - estimate).abs() > most {
+        // what the search took for another one comes out at nothing, and then leaves the model
+        let is_drag = present.signature.is_drag();
+        let beside_a_law = is_drag
+            && base.effects.iter().any(|other| other.signature.is_drag() && other.id() != present.id());
+        let ends_at_nothing = present.is_amount(slot) && bound == present.nothing_at(slot);
+        let deviates = match (beside_a_law, is_drag || ends_at_nothing) {
+            (true, _) => BEYOND_BOUND_BESIDE_A_LAW,
+            (false, true) => BEYOND_BOUND,
+            (false, false) => 0.0,
+        };
+        if (bound - estimate).abs() > deviates * pooled.std(at) {
+            tracing::debug!(what = present.id(), estimate, std = pooled.std(at), "beyond what is possible");
             return Err(Kept::Implausible { what: present.id(), value: estimate });
         }
         held.extend((bound != estimate).then_some((at, bound)));

@@ -2,8 +2,10 @@
 
 use super::channels::Nuisance;
 use super::fit::Fitted;
+use super::floors::of_law;
+use super::gates::NAME_Z;
 use super::materiality::Materiality;
-use super::named::Named;
+use super::named::{Named, NamedParameter};
 use super::signature::EffectTerm;
 use nalgebra::DVector;
 use std::ops::Range;
@@ -54,11 +56,16 @@ pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) ->
     let mut matters: Vec<bool> = candidates
         .iter()
         .zip(&alone)
-        .map(|(of, materiality)| is_material(fitted, of, *materiality))
+        .map(|(of, materiality)| {
+            is_certain(fitted, term(of), of.columns.start) && is_material(fitted, of, *materiality)
+        })
         .collect();
     loop {
         let left = |(index, of): &(usize, &FoundEffect)| {
-            !matters[*index] && !term(of).is_of_sensors() && !term(of).is_of_every_vehicle(&fitted.base.size)
+            !matters[*index]
+                && !term(of).is_of_sensors()
+                && !term(of).is_of_every_vehicle(&fitted.base.size)
+                && is_certain(fitted, term(of), of.columns.start)
         };
         let left: Vec<(usize, &FoundEffect)> = candidates.iter().enumerate().filter(left).collect();
         let those: Vec<&FoundEffect> = left.iter().map(|(_, of)| *of).collect();
@@ -79,6 +86,64 @@ pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) ->
         }
     }
     (named, slight)
+}
+
+/// Whether the errors of an effect of several amounts leave a size: one of them, or the norm of all, is [`NAME_Z`] standard errors from
+/// nothing. It was taken for the deviate of its score, which amounts may have made that are not told beside each other; of a single amount the
+/// score is its own. Errors of laws and of guesses are shares of an amount, and say nothing against it. Its first free value has the
+/// column `first`.
+fn is_certain(fitted: &Fitted, term: &EffectTerm, first: usize) -> bool {
+    let each = term.free.iter().enumerate().filter(|(_, slot)| term.is_amount(**slot));
+    let amounts: Vec<(f64, f64)> = each
+        .map(|(index, &slot)| {
+            let column = first + index;
+            let by_law = of_law(fitted, term, (slot, column)).powi(2);
+            let variance = (fitted.covariance[(column, column)] - by_law).max(0.0);
+            (term.from_nothing(slot), variance.sqrt())
+        })
+        .collect();
+    amounts.len() < 2 || differs_from_nothing(&amounts)
+}
+
+/// Whether any of these, each with its standard error, or the norm of all is [`NAME_Z`] standard errors from zero.
+fn differs_from_nothing(amounts: &[(f64, f64)]) -> bool {
+    let norm = |of: fn(&(f64, f64)) -> f64| amounts.iter().map(|each| of(each).powi(2)).sum::<f64>().sqrt();
+    // the error of the norm is that along itself
+    let (size, along) = (norm(|(from, _)| *from), norm(|(from, std)| from * std));
+    size * size >= NAME_Z * along || amounts.iter().any(|(from, std)| from.abs() >= NAME_Z * std)
+}
+
+/// An effect of the fit that would matter and is not certain.
+pub(super) fn uncertain(fitted: &Fitted) -> Option<&'static str> {
+    let mut first = fitted.rows.nuisances.len();
+    for term in &fitted.base.effects {
+        let columns = first..first + term.free.len();
+        let is_certain = is_certain(fitted, term, first);
+        first = columns.end;
+        if !is_certain && Materiality::of(fitted, &[(term, columns)]).is_none_or(|of| of.matters()) {
+            return Some(term.id());
+        }
+    }
+    None
+}
+
+/// Parameters of an effect as they are stated, with their standard errors; its first free value has the column `first`.
+pub(super) fn stated(fitted: &Fitted, term: &EffectTerm, first: usize) -> Vec<NamedParameter> {
+    let of_slot = |slot: usize| {
+        let parameter = term.parameter(slot)?;
+        let (value, column) = (term.values[slot], term.free.iter().position(|free| *free == slot));
+        let std = column.map_or(0.0, |column| fitted.std_of(first + column, (value, parameter.unit)));
+        let is_free = column.is_some();
+        let least = if is_free && term.is_amount(slot) { term.signature.naming.least_std } else { 0.0 };
+        let is_shown = fitted.rows.compares_torques || !term.is_share_at_hubs(slot);
+        (is_shown && (is_free || (term.signature.naming.says)(term, slot))).then(|| NamedParameter {
+            name: parameter.name,
+            value,
+            std: std.hypot(least),
+            unit: parameter.unit,
+        })
+    };
+    (0..term.values.len()).filter_map(of_slot).collect()
 }
 
 /// Whether an effect matters by itself. One whose own part is not known (`None`) does.
@@ -108,4 +173,19 @@ fn is_beyond_ordinary(fitted: &Fitted, term: &EffectTerm, first: usize) -> bool 
     let count = term.free.len();
     let variance = unit.dot(&(fitted.covariance.view((first, first), (count, count)) * &unit));
     size - BEYOND * variance.max(0.0).sqrt() > ordinary
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_its_own_errors_do_not_tell_from_nothing_is_not_certain() {
+        assert!(!differs_from_nothing(&[(0.0055, 0.0019), (0.0046, 0.0077), (0.123, 0.11)]));
+        // one of its amounts is enough
+        assert!(differs_from_nothing(&[(0.174, 0.031), (0.197, 0.086), (0.104, 0.09)]));
+        // a wind between two axes
+        assert!(differs_from_nothing(&[(1.0, 0.3), (1.0, 0.3)]));
+        assert!(!differs_from_nothing(&[(1.0, 0.4), (1.0, 0.4)]));
+    }
 }
