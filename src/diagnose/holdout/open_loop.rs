@@ -17,6 +17,9 @@ use rayon::prelude::*;
 
 /// Time from one window's start to the next one's, s. Motions that repeat must not always be met at the same place.
 const STRIDE_S: f64 = 0.17;
+/// Time that one stride serves, s: of flights that are longer together, windows begin at each second, third, ... one. So many windows, some
+/// 900, tell errors to a few percent, and the time that they take does not grow with the flights.
+const SERVED_S: f64 = 150.0;
 /// Lengths of the windows, s.
 pub const WINDOWS_S: [f64; 3] = [0.1, HALF_S, 1.0];
 /// Length of the windows that are told first, s.
@@ -78,9 +81,10 @@ pub(super) fn open_loop(
     settings: &HoldoutSettings,
 ) -> Result<(Vec<OpenLoop>, Option<Interval>, usize), HoldoutError> {
     let models: Vec<Models> = ready.iter().map(models_of).collect::<Result<_, _>>()?;
+    let playback = playback_of(ready);
     let flights: Vec<Vec<Played>> = (0..ready.len())
         .into_par_iter()
-        .map(|index| played((index, &ready[index]), &models[index], empirical, settings))
+        .map(|index| played((index, &ready[index]), &models[index], (empirical, &playback), settings))
         .collect::<Result<_, _>>()?;
     let parts: Vec<(OpenLoop, Option<Interval>, usize)> =
         (0..WINDOWS_S.len()).map(|length| one_length(length, (ready, &flights), settings)).collect();
@@ -106,23 +110,28 @@ pub(super) fn predicting(base: &Base, rate_law: Option<RateLaw>) -> Result<Model
     rate_law.map_or(Ok(model.clone()), |law| law.acting_in(&model))
 }
 
-fn path_of<'a>(ready: &'a Ready) -> Result<Path<'a>, HoldoutError> {
+fn path_of<'a>(ready: &'a Ready, playback: &PlaybackSettings) -> Result<Path<'a>, HoldoutError> {
     let (_, base) = ready.pair.predicting();
     let (model, signals) = (model_of(base)?, ready.flight.signals);
-    let torques_nm = torques_along((&model, &base.vehicle), signals, &playback_of(HALF_S))
+    let torques_nm = torques_along((&model, &base.vehicle), signals, playback)
         .map_err(|source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source })?;
     Ok(Path { signals, torques_nm, body: model.body })
 }
 
 /// A law of the rates, fitted to flights.
 pub(super) fn rate_law(ready: &[Ready]) -> Result<Option<RateLaw>, HoldoutError> {
-    let paths: Vec<Path> = ready.par_iter().map(path_of).collect::<Result<_, HoldoutError>>()?;
-    Ok(RateLaw::fit(&paths, (HALF_S, STRIDE_S)))
+    let playback = playback_of(ready);
+    let paths: Vec<Path> =
+        ready.par_iter().map(|ready| path_of(ready, &playback)).collect::<Result<_, HoldoutError>>()?;
+    Ok(RateLaw::fit(&paths, (HALF_S, playback.stride_s)))
 }
 
-/// Playback over windows of this length, s. Grids are seldom faster than 4 ms: one step an instant.
-pub(super) fn playback_of(window_s: f64) -> PlaybackSettings {
-    PlaybackSettings { window_s, stride_s: STRIDE_S, step_s: 0.004, ..PlaybackSettings::default() }
+/// Playback over windows of half a second, as often as these flights together need. Grids are seldom faster than 4 ms: one step an
+/// instant.
+pub(super) fn playback_of(ready: &[Ready]) -> PlaybackSettings {
+    let total_s: f64 = ready.iter().map(Ready::usable_s).sum();
+    let stride_s = STRIDE_S * (total_s / SERVED_S).ceil().max(1.0);
+    PlaybackSettings { window_s: HALF_S, stride_s, step_s: 0.004, ..PlaybackSettings::default() }
 }
 
 /// One flight's windows, as predicted by each.
@@ -136,10 +145,10 @@ struct Played {
 fn played(
     (index, ready): (usize, &Ready),
     models: &Models,
-    empirical: Option<&Empirical>,
+    of: (Option<&Empirical>, &PlaybackSettings),
     settings: &HoldoutSettings,
 ) -> Result<Vec<Played>, HoldoutError> {
-    by_length(ready, models, empirical, settings.seed ^ index as u64)
+    by_length(ready, models, of, settings.seed ^ index as u64)
         .map_err(|source| HoldoutError::Compare { flight: ready.flight.name.to_owned(), source })
 }
 
@@ -147,14 +156,14 @@ fn played(
 fn by_length(
     ready: &Ready,
     models: &Models,
-    empirical: Option<&Empirical>,
+    (empirical, playback): (Option<&Empirical>, &PlaybackSettings),
     seed: u64,
 ) -> Result<Vec<Played>, CompareError> {
-    let (signals, playback) = (ready.flight.signals, playback_of(HALF_S));
+    let signals = ready.flight.signals;
     let run = |model: &Model, base: &Base, empirical: Option<&Empirical>, floor: Option<FloorNoise>| {
         let push = empirical.map(Empirical::push);
         let push = push.as_ref().map(|push| push as crate::simulate::Push);
-        playback_lengths((model, &base.vehicle), push, signals, (&playback, &WINDOWS_S), floor)
+        playback_lengths((model, &base.vehicle), push, signals, (playback, &WINDOWS_S), floor)
     };
     let (base_before, base_after) = ready.pair.predicting();
     let noise = FloorNoise { state: &models.noise, commands: models.commands.as_ref(), seed };
@@ -173,7 +182,7 @@ fn by_length(
     }
     let each = WINDOWS_S.iter().zip(before).zip(after);
     each.map(|((&window_s, before), after)| {
-        let unchanged = unchanged_windows(signals, &playback_of(window_s))?;
+        let unchanged = unchanged_windows(signals, &PlaybackSettings { window_s, ..*playback })?;
         Ok(Played { unchanged, before: before.windows, after: after.windows, noise: after.floor })
     })
     .collect()

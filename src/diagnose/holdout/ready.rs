@@ -18,6 +18,11 @@ pub(super) struct Ready<'a> {
 }
 
 impl Ready<'_> {
+    /// Time that can be used, s.
+    pub(super) fn usable_s(&self) -> f64 {
+        usable_s(self.flight, &self.trace)
+    }
+
     /// The flight on which the models for predictions stand: they have in them what is its own.
     pub(super) fn predicted(&self) -> Cow<'_, Trace> {
         if self.pair.loaded.is_some() {
@@ -35,11 +40,15 @@ pub(super) fn trace_of(
 ) -> Result<Trace, HoldoutError> {
     let trace = Trace::new(flight.signals, vehicle, settings.half_width_s)
         .map_err(|source| HoldoutError::Trace { flight: flight.name.to_owned(), source })?;
-    let seconds = flight.signals.usable.iter().filter(|usable| **usable).count() as f64 * trace.grid.step_s;
+    let seconds = usable_s(flight, &trace);
     if seconds < LEAST_S {
         return Err(HoldoutError::TooShort { flight: flight.name.to_owned(), seconds, needed_s: LEAST_S });
     }
     Ok(trace)
+}
+
+fn usable_s(flight: &HeldOut, trace: &Trace) -> f64 {
+    flight.signals.usable.iter().filter(|usable| **usable).count() as f64 * trace.grid.step_s
 }
 
 /// A base's model with its latency as effects.

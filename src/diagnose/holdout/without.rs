@@ -75,10 +75,10 @@ fn errors_without(
     // squares and their number
     let mut sums = vec![NONE; WINDOWS_S.len()];
     let mut blocks: Vec<SquaredErrors> = Vec::new();
+    let settings = playback_of(ready);
     for of in ready {
         let base = left_out(of.pair.predicting().1, terms);
         let model = predicting(&base, of.pair.rate_law)?;
-        let settings = playback_of(WINDOWS_S[0]);
         let played =
             playback_lengths((&model, &base.vehicle), None, of.flight.signals, (&settings, &WINDOWS_S), None)
                 .map_err(|source| HoldoutError::Compare { flight: of.flight.name.to_owned(), source })?;
