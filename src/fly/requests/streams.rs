@@ -136,6 +136,8 @@ const ESTIMATOR_STATUS: StreamRequest =
 const EKF_STATUS_REPORT: StreamRequest =
     stream::<dialect::EKF_STATUS_REPORT_DATA>(5.0, 38.0, &[Need::Estimator]);
 const HOME_POSITION: StreamRequest = stream::<dialect::HOME_POSITION_DATA>(0.5, 72.0, &[]);
+/// ArduPilot sends it to those who ask. A recording that lacks it does not tell a receiver from motion capture.
+const GPS_RAW_INT: StreamRequest = stream::<dialect::GPS_RAW_INT_DATA>(5.0, 64.0, &[]);
 const GPS_GLOBAL_ORIGIN: StreamRequest = stream::<dialect::GPS_GLOBAL_ORIGIN_DATA>(0.5, 32.0, &[]);
 
 const PX4: &[StreamRequest] = &[
@@ -172,6 +174,7 @@ const ARDUPILOT: &[StreamRequest] = &[
     EXTENDED_SYS_STATE,
     EKF_STATUS_REPORT,
     HOME_POSITION,
+    GPS_RAW_INT,
     GPS_GLOBAL_ORIGIN,
 ];
 
