@@ -1,6 +1,8 @@
 //! Whether the balance of a vehicle moved between two groups of flights, and what accounts for it.
 
-use super::explanation::{Account, Explanation, What, explanations, factor, lean, other_rotor_and_load};
+use super::explanation::{
+    Account, Explanation, What, along, explanations, factor, lean, other_rotor_and_load,
+};
 use super::groups::{Groups, Moved};
 use crate::trim::{AXES, Balance};
 use crate::vehicle::Vehicle;
@@ -83,6 +85,18 @@ impl BalanceChange {
     pub fn moved_without_name(&self) -> bool {
         self.strength >= NAMED && self.found.as_ref().is_none_or(|found| found.what.is_none())
     }
+
+    /// A component of [`Self::moved`], along x and y with the error that a load or a battery which sits elsewhere adds.
+    #[must_use]
+    pub fn beside_a_load(&self, axis: usize) -> Moved {
+        beside_a_load(axis, &self.moved[axis])
+    }
+
+    /// What is left of this move in a later one, as a share of it, with its standard error.
+    #[must_use]
+    pub fn left_in(&self, later: &Self) -> (f64, f64) {
+        along(&difference(&self.moved), &difference(&later.moved), &variances_of(&later.moved))
+    }
 }
 
 /// The comparison of two groups.
@@ -102,7 +116,8 @@ pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> B
     let before = Vector3::from(moved.map(|moved| moved.before.0));
     let known = explanations(vehicle, &before);
     let strength = by.component_mul(&by).component_div(&variances).sum();
-    let beyond_load = by.component_mul(&by).component_div(&loaded(&variances)).sum();
+    let loaded: [Moved; AXES] = std::array::from_fn(|axis| beside_a_load(axis, &moved[axis]));
+    let beyond_load = by.component_mul(&by).component_div(&variances_of(&loaded)).sum();
     let shares: Vec<f64> = (0..vehicle.rotors.len()).map(|rotor| pair.share(rotor)).collect();
     let mut found = found(&known, &moved, &shares, (strength, beyond_load));
     if let Some(found) = &mut found {
@@ -125,9 +140,11 @@ fn turned_by_a_load(by: &Vector3<f64>, variances: &Vector3<f64>) -> f64 {
     if turned < NAMED { turned } else { 0.0 }
 }
 
-/// Variances of a move where a battery or a load may sit elsewhere.
-fn loaded(variances: &Vector3<f64>) -> Vector3<f64> {
-    variances + 2.0 * LOADED * LOADED * Vector3::new(1.0, 1.0, 0.0)
+/// A component of a move where a battery or a load may sit elsewhere on each side: it does not turn the vehicle about the vertical.
+fn beside_a_load(axis: usize, moved: &Moved) -> Moved {
+    let load = if axis < 2 { LOADED } else { 0.0 };
+    let with = |(value, std): (f64, f64), sides: f64| (value, std.hypot(sides.sqrt() * load));
+    Moved { before: with(moved.before, 1.0), after: with(moved.after, 1.0), by: with(moved.by, 2.0) }
 }
 
 fn difference(moved: &[Moved; AXES]) -> Vector3<f64> {

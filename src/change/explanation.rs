@@ -74,11 +74,9 @@ impl Explanation {
         let mut amounts = Vec::new();
         // directions of one explanation are at right angles
         for direction in &self.directions {
-            let weighted = direction.component_div(variances);
-            let information = weighted.dot(direction);
-            let amount = weighted.dot(moved) / information;
+            let (amount, std) = along(direction, moved, variances);
             left -= amount * direction;
-            amounts.push((amount, information.recip().sqrt()));
+            amounts.push((amount, std));
         }
         let left = left.component_mul(&left).component_div(variances).sum();
         Account { what: self.what, amounts, left, cost: left }
@@ -103,6 +101,13 @@ impl Account {
     pub(super) fn certainty(&self) -> f64 {
         self.amounts.first().map_or(0.0, |(amount, std)| (amount / std).powi(2))
     }
+}
+
+/// How often a direction fits into a move with these variances, with its standard error.
+pub(super) fn along(direction: &Vector3<f64>, moved: &Vector3<f64>, variances: &Vector3<f64>) -> (f64, f64) {
+    let weighted = direction.component_div(variances);
+    let information = weighted.dot(direction);
+    (weighted.dot(moved) / information, information.recip().sqrt())
 }
 
 /// Least cost of another rotor than `named` together with a load that sits elsewhere, as [`Account::cost`]: the rotor takes what is about the

@@ -33,8 +33,8 @@ pub fn steps<T>(
     found
 }
 
-/// Says of each step which earlier flights the vehicle is as again. `is_same` judges whether two groups of flights do not differ,
-/// where a difference as large as that of the step would have shown.
+/// Says of each step which earlier flights the vehicle is as again. `is_same` judges whether two groups of flights do not differ, and
+/// certainly by less than the step.
 pub fn find_returns<T>(flights: usize, steps: &mut [Step<T>], is_same: &impl Fn(&Groups, &T) -> bool) {
     let borders: Vec<usize> =
         std::iter::once(0).chain(steps.iter().map(|step| step.from)).chain([flights]).collect();

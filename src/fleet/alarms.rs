@@ -264,6 +264,7 @@ pub fn judge(history: &VehicleHistory) -> Judge<'_> {
         vehicle: &study.vehicle,
         balance: &study.balance,
         tracks: &study.tracks,
+        alone: &study.alone,
         is_known: study.is_known,
     }
 }

@@ -111,6 +111,7 @@ impl All<'_> {
             rotors: rotor_tracks(&balance, &vehicle),
             balance,
             tracks: self.tracks(&kept),
+            alone: Vec::new(),
             groups: None,
             compared: None,
             history: Vec::new(),

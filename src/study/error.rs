@@ -57,6 +57,14 @@ pub enum StudyError {
         /// the other
         other: String,
     },
+    /// fewer than two flights to compare
+    #[error(
+        "expected at least two flights, {came}: give two logs or more for a history, or BEFORE --with AFTER"
+    )]
+    TooFewFlights {
+        /// what came
+        came: String,
+    },
     /// two recordings of one flight that are no two flights
     #[error("expected another flight, but {other} is another log of the flight of {one}, or of a part of it")]
     OneFlight {

@@ -67,7 +67,7 @@ impl Flight {
                 flight: self.input.path.clone(),
                 vehicle: text::path(&file),
                 source: Box::new(source),
-                losses: self.input.losses().into_iter().map(str::to_owned).collect(),
+                losses: self.input.losses(),
             }
         })
     }

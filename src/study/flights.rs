@@ -8,7 +8,7 @@ use crate::config::{ConfigError, load_csv_mapping};
 use crate::diagnose::holdout::HeldOut;
 use crate::estimate::torque_by_motion;
 use crate::log::{
-    Hold, LogError, LogFlight, OpenOptions, OpenedFlights, ReadReport, format_of, open_flights,
+    Format, Hold, LogError, LogFlight, OpenOptions, OpenedFlights, ReadReport, format_of, open_flights,
 };
 use crate::note::{About, Note};
 use crate::recording::Recording;
@@ -54,15 +54,25 @@ impl ReadSettings {
         Ok(OpenOptions { system: self.system, columns })
     }
 
-    /// A mapping of columns needs a table among the logs. A log that cannot be read may be one: that is told later.
+    /// A mapping of columns needs a table among the logs, a system a telemetry log. A log that cannot be read may be one: that is told later.
     ///
     /// # Errors
     /// [`StudyError::Setting`] otherwise.
-    pub(super) fn check<'a>(&self, mut logs: impl Iterator<Item = &'a PathBuf>) -> Result<(), StudyError> {
-        let may_be_table = |log: &PathBuf| format_of(log).map_or(true, |format| format.takes_columns);
-        if self.csv_map.is_some() && !logs.any(may_be_table) {
-            let why = "expected a .csv among the logs, got none".to_owned();
-            return Err(StudyError::Setting { name: "csv-map", why });
+    pub(super) fn check<'a>(
+        &self,
+        logs: impl Iterator<Item = &'a PathBuf> + Clone,
+    ) -> Result<(), StudyError> {
+        let has_none =
+            |takes: fn(&Format) -> bool| !logs.clone().any(|log| format_of(log).map_or(true, takes));
+        let refuse = |name, wanted: &str| {
+            let why = format!("expected {wanted} among the logs, got none");
+            Err(StudyError::Setting { name, why })
+        };
+        if self.csv_map.is_some() && has_none(|format| format.takes_columns) {
+            return refuse("csv-map", "a .csv");
+        }
+        if self.system.is_some() && has_none(|format| format.takes_system) {
+            return refuse("system-id", "a telemetry log (.tlog)");
         }
         Ok(())
     }
@@ -237,6 +247,7 @@ fn of_log(flights: Vec<LogFlight>, log: &InputFile, report: &ReadReport) -> Vec<
             input.path =
                 format!("{}, flight {} of {of} ({:.0} to {to_s:.0} s)", log.path, index + 1, from_s.max(0.0));
         }
+        input.notes = input.notes.iter().map(|note| note.of_file(&input.path)).collect();
         let about = || About::File(input.path.clone());
         let told: Vec<Note> = off_mixer.iter().map(|off| Note::warning(about(), off.to_string())).collect();
         input.notes.extend(told);
@@ -297,7 +308,8 @@ pub(super) fn ready<T>(
             Ok(made) => ready.push((flight, made)),
             Err(why) => {
                 notes.extend(flight.input.notes);
-                notes.push(Note::remark(About::File(flight.input.path), format!("left out: {why}")));
+                let text = format!("left out: {}", why.of_log().1);
+                notes.push(Note::remark(About::File(flight.input.path), text));
                 refusal.get_or_insert(why);
             }
         }

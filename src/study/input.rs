@@ -50,18 +50,21 @@ impl InputFile {
 
     /// What of it was not read or not used: sentence by sentence.
     #[must_use]
-    pub fn losses(&self) -> Vec<&str> {
-        self.texts(|severity| severity == Severity::Loss)
+    pub fn losses(&self) -> Vec<String> {
+        self.notes.iter().filter(|note| note.severity == Severity::Loss).map(|note| self.text(note)).collect()
     }
 
-    /// What else is to be known of it.
-    #[must_use]
-    pub fn remarks(&self) -> Vec<&str> {
-        self.texts(|severity| severity != Severity::Loss)
+    /// What else is to be known of it, and of flights of its log that were left out.
+    pub fn remarks(&self) -> impl Iterator<Item = &Note> {
+        self.notes.iter().filter(|note| note.severity != Severity::Loss)
     }
 
-    fn texts(&self, is_wanted: impl Fn(Severity) -> bool) -> Vec<&str> {
-        self.notes.iter().filter(|note| is_wanted(note.severity)).map(|note| note.text.as_str()).collect()
+    /// A note beside the name of the file: one about another flight of its log, or another log of the flight, says so.
+    fn text(&self, note: &Note) -> String {
+        match &note.about {
+            About::File(path) if *path != self.path => note.sentence(),
+            _ => note.text.clone(),
+        }
     }
 }
 
@@ -78,10 +81,7 @@ pub fn lost<'a>(inputs: impl IntoIterator<Item = &'a InputFile>) -> Vec<Note> {
 /// All that is to be known of the files: what of them was lost, and what else was said of them.
 #[must_use]
 pub fn said_of<'a>(inputs: impl IntoIterator<Item = &'a InputFile> + Clone) -> Vec<Note> {
-    let others = inputs.clone().into_iter().flat_map(|input| {
-        let of_file = |note: &Note| Note { about: About::File(input.path.clone()), ..note.clone() };
-        input.notes.iter().filter(|note| note.severity != Severity::Loss).map(of_file).collect::<Vec<_>>()
-    });
+    let others = inputs.clone().into_iter().flat_map(InputFile::remarks).cloned();
     said_once(lost(inputs).into_iter().chain(others).collect())
 }
 
@@ -95,10 +95,10 @@ struct Written<'a> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     other_logs: Vec<OtherLog<'a>>,
     /// what of it was not read or not used: sentence by sentence
-    losses: Vec<&'a str>,
+    losses: Vec<String>,
     /// what else is to be known of it
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    notes: Vec<&'a str>,
+    notes: Vec<String>,
 }
 
 #[derive(Serialize, JsonSchema)]
@@ -120,7 +120,7 @@ impl JsonSchema for InputFile {
 
 impl Serialize for InputFile {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let (losses, notes) = (self.losses(), self.remarks());
+        let (losses, notes) = (self.losses(), self.remarks().map(|note| self.text(note)).collect());
         let other_logs = self.other_logs.iter().map(|(path, sha256)| OtherLog { path, sha256 }).collect();
         Written { path: &self.path, sha256: &self.sha256, other_logs, losses, notes }.serialize(serializer)
     }
@@ -155,5 +155,24 @@ mod tests {
         let whole = InputFile { notes: Vec::new(), ..input };
         assert!(lost([&whole]).is_empty());
         assert!(text::json_line(&whole).unwrap().ends_with(r#""losses":[]}"#));
+    }
+
+    #[test]
+    fn a_note_about_another_flight_of_the_log_keeps_its_name() {
+        let of = |path: &str, text: &str| Note::remark(About::File(path.to_owned()), text);
+        let [first, second] = ["a.bin, flight 1 of 2", "a.bin, flight 2 of 2"];
+        let input = InputFile {
+            path: second.to_owned(),
+            sha256: "0".to_owned(),
+            other_logs: Vec::new(),
+            notes: vec![of(first, "left out: too short"), of(second, "slow")],
+        };
+        let told: Vec<String> = said_of([&input]).iter().map(ToString::to_string).collect();
+        assert_eq!(told, ["a.bin, flight 1 of 2: left out: too short", "a.bin, flight 2 of 2: slow"]);
+        let written = text::json_line(&input).unwrap();
+        assert!(
+            written.ends_with(r#""notes":["a.bin, flight 1 of 2: left out: too short","slow"]}"#),
+            "{written}"
+        );
     }
 }

@@ -217,6 +217,12 @@ impl Track {
         self.strength(flight) > CARRIES
     }
 
+    /// Leaves out the values of flights that do not determine it: it did not change in them.
+    pub(super) fn keep_determined(&mut self) {
+        let all = self.clone();
+        self.values.iter_mut().for_each(|of| *of = of.filter(|value| all.is_determined(*value)));
+    }
+
     /// How far a value is from that of no effect. A latency is ordinary up to there.
     fn beyond(&self, value: f64) -> f64 {
         let by = value - self.nothing;
@@ -303,6 +309,9 @@ mod tests {
                 && drag.is_determined((0.0, 0.1))
                 && !drag.is_determined((0.20, 0.4))
         );
+        let mut kept = drag.clone();
+        kept.keep_determined();
+        assert_eq!(kept.values, [Some((0.30, 0.02)), None]);
         let inertia = track(Owner::Vehicle, 0.0, &[(0.02, 0.001), (0.02, 0.01)]);
         assert!(inertia.is_determined((0.02, 0.001)) && !inertia.is_determined((0.02, 0.01)));
         // a flight without wind says so

@@ -3,15 +3,15 @@
 use super::drawing::{caption, drawing};
 use super::plots::plots;
 use super::words::{
-    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_from, name, open, returned, sentence, size,
-    smallest_heading, value_of,
+    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_since, name, open, returned, sentence, since_files,
+    size, smallest_heading, value_of,
 };
-use crate::change::interval_95;
+use crate::change::{Step, interval_95};
 use crate::diagnose::Owner;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::{interval, significant, with_error};
 use crate::report::page::page;
-use crate::study::{Change, Changed, CompareStudy};
+use crate::study::{Change, Changed, CompareStudy, Compared};
 use crate::text::capital;
 use maud::{Markup, html};
 
@@ -76,9 +76,9 @@ fn row(study: &CompareStudy, change: &Change) -> Vec<Cell> {
     cells
 }
 
-fn row_from(study: &CompareStudy, from: usize, change: &Change) -> Vec<Cell> {
-    let first = text(study.flights[from].input.path.as_str());
-    std::iter::once(first).chain(row(study, change)).collect()
+fn row_since(study: &CompareStudy, step: &Step<Compared>, change: &Change) -> Vec<Cell> {
+    let since = text(since_files(study, step, change.what));
+    std::iter::once(since).chain(row(study, change)).collect()
 }
 
 fn unseen(study: &CompareStudy) -> Markup {
@@ -152,7 +152,7 @@ fn rotors(study: &CompareStudy) -> Markup {
             let what = Changed::Rotor(place);
             let mut cells = vec![text(name(study, what))];
             cells.extend(track.iter().map(|(value, std)| number(with_error(*value, *std))));
-            cells.push(text(changed_from(study, what)));
+            cells.push(text(changed_since(study, what)));
             cells
         })
         .collect();
@@ -168,7 +168,7 @@ fn tracks(study: &CompareStudy) -> Markup {
         let own = if track.owner == Owner::Flight { "the flight's own" } else { "the vehicle's" };
         let mut cells = vec![text(track.name.as_str()), text(track.unit), text(own)];
         cells.extend(track.values.iter().map(|value| number(value_of(track, *value))));
-        cells.push(text(changed_from(study, Changed::Parameter(place))));
+        cells.push(text(changed_since(study, Changed::Parameter(place))));
         cells
     });
     let caption = format!("With {FLIGHTS_OWN_ERRORS}");
@@ -183,17 +183,17 @@ fn history(study: &CompareStudy) -> Markup {
     let changes: Vec<Vec<Cell>> = study
         .history
         .iter()
-        .flat_map(|step| step.change.changes.iter().map(|change| row_from(study, step.from, change)))
+        .flat_map(|step| step.change.changes.iter().map(|change| row_since(study, step, change)))
         .collect();
     let heads =
-        ["from", "", "unit", "before", "after", "difference", "standard deviations|", "shown alone by"];
+        ["since", "", "unit", "before", "after", "difference", "standard deviations|", "shown alone by"];
     let caption = "Before and after each place, with standard errors and, in brackets, intervals of 95 %";
     let steps = html! {
         @if study.history.is_empty() { (paragraph("Nothing changed along the flights that they could show.")) }
         @for step in &study.history { @for change in &step.change.changes {
             (paragraph(&format!(
-                "From {} on: {}{}.",
-                study.flights[step.from].input.path,
+                "{}: {}{}.",
+                capital(&since_files(study, step, change.what)),
                 sentence(study, change),
                 returned(study, step)
             )))

@@ -2,10 +2,10 @@
 
 use super::own::doubt;
 use super::words::{answer, open, rival_name, sentence};
-use crate::change::{Moved, Undecided};
+use crate::change::{Moved, Step, Undecided};
 use crate::diagnose::Owner;
 use crate::note::Note;
-use crate::study::{Change, Changed, CompareStudy, InputFile, LeastChange};
+use crate::study::{Change, Changed, CompareStudy, Compared, InputFile, LeastChange};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -143,6 +143,17 @@ struct UndecidedEntry {
     by_spread: bool,
 }
 
+/// A change along the flights.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct DatedEntry {
+    #[serde(flatten)]
+    change: ChangeEntry,
+    /// place of the last flight that shows what was before; null: none of the earlier flights determines it
+    last_before: Option<usize>,
+    /// place of the first flight that shows what is since; those between do not determine it
+    first_after: usize,
+}
+
 /// The smallest change that would have been named.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct LeastEntry {
@@ -218,9 +229,9 @@ struct TrackEntry {
 /// A place in the row of flights from which on something is otherwise.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct StepEntry {
-    /// place of the first flight that is otherwise
+    /// place of the first flight that shows one of the changes
     from: usize,
-    changes: Vec<ChangeEntry>,
+    changes: Vec<DatedEntry>,
     /// places of earlier flights that it is as again; empty where it is as none of them
     as_before: Vec<usize>,
 }
@@ -251,15 +262,7 @@ impl ComparisonDocument {
             flights: (0..study.flights.len()).map(|place| flight(study, place)).collect(),
             rotors: (0..study.rotors.len()).map(|place| rotor(study, place)).collect(),
             parameters: (0..study.tracks.len()).map(|place| track(study, place)).collect(),
-            history: study
-                .history
-                .iter()
-                .map(|step| StepEntry {
-                    from: step.from,
-                    changes: entries(&step.change.changes),
-                    as_before: step.as_before.clone(),
-                })
-                .collect(),
+            history: study.history.iter().map(|step| step_entry(study, step)).collect(),
             left_out: study
                 .left_out
                 .iter()
@@ -307,6 +310,16 @@ fn entry(study: &CompareStudy, change: &Change) -> ChangeEntry {
         carried_by: change.carried_by.clone(),
         may_be: change.rivals.iter().map(|rival| rival_name(study, *rival)).collect(),
     }
+}
+
+fn step_entry(study: &CompareStudy, step: &Step<Compared>) -> StepEntry {
+    let dated = |change: &Change| {
+        let (last_before, first_after) = study.dated(step, change.what);
+        DatedEntry { change: entry(study, change), last_before, first_after }
+    };
+    let changes: Vec<DatedEntry> = step.change.changes.iter().map(dated).collect();
+    let from = changes.iter().map(|change| change.first_after).min().unwrap_or(step.from);
+    StepEntry { from, changes, as_before: step.as_before.clone() }
 }
 
 fn undecided_entry(study: &CompareStudy, of: &(Change, Undecided)) -> UndecidedEntry {

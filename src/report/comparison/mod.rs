@@ -3,6 +3,7 @@
 mod drawing;
 mod html;
 mod json;
+mod markdown;
 mod own;
 mod plots;
 mod text;
@@ -10,6 +11,7 @@ mod words;
 
 pub use html::comparison_html;
 pub use json::ComparisonDocument;
+pub use markdown::comparison_markdown;
 pub(super) use plots::plots;
 pub use text::comparison_text;
-pub(super) use words::{sentence, value_of};
+pub(super) use words::{step_words, value_of};

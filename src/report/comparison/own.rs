@@ -36,8 +36,12 @@ fn two_vehicles(study: &CompareStudy, lifts: LiftsApart) -> String {
         None => format!("{before} before and {after} after"),
         Some(from) => format!("{before} before {from} and {after} from it on"),
     };
+    let told = if lifts.moved {
+        "a parameter of the motion moved by more than chance as well"
+    } else {
+        "no parameter was compared that could tell"
+    };
     format!(
-        "It is doubtful that this is one vehicle: full thrust over weight is {of}, more than a battery or a load changes it, and no \
-         parameter was compared that could tell."
+        "It is doubtful that this is one vehicle: full thrust over weight is {of}, more than a battery or a load changes it, and {told}."
     )
 }

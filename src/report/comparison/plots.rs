@@ -73,17 +73,24 @@ fn chart(study: &CompareStudy, (title, unit): (&str, &str), lines: &[Along]) -> 
             colour: Some(colour),
         });
     }
-    let steps = study.history.iter().map(|step| {
-        let at = step.from as f64 + 0.5;
-        [at, at]
-    });
+    // from behind the last flight that shows what was before to ahead of the first that shows what is since
+    let mut spans: Vec<[f64; 2]> = Vec::new();
+    for step in &study.history {
+        for change in &step.change.changes {
+            let (last, first) = study.dated(step, change.what);
+            let span = [last.map_or(first, |last| last + 1), first].map(|place| place as f64 + 0.5);
+            if !spans.contains(&span) {
+                spans.push(span);
+            }
+        }
+    }
     inline(&Panel {
         title: title.to_owned(),
         x_label: "flight".to_owned(),
         y_label: unit.to_owned(),
         lines: drawn,
         bands,
-        spans: steps.collect(),
+        spans,
         spans_label: "changed".to_owned(),
         cursor: None,
         log: (false, false),

@@ -1,8 +1,8 @@
 //! The page of `compare` for the terminal.
 
 use super::words::{
-    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_from, name, open, returned, sentence, size,
-    smallest_heading, spaced, value_of,
+    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_since, name, open, returned, sentence, since_files,
+    size, smallest_heading, spaced, value_of,
 };
 use crate::diagnose::Owner;
 use crate::report::number::{significant, with_error};
@@ -111,8 +111,8 @@ fn flights(page: &mut String, study: &CompareStudy) {
 
 /// What a track says in words behind its values.
 fn told(study: &CompareStudy, what: Changed) -> String {
-    let from = changed_from(study, what);
-    if from.is_empty() { from } else { format!("; {from}") }
+    let since = changed_since(study, what);
+    if since.is_empty() { since } else { format!("; {since}") }
 }
 
 fn rotors(page: &mut String, study: &CompareStudy) {
@@ -158,8 +158,8 @@ fn history(page: &mut String, study: &CompareStudy) {
         for change in &step.change.changes {
             let _ = writeln!(
                 page,
-                "    from {} on: {}{}",
-                study.flights[step.from].input.path,
+                "    {}: {}{}",
+                since_files(study, step, change.what),
                 sentence(study, change),
                 returned(study, step)
             );

@@ -23,10 +23,44 @@ pub(in crate::report) fn value_of(track: &Track, estimate: Option<(f64, f64)>) -
     }
 }
 
-/// From which flights on something is otherwise, as a clause; empty where nothing is.
-pub(super) fn changed_from(study: &CompareStudy, what: Changed) -> String {
-    let from: Vec<String> = study.changed_from(what).map(|place| format!("flight {}", place + 1)).collect();
-    if from.is_empty() { String::new() } else { format!("changed from {} on", from.join(" and from ")) }
+/// Since which flights something is otherwise, as a clause; empty where nothing is.
+pub(super) fn changed_since(study: &CompareStudy, what: Changed) -> String {
+    let flight = |place: usize| format!("flight {}", place + 1);
+    let all: Vec<String> = study.changed(what).map(|dated| since(dated, &flight)).collect();
+    if all.is_empty() { String::new() } else { format!("changed {}", all.join(" and ")) }
+}
+
+/// Since when something is otherwise, as a clause: from the first flight that shows it on, or, where flights before that do not tell, since
+/// the last one that shows what was before. `name` says a flight by its place.
+fn since((last, first): (Option<usize>, usize), name: &dyn Fn(usize) -> String) -> String {
+    match last {
+        Some(last) if last + 1 < first => format!("between {} and {}", name(last), name(first)),
+        _ => format!("from {} on", name(first)),
+    }
+}
+
+/// The same of one change of a step, with the names of the files.
+pub(super) fn since_files(study: &CompareStudy, step: &Step<Compared>, what: Changed) -> String {
+    since(study.dated(step, what), &|place| study.flights[place].input.path.clone())
+}
+
+/// The changes of a step as a clause, those with the same flights together.
+pub(in crate::report) fn step_words(
+    study: &CompareStudy,
+    step: &Step<Compared>,
+    name: &dyn Fn(usize) -> String,
+) -> String {
+    let mut parts: Vec<(String, Vec<String>)> = Vec::new();
+    for change in &step.change.changes {
+        let (when, words) = (since(study.dated(step, change.what), name), sentence(study, change));
+        match parts.iter_mut().find(|(other, _)| *other == when) {
+            Some((_, all)) => all.push(words),
+            None => parts.push((when, vec![words])),
+        }
+    }
+    let told: Vec<String> =
+        parts.into_iter().map(|(when, all)| format!("{when}: {}", all.join("; "))).collect();
+    told.join("; ")
 }
 
 /// The answer in a few sentences, with what is the flights' own and what speaks against one vehicle.
@@ -66,16 +100,11 @@ fn what_changed(study: &CompareStudy) -> String {
             )
         }
         _ => {
-            let steps = study.history.iter().map(|step| {
-                let all: Vec<String> =
-                    step.change.changes.iter().map(|change| sentence(study, change)).collect();
-                format!(
-                    "from {} on: {}{}",
-                    study.flights[step.from].input.path,
-                    all.join("; "),
-                    returned(study, step)
-                )
-            });
+            let path = |place: usize| study.flights[place].input.path.clone();
+            let steps = study
+                .history
+                .iter()
+                .map(|step| format!("{}{}", step_words(study, step, &path), returned(study, step)));
             format!(
                 "Along {} the vehicle changed {}.",
                 flights(study.flights.len()),
@@ -123,7 +152,7 @@ fn flights(count: usize) -> String {
 }
 
 /// What one change is, as a clause.
-pub(in crate::report) fn sentence(study: &CompareStudy, change: &Change) -> String {
+pub(super) fn sentence(study: &CompareStudy, change: &Change) -> String {
     let moved = change.moved.map(|moved| {
         let of = |(value, std)| with_error(value, std);
         (of(moved.before), of(moved.after), of(moved.by))
@@ -314,5 +343,18 @@ pub(super) fn size(least: &LeastChange) -> String {
         (_, "arm") => format!("{} of an arm", significant(least.size, 2)),
         // a bare number is said to be one
         (_, unit) => format!("{} {unit}", significant(least.size, 2)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_that_flights_in_between_do_not_show_is_told_between_two_flights() {
+        let flight = |place: usize| format!("flight {}", place + 1);
+        assert_eq!(since((Some(1), 2), &flight), "from flight 3 on");
+        assert_eq!(since((None, 2), &flight), "from flight 3 on");
+        assert_eq!(since((Some(1), 3), &flight), "between flight 2 and flight 4");
     }
 }

@@ -1,7 +1,7 @@
 //! The report of a fleet in words.
 
 use crate::fleet::{FleetReport, Outlier, ReportedVehicle};
-use crate::report::comparison::sentence;
+use crate::report::comparison::step_words;
 use crate::report::number::{chance, significant, with_error};
 
 /// `3 of 41 vehicles changed.`
@@ -36,17 +36,11 @@ pub(super) fn alarms(report: &FleetReport) -> String {
 /// What changed of a vehicle, step by step, each with its first flight.
 pub(super) fn changes(vehicle: &ReportedVehicle) -> Vec<String> {
     let study = &vehicle.history.study;
-    let of_step = |step: &crate::change::Step<crate::study::Compared>| {
-        let all: Vec<String> = step.change.changes.iter().map(|change| sentence(study, change)).collect();
-        let place = step.from + 1;
-        format!(
-            "from flight {place} of {} on ({}): {}",
-            study.flights.len(),
-            study.flights[step.from].input.path,
-            all.join("; ")
-        )
+    let name = |place: usize| {
+        let path = &study.flights[place].input.path;
+        format!("flight {} of {} ({path})", place + 1, study.flights.len())
     };
-    study.history.iter().map(of_step).collect()
+    study.history.iter().map(|step| step_words(study, step, &name)).collect()
 }
 
 /// One sentence for a vehicle that changed.

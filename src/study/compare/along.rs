@@ -190,7 +190,7 @@ mod tests {
     /// From which flights on what changed, and what else it may be.
     fn history(leans: &[Vector3<f64>]) -> Vec<(usize, Changed, Vec<What>)> {
         let (vehicle, balance) = (vehicle(), balance(leans));
-        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], is_known: true };
+        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], alone: &[], is_known: true };
         let order: Vec<usize> = (0..leans.len()).collect();
         let steps = judge.history(&order, 0.0);
         let each = |step: &Step<Compared>| {
@@ -221,7 +221,7 @@ mod tests {
         let vehicle = vehicle();
         let mut balance = balance(&[Vector3::zeros(); 4]);
         let apart = |balance: &Balance, groups: Option<&Groups>| {
-            Judge { vehicle: &vehicle, balance, tracks: &[], is_known: false }.lifts_apart(groups)
+            Judge { vehicle: &vehicle, balance, tracks: &[], alone: &[], is_known: false }.lifts_apart(groups)
         };
         let groups = Groups::split(4, 2);
         assert_eq!(apart(&balance, Some(&groups)), None);
@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn an_unchanged_history_says_what_a_border_in_its_middle_would_have_shown() {
         let (vehicle, balance) = (vehicle(), balance(&[Vector3::zeros(); 5]));
-        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], is_known: true };
+        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], alone: &[], is_known: true };
         let order: Vec<usize> = (0..5).collect();
         let least = judge.least_in_the_middle(&order);
         let between = judge.compared(&Groups::split(5, 2)).least;
@@ -270,7 +270,7 @@ mod tests {
     fn the_standard_deviations_of_a_named_rotor_are_its_loss_over_its_error() {
         let vehicle = vehicle();
         let balance = balance(&[Vector3::zeros(), weak(&vehicle, 2)]);
-        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], is_known: true };
+        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], alone: &[], is_known: true };
         let compared = judge.compared(&Groups::split(2, 1));
         let [change] = compared.changes.as_slice() else { panic!("{compared:?}") };
         let moved = change.moved.unwrap();
@@ -281,11 +281,49 @@ mod tests {
     }
 
     #[test]
+    fn a_return_is_named_where_certainly_less_than_half_of_the_step_is_left() {
+        let (vehicle, none) = (vehicle(), Vector3::zeros());
+        let weak = weak(&vehicle, 2);
+        let row = |last: Vector3<f64>| balance(&[none, none, weak, last]);
+        let returned = row(none);
+        let judge = Judge { vehicle: &vehicle, balance: &returned, tracks: &[], alone: &[], is_known: true };
+        let steps = judge.history(&[0, 1, 2, 3], 0.0);
+        let places: Vec<(usize, Vec<usize>)> =
+            steps.into_iter().map(|step| (step.from, step.as_before)).collect();
+        assert_eq!(places, [(2, vec![]), (3, vec![0, 1])]);
+        let is_back = |share: f64| {
+            let balance = row(share * weak);
+            let judge =
+                Judge { vehicle: &vehicle, balance: &balance, tracks: &[], alone: &[], is_known: true };
+            let step = judge.compared(&Groups { before: vec![0, 1], after: vec![2] });
+            judge.is_back(&Groups { before: vec![0, 1], after: vec![3] }, &step)
+        };
+        assert!(is_back(0.1) && is_back(-0.1) && !is_back(0.4) && !is_back(-0.4) && !is_back(1.0));
+    }
+
+    #[test]
+    fn the_error_of_a_centre_of_mass_allows_for_a_load_in_each_flight() {
+        let (vehicle, moved) = (vehicle(), Vector3::new(0.12, 0.0, 0.0));
+        let balance = balance(&[Vector3::zeros(), moved]);
+        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], alone: &[], is_known: true };
+        let compared = judge.compared(&Groups::split(2, 1));
+        let [change] = compared.changes.as_slice() else { panic!("{compared:?}") };
+        let (by, std) = change.moved.unwrap().by;
+        let arm_m = mean_arm_m(&vehicle);
+        assert!(change.what == Changed::CentreOfMass(0) && (by - 0.12 * arm_m).abs() < 1e-9, "{compared:?}");
+        // 1 % of an arm on each side, beside the error of the balance
+        let own = arm_m * compared.balance.moved[0].by.1;
+        assert!((std - own.hypot(2.0_f64.sqrt() * 0.01 * arm_m)).abs() < 1e-9, "{std} {own}");
+        assert!((change.sigmas - by / std).abs() < 1e-9 && compared.strongest() > change.sigmas);
+    }
+
+    #[test]
     fn a_load_that_sits_elsewhere_leaves_no_rotor_among_what_would_have_been_named() {
         let (vehicle, load) = (vehicle(), Vector3::new(0.03, 0.02, 0.0));
         let is_moved = |leans: &[Vector3<f64>], groups: Option<&Groups>| {
             let balance = balance(leans);
-            let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], is_known: true };
+            let judge =
+                Judge { vehicle: &vehicle, balance: &balance, tracks: &[], alone: &[], is_known: true };
             judge.moved_without_name(groups)
         };
         let none = Vector3::zeros();
@@ -300,7 +338,7 @@ mod tests {
         let vehicle = vehicle();
         let together = weak(&vehicle, 2) + Vector3::new(-0.09, -0.02, 0.0);
         let balance = balance(&[Vector3::zeros(), together]);
-        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], is_known: true };
+        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], alone: &[], is_known: true };
         let compared = judge.compared(&Groups::split(2, 1));
         assert_eq!(compared.changes.iter().map(|change| change.what).collect::<Vec<_>>(), [Changed::Balance]);
     }

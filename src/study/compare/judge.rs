@@ -1,5 +1,6 @@
 //! What changed between groups of flights whose balance and parameters are known.
 
+use super::by_motion::{RotorMoved, WeakAlone, rotor_by_motion};
 use super::result::{Change, Changed, Compared, LeastChange, LiftsApart, UndecidedAlong};
 use super::scale::ScaleMoved;
 use crate::change::{
@@ -29,6 +30,8 @@ pub struct Judge<'a> {
     pub balance: &'a Balance,
     /// each parameter along the flights
     pub tracks: &'a [Track],
+    /// what each flight names alone of its rotors; empty where the motion is not compared
+    pub alone: &'a [Option<WeakAlone>],
     /// lengths of the vehicle are known; otherwise they are told in arms
     pub is_known: bool,
 }
@@ -50,9 +53,12 @@ impl Judge<'_> {
         let found = self.beside_loads(found, order, least_sigmas);
         let mut found = self.with_alone(found, self.each_alone(order, least_sigmas), order);
         find_returns(order.len(), &mut found, &|groups, step: &Compared| {
-            let compared = self.compared(&flight_groups(groups, order));
-            compared.changes.is_empty() && step.certain().all(|change| compared.would_show(change))
+            self.is_back(&flight_groups(groups, order), step)
         });
+        for step in &mut found {
+            let tells = |flight| step.change.certain().any(|of| of.what.is_told_by(self.tracks, flight));
+            step.as_before.retain(|place| tells(order[*place]));
+        }
         found
     }
 
@@ -104,6 +110,12 @@ impl Judge<'_> {
     pub fn compared(&self, groups: &Groups) -> Compared {
         let balance = judge_balance(self.balance, groups, self.vehicle);
         let mut changes = self.of_balance(&balance);
+        if !changes.iter().any(|change| matches!(change.what, Changed::Rotor(_))) {
+            let by_motion = rotor_by_motion(self.alone, groups).map(of_rotor);
+            // it accounts for a balance that has no name
+            changes.retain(|change| by_motion.is_none() || change.what != Changed::Balance);
+            changes.extend(by_motion);
+        }
         let mut least = self.least_of_balance(&balance);
         let mut undecided = Vec::new();
         let scale = ScaleMoved::between(self.balance, groups);
@@ -127,14 +139,19 @@ impl Judge<'_> {
         }
         changes.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
         undecided.sort_by(|(a, _), (b, _)| b.sigmas.total_cmp(&a.sigmas));
-        let of_motion = |change: &&Change| matches!(change.what, Changed::Parameter(_));
-        let moved = changes.iter().filter(of_motion).count() + undecided.len();
-        let other_vehicle = self.lifts(groups).filter(|lifts| moved >= OTHER_PARAMETERS && are_apart(*lifts));
-        Compared { balance, changes, undecided, least, other_vehicle }
+        let mut compared = Compared { balance, changes, undecided, least, other_vehicle: None };
+        let are_several = compared.moved_by_motion() >= OTHER_PARAMETERS;
+        compared.other_vehicle = self.lifts(groups).filter(|lifts| are_several && are_apart(*lifts));
+        compared
     }
 
     /// Whether a parameter moved, where the scale that it goes with may have moved.
-    fn judged(&self, track: &Track, groups: &Groups, scale: Option<ScaleMoved>) -> Option<ParameterChange> {
+    pub(super) fn judged(
+        &self,
+        track: &Track,
+        groups: &Groups,
+        scale: Option<ScaleMoved>,
+    ) -> Option<ParameterChange> {
         let factor =
             scale.filter(|_| follows_force(track.unit)).map(|scale| scale.factor(self.vehicle.anchor));
         match factor {
@@ -168,7 +185,8 @@ impl Judge<'_> {
     }
 
     /// Full thrust over weight where it differs by more than one vehicle's does, also for the voltage where all flights have one, and no
-    /// parameter tells whether it is one vehicle: of the groups, or without groups at the place of a row where it differs the most.
+    /// parameter tells that it is one vehicle: none is compared, or one of them moved as well. Of the groups, or without groups at the place of
+    /// a row where it differs the most.
     #[must_use]
     pub fn lifts_apart(&self, groups: Option<&Groups>) -> Option<LiftsApart> {
         let at = |groups: &Groups, from: Option<usize>| {
@@ -177,8 +195,9 @@ impl Judge<'_> {
             let tells = |track: &Track| {
                 is_of_vehicle(track) && judge_parameter(&track.values, groups, &track.spread).is_some()
             };
-            let is_told = !for_voltage || self.tracks.iter().any(tells);
-            (!is_told).then_some(LiftsApart { before, after, from })
+            let moved = self.compared(groups).moved_by_motion() > 0;
+            let is_told = !for_voltage || !moved && self.tracks.iter().any(tells);
+            (!is_told).then_some(LiftsApart { before, after, from, moved })
         };
         let count = self.balance.flights.len();
         let along = || (1..count).filter_map(|from| at(&Groups::split(count, from), Some(from)));
@@ -227,7 +246,7 @@ impl Judge<'_> {
             Some(What::Rotor(rotor)) => vec![change(Changed::Rotor(rotor), found.factor, "-", sigmas)],
             Some(What::CentreOfMass) => {
                 let along = |axis: usize| {
-                    let moved = balance.moved[axis].times(arm);
+                    let moved = balance.beside_a_load(axis).times(arm);
                     change(Changed::CentreOfMass(axis), Some(moved), length, moved.sigmas().abs())
                 };
                 // the axis along which it stayed is no change
@@ -255,6 +274,18 @@ impl Judge<'_> {
             unit: length,
         });
         balance.least.rotors.iter().enumerate().map(of_rotor).chain(centre).collect()
+    }
+}
+
+/// What the motion alone tells of a rotor.
+fn of_rotor(RotorMoved { rotor, moved, carried_by }: RotorMoved) -> Change {
+    Change {
+        what: Changed::Rotor(rotor),
+        moved: Some(moved),
+        unit: "-",
+        sigmas: moved.sigmas().abs(),
+        carried_by,
+        rivals: Vec::new(),
     }
 }
 

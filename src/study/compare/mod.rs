@@ -1,6 +1,8 @@
 //! `compare`: one vehicle over its flights, and what changed of it.
 
 mod along;
+mod back;
+mod by_motion;
 mod judge;
 mod motion;
 mod order;
@@ -10,6 +12,7 @@ mod run;
 mod scale;
 mod usable;
 
+pub use by_motion::WeakAlone;
 pub use judge::Judge;
 pub(super) use motion::is_compared;
 pub use request::CompareRequest;

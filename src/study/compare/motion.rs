@@ -1,5 +1,6 @@
 //! What the motion of each flight says of the vehicle's parameters.
 
+use super::by_motion::WeakAlone;
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{
     ExplainSettings, Explanation, FlightParameter, LATENCY, Named, Owner, brief, by_flight, explain,
@@ -14,6 +15,8 @@ use rayon::prelude::*;
 pub(super) struct Motion {
     /// each parameter along all flights
     pub(super) tracks: Vec<Track>,
+    /// what each flight names alone of its rotors
+    pub(super) alone: Vec<Option<WeakAlone>>,
     /// why a flight is not among them
     pub(super) reasons: Vec<Option<String>>,
     /// what is not compared, and what single flights show of it
@@ -46,19 +49,28 @@ pub(super) fn motion(
     let compared = |parameters: Vec<FlightParameter>| parameters.into_iter().filter(is_compared).collect();
     let each = places.into_iter().zip(each.into_iter().map(compared)).collect();
     let mut tracks: Vec<Track> = Track::all(each, signals.len(), vehicle);
-    // what a flight does not determine did not change in it
-    let is_of_torques =
-        |track: &&mut Track| track.name == LATENCY || track.effect.is_none() && track.owner == Owner::Vehicle;
-    for track in tracks.iter_mut().filter(is_of_torques) {
-        let all = track.clone();
-        track.values.iter_mut().for_each(|of| *of = of.filter(|value| all.is_determined(*value)));
-    }
+    tracks.iter_mut().for_each(by_what_is_determined);
     let paths = inputs.iter().zip(&explained).filter(|(_, of)| of.is_ok()).map(|(input, _)| &*input.path);
     let of_each: Vec<(&str, &Explanation)> = paths.zip(explanations).collect();
+    let weak = |of: &Result<Explanation, String>| WeakAlone::of(of.as_ref().ok()?, vehicle);
+    let alone = explained.iter().map(weak).collect();
     let notes = curve(&tracks).into_iter().chain(of_some_flights(&of_each, vehicle)).collect();
     let reasons = explained.iter().map(|of| of.as_ref().err().cloned()).collect();
-    tracks.iter_mut().for_each(|track| track.move_spread_into_errors(1.0));
-    Motion { tracks, reasons, notes }
+    Motion { tracks, alone, reasons, notes }
+}
+
+/// What a flight does not determine takes no part in a change. The error of an effect holds the spread then, as it is told; a latency is
+/// determined by the flight's own.
+fn by_what_is_determined(track: &mut Track) {
+    if track.name == LATENCY {
+        track.keep_determined();
+        track.move_spread_into_errors(1.0);
+        return;
+    }
+    track.move_spread_into_errors(1.0);
+    if track.owner == Owner::Vehicle {
+        track.keep_determined();
+    }
 }
 
 /// The curve of the thrust is compared where a flight's explanation has it only.

@@ -35,12 +35,31 @@ impl CompareRequest {
     /// [`StudyError::Setting`].
     pub fn check(&self) -> Result<(), StudyError> {
         check_transient(self.transient_s)?;
-        if self.before.is_empty() || self.before.len() + self.after.len() < 2 {
-            let why =
-                "expected at least two recordings: one before --with and one after it, or a row of them"
-                    .to_owned();
-            return Err(StudyError::Setting { name: "with", why });
-        }
-        self.read.check(self.before.iter().chain(&self.after))
+        let came = match (self.before.len(), self.after.len()) {
+            (0, 0) => "got no log",
+            (0, _) => "got none before --with",
+            (1, 0) => "got one log",
+            _ => return self.read.check(self.before.iter().chain(&self.after)),
+        };
+        Err(StudyError::TooFewFlights { came: came.to_owned() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_log_alone_is_told_what_a_comparison_needs() {
+        let of = |before: usize, after: usize| CompareRequest {
+            before: vec![PathBuf::from("a.bin"); before],
+            after: vec![PathBuf::from("b.bin"); after],
+            ..CompareRequest::default()
+        };
+        let said = |request: &CompareRequest| request.check().unwrap_err().to_string();
+        let how = "give two logs or more for a history, or BEFORE --with AFTER";
+        assert_eq!(said(&of(1, 0)), format!("expected at least two flights, got one log: {how}"));
+        assert_eq!(said(&of(0, 2)), format!("expected at least two flights, got none before --with: {how}"));
+        assert!(of(2, 0).check().is_ok() && of(1, 1).check().is_ok());
     }
 }

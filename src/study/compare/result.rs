@@ -1,5 +1,6 @@
 //! The result of comparing: every flight, what changed, and what could not have been seen.
 
+use super::by_motion::WeakAlone;
 use super::scale::ScaleMoved;
 use crate::change::{BalanceChange, Groups, Moved, NAMED, Step, Undecided, What};
 use crate::note::{About, Note};
@@ -24,6 +25,8 @@ pub struct CompareStudy {
     pub rotors: Vec<RotorTrack>,
     /// each parameter along the flights
     pub tracks: Vec<Track>,
+    /// what each flight names alone of its rotors; empty where the motion is not compared
+    pub alone: Vec<Option<WeakAlone>>,
     /// flights before and after, where two groups were given
     pub groups: Option<Groups>,
     /// what changed between these groups
@@ -68,6 +71,8 @@ pub struct LiftsApart {
     pub after: f64,
     /// place of the first of these, where no groups were given
     pub from: Option<usize>,
+    /// a parameter moved by more than chance as well
+    pub moved: bool,
 }
 
 impl LiftsApart {
@@ -166,6 +171,22 @@ pub struct LeastChange {
     pub unit: &'static str,
 }
 
+impl Changed {
+    /// Whether a flight says anything of it: a parameter is not determined by every flight.
+    pub(super) fn is_told_by(self, tracks: &[Track], flight: usize) -> bool {
+        let Self::Parameter(place) = self else { return true };
+        let value = tracks.get(place).and_then(|track| track.values.get(flight).copied().flatten());
+        value.is_some()
+    }
+
+    /// The last of a row of flights before `from` that says something of it, and the first of those from there on; without one `None`, and
+    /// `from` itself.
+    fn dated(self, tracks: &[Track], from: usize, flights: usize) -> (Option<usize>, usize) {
+        let tells = |flight: &usize| self.is_told_by(tracks, *flight);
+        ((0..from).rev().find(tells), (from..flights).find(tells).unwrap_or(from))
+    }
+}
+
 impl Compared {
     /// Whether what changed has a name.
     pub(super) fn has_name(&self) -> bool {
@@ -175,7 +196,22 @@ impl Compared {
     /// Standard deviations of the strongest change; 0: none.
     #[must_use]
     pub fn strongest(&self) -> f64 {
-        self.changes.iter().map(|change| change.sigmas).fold(0.0, f64::max)
+        self.changes.iter().map(|change| self.strength(change)).fold(0.0, f64::max)
+    }
+
+    /// Parameters of the motion that moved by more than chance, with a name or not decided.
+    pub(super) fn moved_by_motion(&self) -> usize {
+        let of_motion = |change: &&Change| matches!(change.what, Changed::Parameter(_));
+        self.changes.iter().filter(of_motion).count() + self.undecided.len()
+    }
+
+    /// Standard deviations of a change from what unchanged flights show. Those that are told of a centre of mass allow for a load, by which it
+    /// was judged along both axes together.
+    fn strength(&self, change: &Change) -> f64 {
+        match change.what {
+            Changed::CentreOfMass(axis) => self.balance.moved[axis].sigmas().abs(),
+            _ => change.sigmas,
+        }
     }
 
     /// The same where a load or a battery that sits elsewhere is allowed for in what it may be.
@@ -184,24 +220,16 @@ impl Compared {
         let of = |change: &Change| match change.what {
             Changed::Parameter(_) => change.sigmas,
             Changed::Rotor(_) if !change.rivals.contains(&What::CentreOfMass) => change.sigmas,
-            _ => change.sigmas.min(loaded),
+            _ => self.strength(change).min(loaded),
         };
         self.changes.iter().map(of).fold(0.0, f64::max)
     }
 
     /// The changes that are certain by themselves: a centre of mass moves along two axes, and may have moved along one only.
     pub(super) fn certain(&self) -> impl Iterator<Item = &Change> {
-        let alone = |change: &&Change| change.sigmas * change.sigmas >= NAMED;
+        let alone = move |change: &&Change| self.strength(change).powi(2) >= NAMED;
         let none = !self.changes.iter().any(|change| alone(&change));
         self.changes.iter().filter(move |change| none || alone(change))
-    }
-
-    /// Whether a change half as large as this one would have been named here.
-    #[must_use]
-    pub fn would_show(&self, change: &Change) -> bool {
-        let least = self.least.iter().find(|least| least.what == change.what);
-        let size = change.moved.map(|moved| moved.by.0.abs());
-        least.zip(size).is_some_and(|(least, size)| size > 2.0 * least.size)
     }
 }
 
@@ -243,11 +271,23 @@ impl CompareStudy {
         self.lifts_apart.is_none() && self.serials_apart.is_none() && !other
     }
 
-    /// Places of the flights from which on something is otherwise than before.
-    pub fn changed_from(&self, what: Changed) -> impl Iterator<Item = usize> {
+    /// Between which flights a change of a step lies: the last that shows what was before, and the first that shows what is since. Flights
+    /// between these do not determine it. `None`: no flight before the step does.
+    #[must_use]
+    pub fn dated(&self, step: &Step<Compared>, what: Changed) -> (Option<usize>, usize) {
+        what.dated(&self.tracks, step.from, self.flights.len())
+    }
+
+    /// The same wherever along the flights it changed.
+    pub fn changed(&self, what: Changed) -> impl Iterator<Item = (Option<usize>, usize)> {
         let is_of =
             move |step: &&Step<Compared>| step.change.changes.iter().any(|change| change.what == what);
-        self.history.iter().filter(is_of).map(|step| step.from)
+        self.history.iter().filter(is_of).map(move |step| self.dated(step, what))
+    }
+
+    /// Places of the flights that are the first to show something otherwise than before.
+    pub fn changed_from(&self, what: Changed) -> impl Iterator<Item = usize> {
+        self.changed(what).map(|(_, first)| first)
     }
 
     /// m of an arm; `None` where lengths are not known.
@@ -260,5 +300,28 @@ impl CompareStudy {
     #[must_use]
     pub fn rotor(&self, place: usize) -> &str {
         self.vehicle.rotors.get(place).map_or("?", |rotor| rotor.name.as_str())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::Owner;
+
+    #[test]
+    fn a_change_is_dated_by_flights_that_determine_it() {
+        let value = Some((0.1, 0.01));
+        let values = vec![value, value, None, value, None, value];
+        let drag = ("quadratic_drag.cx", "N/(m/s)^2");
+        let of = (Owner::Vehicle, Some("quadratic_drag"));
+        let tracks = [Track::stored(drag, of, values, vec![0.0; 6]).unwrap()];
+        let drag = Changed::Parameter(0);
+        assert_eq!(drag.dated(&tracks, 2, 6), (Some(1), 3));
+        assert_eq!(drag.dated(&tracks, 3, 6), (Some(1), 3));
+        assert_eq!(drag.dated(&tracks, 1, 6), (Some(0), 1));
+        // every flight has a balance
+        assert_eq!(Changed::Rotor(0).dated(&tracks, 2, 6), (Some(1), 2));
+        // no flight on a side
+        assert_eq!((drag.dated(&tracks, 0, 6).0, drag.dated(&tracks, 6, 6).1), (None, 6));
     }
 }

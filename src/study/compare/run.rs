@@ -55,13 +55,18 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     notes.extend(of_flights(&flights, &starts_utc_us, first));
     let balance = balance(&legs);
     progress.stage(Stage::Explaining);
-    let Motion { tracks, reasons, notes: of_motion } = moved(request, &flights, &vehicle, progress);
+    let Motion { tracks, alone, reasons, notes: of_motion } = moved(request, &flights, &vehicle, progress);
     notes.extend(of_motion);
     if draft.is_none() {
         notes.extend(contradictions(&tracks, &vehicle).iter().map(Contradiction::note));
     }
-    let judge =
-        Judge { vehicle: &vehicle, balance: &balance, tracks: &tracks, is_known: request.vehicle.is_some() };
+    let judge = Judge {
+        vehicle: &vehicle,
+        balance: &balance,
+        tracks: &tracks,
+        alone: &alone,
+        is_known: request.vehicle.is_some(),
+    };
     let count = flights.signals.len();
     let groups = (first < count).then(|| Groups::split(count, first));
     let compared = groups.as_ref().map(|groups| judge.compared(groups));
@@ -84,6 +89,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
         vehicle,
         balance,
         tracks,
+        alone,
         groups,
         compared,
         history,
@@ -142,7 +148,7 @@ fn moved(request: &CompareRequest, flights: &Prepared, vehicle: &Vehicle, progre
         return motion((&flights.inputs, &flights.signals), vehicle, progress);
     };
     let reasons = vec![Some(why.to_owned()); flights.signals.len()];
-    Motion { tracks: Vec::new(), reasons, notes: Vec::new() }
+    Motion { tracks: Vec::new(), alone: Vec::new(), reasons, notes: Vec::new() }
 }
 
 /// A remark for each flight whose balance differs from the flight's before it by no more than a load moves it, where nothing changed.
@@ -198,9 +204,9 @@ fn refuse_single<'a>(flights: impl Iterator<Item = &'a Flight>) -> Result<(), St
     let flights: Vec<&Flight> = flights.collect();
     let [flight] = flights.as_slice() else { return Ok(()) };
     let files: Vec<&str> = flight.input.files().map(|(path, _)| path).collect();
-    let why =
-        format!("expected at least two flights, but {} are logs of the same flight", files.join(" and "));
-    Err(StudyError::Setting { name: "with", why })
+    Err(StudyError::TooFewFlights {
+        came: format!("but {} are logs of the same flight", files.join(" and ")),
+    })
 }
 
 /// Mean electrical power in the air, W.

@@ -151,7 +151,8 @@ mod tests {
         let values = [[Some((0.04, 4e-4)); 3], [Some((after, 4e-4)); 3]].concat();
         let izz = Track::stored(("izz", "kg m^2"), (Owner::Vehicle, None), values, vec![0.0; 6]).unwrap();
         let tracks = [izz];
-        let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &tracks, is_known: true };
+        let judge =
+            Judge { vehicle: &vehicle, balance: &balance, tracks: &tracks, alone: &[], is_known: true };
         let order: Vec<usize> = (0..6).collect();
         let between = judge.compared(&Groups::split(6, 3)).changes.len();
         (between, judge.history(&order, 0.0).len(), judge.scale(None).is_some())

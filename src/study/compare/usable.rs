@@ -177,7 +177,9 @@ fn without_beginning(
     legs.retain(|leg| leg.time_s - 0.5 * LEG_S + step_s >= begins_s + transient_s);
     if legs.len() < LEAST_LEGS {
         let why = TrimError::TooShort { found: legs.len(), needed: LEAST_LEGS };
-        return Err(format!("{why} after the {transient_s} s that are left out at the beginning"));
+        return Err(format!(
+            "{why} after the {transient_s} s that are left out at the beginning (--transient)"
+        ));
     }
     Ok(legs)
 }
@@ -236,7 +238,7 @@ mod tests {
         let why = left(11.0).unwrap_err();
         assert!(
             why.contains("at least 6 legs of 2 s")
-                && why.ends_with("got 5 after the 11 s that are left out at the beginning")
+                && why.ends_with("got 5 after the 11 s that are left out at the beginning (--transient)")
         );
     }
 

@@ -4,10 +4,11 @@ use super::along_flights::{AlongFlights, is_of_one_flight};
 use super::readers::for_readers;
 use super::result::ExplainStudy;
 use super::traces::traces_of;
+use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::{is_irregular, signature_of};
 use crate::diagnose::{
-    Apart, ExplainSettings, Explanation, Named, Owner, Verdict, apart, called, each_with_model_of_all,
-    explain, own_wind, relative_to_air,
+    Apart, ExplainSettings, Explanation, NAME_Z, Named, Owner, Verdict, apart, called,
+    each_with_model_of_all, explain, own_wind, relative_to_air,
 };
 use crate::note::{About, Note};
 use crate::recording::Quantity;
@@ -190,7 +191,8 @@ impl ExplainStudy {
             if alone.is_empty() { flights.par_iter().map(explained).collect() } else { alone.to_vec() };
         let is_new = |named: &Named| {
             let known = self.explanation.named.iter().any(|known| known.id == named.id);
-            let is_of_one = || signature_of(named.id).is_some_and(is_of_one_flight);
+            let is_of_one =
+                || signature_of(named.id).is_some_and(|of| is_of_one_flight(of) && is_told_by_one(named, of));
             !known && !settings.refused.contains(&named.id) && is_of_one()
         };
         let of = |(place, names): (usize, Vec<Named>)| {
@@ -198,6 +200,15 @@ impl ExplainStudy {
         };
         each.into_iter().enumerate().flat_map(of).collect()
     }
+}
+
+/// Standard errors by which what one flight has alone must differ from nothing: each of the flights is asked, none of them is held back
+/// from it, and the others speak against it. Twice those of a name.
+const ALONE_Z: f64 = 2.0 * NAME_Z;
+
+fn is_told_by_one(named: &Named, of: &Signature) -> bool {
+    let mut amounts = of.amounts.iter().filter_map(|&slot| named.get(of.effect.parameters().get(slot)?.name));
+    amounts.any(|amount| (amount.value - of.nothing).abs() > ALONE_Z * amount.std)
 }
 
 /// Ratio of the periods of commands from which on flights are logged in different ways.

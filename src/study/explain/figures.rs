@@ -158,15 +158,18 @@ impl ExplainStudy {
 
     /// The same after: of the model found, less the empirical force where there is one.
     pub(super) fn left_after(&self, axis: usize) -> Vec<f64> {
-        let search = &self.explanation.search;
+        let after = self.fitted_after();
         match &self.empirical {
-            None => search.after.rows.residual[axis].clone(),
-            // of what it was fitted to: without a name that is the rigid body
-            Some(term) if self.verdict() == Verdict::Unexplained => {
-                term.left_of(&search.before, &self.traces, axis)
-            }
-            Some(term) => term.left_of(&search.after, &self.traces, axis),
+            None => after.rows.residual[axis].clone(),
+            Some(term) => term.left_of(after, &self.traces, axis),
         }
+    }
+
+    /// The fit of which it is: an empirical force without a name beside it was fitted to what the rigid body leaves.
+    fn fitted_after(&self) -> &Fitted {
+        let search = &self.explanation.search;
+        let is_alone = self.empirical.is_some() && self.verdict() == Verdict::Unexplained;
+        if is_alone { &search.before } else { &search.after }
     }
 
     fn portrait(&self) -> Option<Portrait> {
@@ -176,7 +179,7 @@ impl ExplainStudy {
 
     fn recorded_and_simulated(&self, rows: &[Range<usize>]) -> Vec<RecordedAndSimulated> {
         let axis = self.worst_axis();
-        let (before, after) = (&self.explanation.search.before, &self.explanation.search.after);
+        let (before, after) = (&self.explanation.search.before, self.fitted_after());
         let scale = |fitted: &Fitted| {
             let body = &fitted.base.vehicle.body;
             if axis < 3 { body.mass_kg } else { body.inertia_kg_m2[(axis - 3, axis - 3)] }

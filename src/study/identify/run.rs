@@ -72,7 +72,7 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     notes.extend(apart);
     // memory for the work that begins
     drop(recordings);
-    let lost: Vec<String> = inputs.iter().flat_map(InputFile::losses).map(str::to_owned).collect();
+    let lost: Vec<String> = inputs.iter().flat_map(InputFile::losses).collect();
     let study = IdentifyStudy::of_found(signals, inputs, known.loaded.vehicle, &request.settings(), &found)
         .map_err(|error| StudyError::of_estimate(error, &lost))?;
     let study = match &with {
