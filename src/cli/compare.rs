@@ -32,7 +32,7 @@ pub struct CompareArgs {
     /// compare the balance of the rotors alone, not what the motion shows
     #[arg(long)]
     pub balance_only: bool,
-    /// write report.html and comparison.json into this folder
+    /// write report.html, report.md, report.txt and comparison.json into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// how the recordings are read

@@ -14,6 +14,7 @@ mod model;
 mod onboard;
 mod plan;
 mod recording;
+mod report;
 mod run;
 mod verb;
 mod verbosity;
@@ -36,6 +37,7 @@ pub use plan::{CriterionName, PlanArgs};
 pub use recording::{
     ExplainArgs, IdentifyArgs, InspectArgs, PageFormat, ProveArgs, RedactArgs, ValidateArgs,
 };
+pub use report::{ReportArgs, ReportFormat};
 pub use run::RunArgs;
 pub use verb::{Cli, Verb, color_of};
 pub use verbosity::Verbosity;

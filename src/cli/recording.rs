@@ -66,7 +66,7 @@ pub struct ExplainArgs {
     /// with --next: file with a [limits] table, instead of the vehicle's
     #[arg(long, value_name = "FILE", requires = "next")]
     pub limits: Option<PathBuf>,
-    /// write report.html, report.md (the text of --format md), model.toml and explanation.json into this folder
+    /// write report.html, report.md (the text of --format md), report.txt, model.toml and explanation.json into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// what is printed: text for a terminal, or md, a summary in Markdown to paste into a forum or an issue

@@ -16,6 +16,7 @@ use super::model::{ExportArgs, SimulateArgs, VehicleArgs};
 use super::onboard::LogArgs;
 use super::plan::PlanArgs;
 use super::recording::{ExplainArgs, IdentifyArgs, InspectArgs, ProveArgs, RedactArgs, ValidateArgs};
+use super::report::ReportArgs;
 use super::run::RunArgs;
 use super::verbosity::Verbosity;
 
@@ -107,6 +108,11 @@ pub enum Verb {
     /// Say what changed of a vehicle between flights: which rotor, the centre of mass, which parameter
     #[command(after_help = "Example:\n  mavid compare before.ulg --with after.ulg --mass 2.0")]
     Compare(CompareArgs),
+    /// Print the report that run, explain or compare wrote into a folder: as Markdown, text, JSON or HTML
+    #[command(
+        after_help = "Examples:\n  mavid report mavid-run\n  mavid report explained --format text\n  mavid report explained --format html > report.html"
+    )]
+    Report(ReportArgs),
     /// Write the streams of a log as CSV, MCAP or Parquet, with what an explanation leaves of them
     #[command(after_help = "Example:\n  mavid convert flight.ulg --to csv --out streams")]
     Convert(ConvertArgs),

@@ -67,6 +67,8 @@ impl Analysis {
         let radio = folder.join(fly::TLOG);
         let FlightLogs { logs, why } = FlightLogs::of(&radio, system, onboard);
         why.into_iter().for_each(|why| tell(Word::Message(why)));
+        // the vehicle's own log holds no other system
+        let system = system.filter(|_| logs.contains(&radio));
         let AfterFlight { identified, explained } = after_flight(&logs, vehicle, system, &notes);
         notes.words().into_iter().for_each(&mut *tell);
         let identified = identified.map_err(|error| CommandError::from(error).to_string());

@@ -2,18 +2,18 @@
 
 use std::path::PathBuf;
 
-use mavid::report::{ComparisonDocument, comparison_html, comparison_text};
+use mavid::report::{ComparisonDocument, comparison_html, comparison_markdown, comparison_text};
 use mavid::study::compare;
 use mavid::text;
 
-use super::explain::REPORT;
+use super::explain::{REPORT, SUMMARY, TEXT};
 use super::progress::Spinner;
 use super::standard_error::StandardError;
 use super::{CommandError, Outcome, output};
 use crate::cli::CompareArgs;
 
 /// Name of the document that is written.
-const DOCUMENT: &str = "comparison.json";
+pub const DOCUMENT: &str = "comparison.json";
 
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &CompareArgs) -> Result<Outcome, CommandError> {
@@ -24,6 +24,8 @@ pub fn run(json: bool, stderr: &StandardError, args: &CompareArgs) -> Result<Out
     if let Some(folder) = &args.out {
         output::folder(folder)?;
         output::file(&folder.join(REPORT), &comparison_html(&study))?;
+        output::file(&folder.join(SUMMARY), &comparison_markdown(&study))?;
+        output::file(&folder.join(TEXT), &format!("{}\n", comparison_text(&study)))?;
         output::file(&folder.join(DOCUMENT), &output::json_text(&ComparisonDocument::new(&study))?)?;
     }
     if json {
@@ -50,7 +52,7 @@ fn check_targets(args: &CompareArgs) -> Result<(), CommandError> {
         )));
     }
     let inputs: Vec<&PathBuf> = args.before.iter().chain(&args.after).chain(&args.vehicle).collect();
-    let written = [REPORT, DOCUMENT].map(|name| folder.join(name));
+    let written = [REPORT, SUMMARY, TEXT, DOCUMENT].map(|name| folder.join(name));
     output::refuse_overwriting(&inputs, &written.iter().collect::<Vec<_>>())?;
     output::can_make_folder(folder)
 }

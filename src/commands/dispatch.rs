@@ -3,7 +3,7 @@
 use super::standard_error::StandardError;
 use super::{
     CommandError, Outcome, compare, convert, csv_map, demo, effects, explain, export, fleet, fly, identify,
-    inspect, installed, log, plan, prove, record, redact, replay, simulate, sitl, validate, vehicle,
+    inspect, installed, log, plan, prove, record, redact, replay, report, simulate, sitl, validate, vehicle,
 };
 use crate::cli::{Cli, Verb};
 
@@ -25,6 +25,7 @@ pub fn run(cli: &Cli, stderr: &StandardError) -> Result<Outcome, CommandError> {
         Verb::Replay(args) => replay::run(cli.json, stderr, args),
         Verb::Explain(args) => explain::run(cli.json, stderr, args),
         Verb::Compare(args) => compare::run(cli.json, stderr, args),
+        Verb::Report(args) => report::run(cli.json, args),
         Verb::Convert(args) => convert::run(cli.json, stderr, args),
         Verb::Fleet(args) => fleet::run(cli.json, stderr, args),
         Verb::FleetLog(args) => fleet::run_log(args),

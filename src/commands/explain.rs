@@ -23,11 +23,13 @@ const MODEL: &str = "model.toml";
 pub const REPORT: &str = "report.html";
 /// The summary to paste into a forum or an issue: the text of `--format md`.
 pub const SUMMARY: &str = "report.md";
-const DOCUMENT: &str = "explanation.json";
+/// The text for the terminal.
+pub const TEXT: &str = "report.txt";
+pub const DOCUMENT: &str = "explanation.json";
 /// The vehicle file, where it was drafted.
 const VEHICLE: &str = "vehicle.toml";
 /// All of them.
-pub const WRITTEN: [&str; 4] = [MODEL, REPORT, SUMMARY, DOCUMENT];
+pub const WRITTEN: [&str; 5] = [MODEL, REPORT, SUMMARY, TEXT, DOCUMENT];
 
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &ExplainArgs) -> Result<Outcome, CommandError> {
@@ -88,11 +90,12 @@ pub fn make(progress: &dyn Progress, args: &ExplainArgs) -> Result<ExplainStudy,
     Ok(study)
 }
 
-/// Writes model, report, summary and document into a folder, which is made.
+/// Writes model, report, summary, text and document into a folder, which is made.
 pub fn write(study: &ExplainStudy, folder: &Path) -> Result<(), CommandError> {
     output::folder(folder)?;
     output::file(&folder.join(REPORT), &explanation_html(study))?;
     output::file(&folder.join(SUMMARY), &explanation_markdown(study))?;
+    output::file(&folder.join(TEXT), &format!("{}\n", explanation_text(study)))?;
     output::file(&folder.join(DOCUMENT), &output::json_text(&ExplanationDocument::new(study))?)?;
     if let Some(draft) = &study.drafted {
         output::file(&folder.join(VEHICLE), &draft_text(draft)?)?;
@@ -103,11 +106,8 @@ pub fn write(study: &ExplainStudy, folder: &Path) -> Result<(), CommandError> {
 
 /// What is to be known about the data, line by line.
 pub fn remarks(study: &ExplainStudy) -> Vec<Word> {
-    let of_input = |input: &InputFile| {
-        let said = |remark: &&str| Word::Message(format!("{}: {remark}", input.path));
-        input.remarks().iter().map(said).collect::<Vec<_>>()
-    };
-    study.notes.iter().map(Word::from).chain(study.inputs().flat_map(of_input)).collect()
+    let of_inputs = study.inputs().flat_map(InputFile::remarks).map(|note| Word::Message(note.sentence()));
+    study.notes.iter().map(Word::from).chain(of_inputs).collect()
 }
 
 /// Whether something of the recordings was lost.

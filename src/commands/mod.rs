@@ -34,6 +34,7 @@ mod prove;
 mod record;
 mod redact;
 mod replay;
+mod report;
 mod run;
 mod simulate;
 mod sitl;

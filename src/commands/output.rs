@@ -25,9 +25,14 @@ pub fn text(text: &str) -> Result<(), CommandError> {
     }
 }
 
+/// Standard output is a terminal.
+pub fn is_terminal() -> bool {
+    io::stdout().is_terminal()
+}
+
 /// Standard output and standard error are terminals: for people one and the same.
 pub fn is_one_terminal() -> bool {
-    io::stdout().is_terminal() && io::stderr().is_terminal()
+    is_terminal() && io::stderr().is_terminal()
 }
 
 /// Lines below a result for people that is longer than its terminal is high: what stood at its top is out of sight. They are made

@@ -8,17 +8,29 @@ use maud::{Markup, PreEscaped, html};
 /// A line's end, for those who read the file.
 pub(super) const BREAK: PreEscaped<&str> = PreEscaped("\n");
 
+/// Units, of which the number before them does not stand on another line.
+const UNITS: [&str; 23] = [
+    "%", "N", "m", "mm", "cm", "m/s", "m/s^2", "s", "ms", "1/s", "Hz", "kg", "g", "kg/m", "rad", "rad/s",
+    "rad/s^2", "deg", "V", "A", "W", "sigma", "N/m",
+];
+
 /// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Cell {
     /// words, to the left
     Text(String),
+    /// one word that is never broken, to the left
+    Name(String),
     /// a number, to the right
     Number(String),
 }
 
 pub(super) fn text(text: impl Into<String>) -> Cell {
     Cell::Text(text.into())
+}
+
+pub(super) fn name(text: impl Into<String>) -> Cell {
+    Cell::Name(text.into())
 }
 
 pub(super) fn number(text: impl Into<String>) -> Cell {
@@ -40,21 +52,52 @@ pub(super) fn folded_numbers(words: &str, content: &Markup) -> Markup {
     html! { details.numbers { summary { (words) } (content) } (BREAK) }
 }
 
+/// Words in which a number, its error and its unit stand on one line.
+pub(super) fn unbroken(words: &str) -> String {
+    let mut out = String::with_capacity(words.len() + 16);
+    let mut before = None;
+    for word in words.split(' ') {
+        if let Some(before) = before {
+            out.push(if is_one(before, word) { '\u{a0}' } else { ' ' });
+        }
+        out.push_str(word);
+        before = Some(word);
+    }
+    out
+}
+
+/// Whether two neighbours are parts of one quantity.
+fn is_one(before: &str, word: &str) -> bool {
+    let bare = word.trim_end_matches(['.', ',', ';', ':', ')']);
+    match (before, bare) {
+        ("+-", error) => is_number(error),
+        ("N", "m") | ("kg", "m^2") => true,
+        (value, "+-") => is_number(value),
+        (value, unit) => is_number(value) && UNITS.contains(&unit),
+    }
+}
+
+fn is_number(word: &str) -> bool {
+    let digits = word.trim_start_matches(['(', '-', '+']);
+    let is_digit = |letter: char| letter.is_ascii_digit();
+    digits.starts_with(is_digit) && digits.ends_with(is_digit)
+}
+
 pub(super) fn paragraph(words: &str) -> Markup {
-    html! { p { (words) } (BREAK) }
+    html! { p { (unbroken(words)) } (BREAK) }
 }
 
 pub(super) fn note(words: &str) -> Markup {
-    html! { p.note { (words) } (BREAK) }
+    html! { p.note { (unbroken(words)) } (BREAK) }
 }
 
 pub(super) fn warning(words: &str) -> Markup {
-    html! { p.warn { (words) } (BREAK) }
+    html! { p.warn { (unbroken(words)) } (BREAK) }
 }
 
 /// A chart, with a caption if it is not empty.
 pub(super) fn figure(chart: &Markup, caption: &str) -> Markup {
-    html! { figure { (chart) @if !caption.is_empty() { figcaption { (caption) } } } (BREAK) }
+    html! { figure { (chart) @if !caption.is_empty() { figcaption { (unbroken(caption)) } } } (BREAK) }
 }
 
 /// A table; nothing without rows. A heading that ends in `|` is above numbers. On a narrow screen each value stands after the
@@ -66,7 +109,7 @@ pub(super) fn table(caption: &str, heads: &[&str], rows: &[Vec<Cell>]) -> Markup
     };
     html! {
         @if !rows.is_empty() {
-            p.cap { (caption) }
+            p.cap { (unbroken(caption)) }
             div.wide.stack tabindex="0" role="region" aria-label=(caption) { table {
                 thead { tr { @for head in heads {
                     @if let Some(head) = head.strip_suffix('|') { th.n { (head) } } @else { th { (head) } }
@@ -82,8 +125,9 @@ pub(super) fn table(caption: &str, heads: &[&str], rows: &[Vec<Cell>]) -> Markup
 
 fn cell_markup(cell: &Cell, head: &str) -> Markup {
     match cell {
-        Cell::Text(words) => html! { td data-head=(head) { (words) } },
-        Cell::Number(words) => html! { td.n data-head=(head) { (words) } },
+        Cell::Text(words) => html! { td data-head=(head) { (unbroken(words)) } },
+        Cell::Name(words) => html! { td.name data-head=(head) { (words) } },
+        Cell::Number(words) => html! { td.n data-head=(head) { (unbroken(words)) } },
     }
 }
 
@@ -119,5 +163,23 @@ mod tests {
         assert_eq!(file.matches("&lt;b&gt;\\u{1b}[31m&amp;").count(), 12, "{file}");
         assert!(file.starts_with("<!DOCTYPE html>\n<html lang=\"en\">") && file.ends_with("</html>\n"));
         assert_eq!(table("c", &["h"], &[]).into_string(), "");
+    }
+
+    #[test]
+    fn a_number_stands_beside_its_error_and_its_unit() {
+        let shown = |words: &str| unbroken(words).replace('\u{a0}', "~");
+        assert_eq!(shown("drag (1.17 +- 0.02 across), by 97 %."), "drag (1.17~+-~0.02 across), by 97~%.");
+        assert_eq!(shown("0.040 +- 0.003 N m per rad/s"), "0.040~+-~0.003~N~m per rad/s");
+        assert_eq!(
+            shown("izz -0.0003 +- 0.0004 kg m^2; 14 % (51 to 56 %)"),
+            "izz -0.0003~+-~0.0004~kg~m^2; 14~% (51 to 56~%)"
+        );
+        // other words are broken as before
+        assert_eq!(
+            shown("motor 2 (rear left), 2 flights +- few  a"),
+            "motor 2 (rear left), 2 flights +- few  a"
+        );
+        assert!(note("0.5 s").into_string().contains("0.5\u{a0}s"));
+        assert!(table("c", &["h"], &[vec![name("imu_offset")]]).into_string().contains("class=\"name\""));
     }
 }

@@ -24,7 +24,7 @@ mod vehicle;
 mod vehicle_drawing;
 
 pub use chart::{Band, Bars, Line, Panel, Strip, Stroke, svg};
-pub use comparison::{ComparisonDocument, comparison_html, comparison_text};
+pub use comparison::{ComparisonDocument, comparison_html, comparison_markdown, comparison_text};
 pub use effects::{effect_text, effects_text};
 pub use explanation::{
     ExplanationDocument, explained_model, explanation_answer, explanation_answer_line, explanation_html,

@@ -3,7 +3,7 @@
 //! Its plots are drawings. The script of the page makes them into plots to zoom and to read values from; without it, and on
 //! paper, the drawings stay.
 
-use super::html::BREAK;
+use super::html::{BREAK, unbroken};
 use crate::text::clean_lines;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -35,8 +35,8 @@ pub(super) fn page(title: &str, answer: &str, tags: &[String], sections: &Markup
             (BREAK)
             body { main { (BREAK)
                 h1 { (title) } (BREAK)
-                p.answer { (answer) } (BREAK)
-                p.tags { @for tag in tags { span { (tag) } " " } } (BREAK)
+                p.answer { (unbroken(answer)) } (BREAK)
+                p.tags { @for tag in tags { span { (unbroken(tag)) } " " } } (BREAK)
                 (sections)
             }
             @if has_plots { script { (PreEscaped(SCRIPT)) } }

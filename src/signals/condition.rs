@@ -108,7 +108,7 @@ pub fn condition(
     let rate = chosen.rate.and_then(|(_, s)| vectors_onto(s, 0.0, &grid));
     let (mask, used) =
         mask(recording, (&chosen, &actuation), (&grid, rate.as_deref()), &airborne_s, settings.transient_s);
-    let centers = enough_centers(&kernel, (&mask, &used), (step_s, settings.weak_half_width_s))?;
+    let centers = enough_centers(&kernel, (&mask, &used), step_s, settings)?;
     let frame = AlignFrame { askew: settings.askew, grid: &grid, kernel: &kernel, centers: &centers };
     let motion = Motion::aligned(&chosen, rate, &frame, vehicle.gravity_m_s2);
     let felt = actuation.onto(&grid, vehicle);
@@ -155,15 +155,12 @@ pub fn condition(
 fn enough_centers(
     kernel: &WeakKernel,
     (mask, used): (&[bool], &Usable),
-    (step_s, half_width_s): (f64, f64),
+    step_s: f64,
+    settings: &ConditionSettings,
 ) -> Result<Vec<usize>, SignalsError> {
     let centers = kernel.centers(mask, stride(step_s));
     if centers.len() < 40 {
-        return Err(SignalsError::NothingUsable {
-            usable_s: mask.iter().filter(|m| **m).count() as f64 * step_s,
-            needed_s: 2.0 + 2.0 * half_width_s,
-            reason: used.summary(),
-        });
+        return Err(used.refusal(2.0 + 2.0 * settings.weak_half_width_s, settings.transient_s));
     }
     Ok(centers)
 }

@@ -90,6 +90,19 @@ pub enum SignalsError {
         /// of the weight: below it a vehicle does not fly
         share: f64,
     },
+    /// the time that is left out at the beginning is most of the flight
+    #[error(
+        "the time that is left out at the beginning (--transient) leaves too little: expected at most {most_s:.1} s, got {asked_s} s \
+         ({reason})"
+    )]
+    LeftOutTooLong {
+        /// s that would leave enough, if nothing else is left out
+        most_s: f64,
+        /// s
+        asked_s: f64,
+        /// reasons why time was left out
+        reason: String,
+    },
     /// no stretch of flight is left
     #[error("nothing to identify from: {usable_s:.1} s usable, at least {needed_s:.1} s needed ({reason})")]
     NothingUsable {

@@ -34,6 +34,9 @@ const APART: f64 = 0.3;
 const RATIO: f64 = 2.0;
 /// Largest ratio of mean thrust to weight, or its inverse. A wrong thrust curve is within it, a wrong unit is not.
 const CARRIED: f64 = 1.5;
+/// Least part of the torque about roll that turns the vehicle about pitch, or of that about pitch about roll, where rotors are told to be turned
+/// about the vertical: 12 degrees. A rotor that gives half of its thrust mixes 0.13 of them, also where no noise hides it.
+const TURNED: f64 = 0.2;
 /// Least share of a torque's energy that other columns do not explain. With less, the column is told by what
 /// resembles it.
 const SEEN: f64 = 0.05;
@@ -244,36 +247,48 @@ fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Op
         columns.iter().map(|column| DVector::from_vec(centred(column))).collect();
     (0..AXIS_NAMES.len()).find_map(|axis| {
         let changed = DVector::from_vec(centred(&column(&changed, axis)));
-        let alike = alone(&columns, &changed)?;
-        let (best, beside) = (strongest(alike, |_| true)?, strongest(alike, |other| other != axis)?);
-        let told = |other: usize, too: &str, expected: &str| {
-            let sign = if alike[other] < 0.0 { "-" } else { "" };
-            format!(
-                "the body turns about {} as if by the rotors' torque about {sign}{}{too} (partial correlation {:.2}; {:.2} with that \
-                 about {}): expected the rotors {expected}",
-                AXIS_NAMES[axis], AXIS_NAMES[other], alike[other].abs(), alike[axis], AXIS_NAMES[axis]
-            )
-        };
-        if alike[best].abs() > ALIKE && alike[best].abs() > alike[axis] + APART {
-            Some(told(best, "", "in the vehicle file's order, at its places and turning its way"))
-        } else if alike[beside].abs() > ALIKE {
-            Some(told(beside, " as well", "at the vehicle file's places, not turned about the vertical"))
+        let parts = alone(&columns, &changed)?;
+        let (other, beside) = other_torque(&parts, axis)?;
+        let (too, expected) = if beside {
+            (" as well", "at the vehicle file's places, not turned about the vertical")
         } else {
-            None
-        }
+            ("", "in the vehicle file's order, at its places and turning its way")
+        };
+        let sign = if parts[other].alike < 0.0 { "-" } else { "" };
+        Some(format!(
+            "the body turns about {} as if by the rotors' torque about {sign}{}{too} (partial correlation {:.2}; {:.2} with that about {}): \
+             expected the rotors {expected}",
+            AXIS_NAMES[axis], AXIS_NAMES[other], parts[other].alike.abs(), parts[axis].alike, AXIS_NAMES[axis]
+        ))
     })
 }
 
-/// The axis of the largest absolute correlation among some.
-fn strongest(alike: [f64; 3], among: impl Fn(usize) -> bool) -> Option<usize> {
-    (0..alike.len()).filter(|axis| among(*axis)).max_by(|&a, &b| alike[a].abs().total_cmp(&alike[b].abs()))
+/// The axis about which the rotors' torque turns the body about `axis` in place of their torque about that, or (true) beside it: rotors that
+/// are turned about the vertical exchange a part of roll and pitch. A weak rotor mixes all three torques as well, by less of those two.
+fn other_torque(parts: &[Part; 3], axis: usize) -> Option<(usize, bool)> {
+    let best = (0..parts.len()).max_by(|&a, &b| parts[a].alike.abs().total_cmp(&parts[b].alike.abs()))?;
+    if parts[best].alike.abs() > ALIKE && parts[best].alike.abs() > parts[axis].alike + APART {
+        return Some((best, false));
+    }
+    let beside = [1, 0].get(axis).copied()?;
+    let is_turned =
+        parts[beside].alike.abs() > ALIKE && parts[beside].size.abs() > TURNED * parts[axis].size.abs();
+    is_turned.then_some((beside, true))
 }
 
-/// Partial correlation of `values` with each of the first three columns, without the part of all other columns; 0 for a
-/// column that the others explain almost completely. `None` if the system cannot be solved.
-fn alone(columns: &[DVector<f64>], values: &DVector<f64>) -> Option<[f64; 3]> {
-    let mut out = [0.0; 3];
-    for (index, alike) in out.iter_mut().enumerate() {
+/// The part of a column in values, without that of all other columns; none of a column that the others explain almost completely.
+#[derive(Debug, Clone, Copy, Default)]
+struct Part {
+    /// partial correlation
+    alike: f64,
+    /// how often the column is in the values
+    size: f64,
+}
+
+/// The part of each of the first three columns in `values`. `None` if the system cannot be solved.
+fn alone(columns: &[DVector<f64>], values: &DVector<f64>) -> Option<[Part; 3]> {
+    let mut out = [Part::default(); 3];
+    for (index, part) in out.iter_mut().enumerate() {
         let others: Vec<DVector<f64>> = columns
             .iter()
             .enumerate()
@@ -286,7 +301,9 @@ fn alone(columns: &[DVector<f64>], values: &DVector<f64>) -> Option<[f64; 3]> {
         let seen = own.norm_squared() > SEEN * columns[index].norm_squared();
         // what the others leave of the change itself is little where they account for it
         let scale = own.norm() * left.norm().max(LEFT * values.norm());
-        *alike = if seen && scale > 0.0 { own.dot(&left) / scale } else { 0.0 };
+        if seen && scale > 0.0 {
+            *part = Part { alike: own.dot(&left) / scale, size: own.dot(&left) / own.norm_squared() };
+        }
     }
     Some(out)
 }
@@ -315,6 +332,37 @@ fn likeness(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rotors_turned_about_the_vertical_are_told_and_what_a_weak_rotor_mixes_is_not() {
+        let parts = |of: [(f64, f64); 3]| of.map(|(alike, size)| Part { alike, size });
+        // motor 1 at 0.93: a part of yaw torque and of pitch in roll, which no noise hides
+        let weak = parts([(0.98, 0.97), (0.70, 0.017), (-0.90, -0.3)]);
+        assert_eq!(other_torque(&weak, 0), None);
+        // by 30 degrees
+        let turned = parts([(0.95, 0.87), (-0.85, -0.5), (0.1, 0.02)]);
+        assert_eq!(other_torque(&turned, 0), Some((1, true)));
+        assert_eq!(other_torque(&parts([(0.8, 0.5), (0.9, 0.87), (0.0, 0.0)]), 1), Some((0, true)));
+        // about the vertical there is nothing to exchange
+        assert_eq!(other_torque(&parts([(0.7, 0.1), (0.0, 0.0), (0.9, 1.0)]), 2), None);
+        // in place of its own
+        let exchanged = parts([(0.1, 0.1), (0.9, 1.0), (0.0, 0.0)]);
+        assert_eq!(other_torque(&exchanged, 0), Some((1, false)));
+        assert_eq!(other_torque(&parts([(-0.9, -1.0), (0.0, 0.0), (0.0, 0.0)]), 0), Some((0, false)));
+    }
+
+    #[test]
+    fn the_part_of_a_column_is_told_beside_its_correlation() {
+        let wave = |rate: f64| DVector::from_iterator(60, (0..60).map(|i| (rate * f64::from(i)).sin()));
+        let columns = [wave(0.31), wave(0.47), wave(0.83)];
+        let [own, beside, none] = alone(&columns, &(&columns[0] + 0.05 * &columns[1])).unwrap();
+        // without noise a small part is as alike as it can be, but for what sampling does
+        assert!((own.size - 1.0).abs() < 1e-9 && (beside.size - 0.05).abs() < 1e-9, "{own:?} {beside:?}");
+        assert!(
+            own.alike > 0.9 && beside.alike > 0.05 && none.size.abs() < 1e-9,
+            "{own:?} {beside:?} {none:?}"
+        );
+    }
 
     #[test]
     fn a_velocity_in_another_unit_is_told_by_the_acceleration() {

@@ -4,7 +4,7 @@ use super::actuation::Actuation;
 use super::off_ground::{SHORTEST_FLIGHT_S, off_ground, within};
 use super::reported_state::{LEAST_FREE_S, ReportedState};
 use super::select::median_period_s;
-use super::{Grid, hold_onto};
+use super::{Grid, SignalsError, hold_onto};
 use crate::recording::{Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
@@ -68,6 +68,18 @@ impl Usable {
             if self.saturation_kept { " (kept: little else is left)" } else { "" },
             self.gap_s
         )
+    }
+
+    /// Why too little is left: less than `needed_s`, with `transient_s` to be left out at the beginning, both s.
+    pub(super) fn refusal(&self, needed_s: f64, transient_s: Option<f64>) -> SignalsError {
+        let (flown_s, reason) = (self.total_s - self.grounded_s, self.summary());
+        let most_s = flown_s - needed_s;
+        match transient_s {
+            Some(asked_s) if asked_s > most_s && most_s > 0.0 && 2.0 * self.transient_s > flown_s => {
+                SignalsError::LeftOutTooLong { most_s, asked_s, reason }
+            }
+            _ => SignalsError::NothingUsable { usable_s: self.usable_s, needed_s, reason },
+        }
     }
 }
 
@@ -297,4 +309,29 @@ fn idle(grid: &Grid, (rate, is_damaged): (&[Vector3<f64>], bool), candidates: &[
     let (first, last) =
         if is_damaged { (first + window, last.saturating_sub(window)) } else { (first, last) };
     (0..grid.count).map(|i| i < first || i >= last).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flight_of_which_the_beginning_takes_most_says_how_much_may_be_left_out() {
+        let of = |transient_s: f64| Usable {
+            total_s: 48.0,
+            grounded_s: 8.0,
+            transient_s,
+            usable_s: 40.0 - transient_s,
+            ..Usable::default()
+        };
+        let said = |used: Usable, asked_s| used.refusal(2.4, asked_s).to_string();
+        let told = said(of(40.0), Some(1e9));
+        assert!(
+            told.contains("(--transient)") && told.contains("expected at most 37.6 s, got 1000000000 s"),
+            "{told}"
+        );
+        // not asked for, or not what leaves too little
+        assert!(said(of(40.0), None).starts_with("nothing to identify from: 0.0 s usable"));
+        assert!(said(Usable { usable_s: 0.0, ..of(1.0) }, Some(1.0)).starts_with("nothing to identify from"));
+    }
 }

@@ -88,6 +88,10 @@ fn a_rotor_that_became_weak_is_found_and_an_unchanged_vehicle_is_not_called_chan
     let stored: Value =
         serde_json::from_str(&std::fs::read_to_string(folder.join("out/comparison.json")).unwrap()).unwrap();
     assert_eq!(stored, said);
+    let summary = mavid(&["report", &place("out")]);
+    let summary = String::from_utf8_lossy(&summary.stdout).into_owned();
+    assert!(summary.starts_with("```text\n") && summary.contains("(front left)"), "{summary}");
+    assert!(!summary.contains(&place("")), "no folder: {summary}");
 
     let same =
         mavid(&["compare", &first, "--with", &second, "--balance-only", "--vehicle", &vehicle, "--json"]);
@@ -224,7 +228,7 @@ fn a_vehicle_file_with_another_number_of_rotors_is_refused() {
 fn one_flight_is_nothing_to_compare() {
     let refused = mavid(&["compare", "alone.bin"]);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&refused.stderr).contains("expected at least two recordings"));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("expected at least two flights, got one log"));
 }
 
 #[test]

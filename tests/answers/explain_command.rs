@@ -79,6 +79,19 @@ fn a_complete_rigid_body_has_nothing_missing_and_says_what_it_would_have_seen() 
     // the summary beside it is what `--format md` prints
     let summary = std::fs::read_to_string(out.join("report.md")).unwrap();
     assert!(summary.starts_with("**") && summary.contains("`mavid explain --format md`"), "{summary}");
+    // and what `mavid report` prints of the folder
+    let place = out.to_str().unwrap();
+    let report = |more: &[&str]| {
+        let output = mavid(&[&["report", place][..], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert_eq!(report(&[]), summary);
+    assert_eq!(report(&["--json"]), report(&["--format", "json"]));
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert_eq!(report(&["--format", "html"]).trim_end(), page.trim_end());
+    let text = std::fs::read_to_string(out.join("report.txt")).unwrap();
+    assert_eq!(report(&["--format", "text"]).trim_end(), text.trim_end());
 }
 
 /// One file, closed, with nothing loaded from anywhere.
@@ -133,6 +146,11 @@ fn bad_input_is_refused_with_what_was_expected_and_what_came() {
         ),
         (vec![log.as_str(), "--transient", "-1"], "--transient: expected seconds from 0 on, got -1"),
         (vec![log.as_str(), "--csv-map", "map.toml"], "expected a .csv among the logs"),
+        (
+            vec![idle.to_str().unwrap(), "--system-id", "7"],
+            "--system-id: expected a telemetry log (.tlog) among the logs, got none",
+        ),
+        (vec![log.as_str(), "--transient", "1e9"], "(--transient) leaves too little: expected at most"),
         (vec![log.as_str(), "--out", &log], "expected a folder"),
         (
             vec![log.as_str(), "--holdout", read.to_str().unwrap(), "--out", folder.to_str().unwrap()],
@@ -270,7 +288,7 @@ fn identify_and_validate_write_reports_of_one_file() {
     whole_report(&out.join("report.html"));
     let text = std::fs::read_to_string(out.join("report.html")).unwrap();
     assert!(
-        text.contains("model predicts better than p01_vehicle: its 0.5 s errors are"),
+        text.contains("model predicts better than p01_vehicle: its 0.5\u{a0}s errors are"),
         "{}",
         &text[..2500]
     );

@@ -31,6 +31,30 @@ async function start() {
   return puppeteer.launch({ executablePath: await chromium.executablePath(), headless: 'shell', args: chromium.args, env });
 }
 
+// runs inside of the page before its own script: what is drawn into a picture that turns, its axes and its words
+function listen() {
+  const pens = CanvasRenderingContext2D.prototype;
+  const heard = (pen) => (pen.canvas.heard = pen.canvas.heard || { axes: [], words: [], way: [], at: null });
+  const hear = (name, tell) => {
+    const own = pens[name];
+    pens[name] = function (...given) {
+      tell(this, given);
+      return own.apply(this, given);
+    };
+  };
+  hear('scale', (pen) => { pen.canvas.heard = null; });
+  hear('beginPath', (pen) => { heard(pen).way = []; });
+  hear('moveTo', (pen, [x, y]) => { heard(pen).at = [x, y]; });
+  hear('lineTo', (pen, [x, y]) => {
+    const of = heard(pen);
+    if (of.at) of.way.push([of.at, [x, y]]);
+    of.at = [x, y];
+  });
+  // the axes alone are half transparent
+  hear('stroke', (pen) => { if (pen.globalAlpha === 0.5) heard(pen).axes.push(...heard(pen).way); });
+  hear('fillText', (pen, [text, x, y]) => { heard(pen).words.push([text, { left: x, right: x + pen.measureText(text).width, top: y - 9, bottom: y + 2 }]); });
+}
+
 // runs inside of the page
 function wrong() {
   const found = [];
@@ -47,12 +71,37 @@ function wrong() {
     if (box.right > wide + 1 || box.left < -1) found.push(`${element.tagName} outside of the page: ${words(element)}`);
     if (getComputedStyle(element).overflowX === 'hidden' && element.scrollWidth > element.clientWidth + 1) found.push(`cut: ${words(element)}`);
   }
+  // a part of the line from one place to another that is inside of a box
+  const runs = ([[x, y], [to_x, to_y]], box) => {
+    let from = 0, to = 1;
+    for (const [start, end, low, high] of [[x, to_x, box.left, box.right], [y, to_y, box.top, box.bottom]]) {
+      if (Math.abs(end - start) < 1e-9) {
+        if (start < low || start > high) return false;
+        continue;
+      }
+      const one = (low - start) / (end - start), other = (high - start) / (end - start);
+      from = Math.max(from, Math.min(one, other));
+      to = Math.min(to, Math.max(one, other));
+    }
+    return from < to;
+  };
+  for (const canvas of document.querySelectorAll('.path3 canvas')) {
+    if (canvas.clientWidth === 0) continue;
+    const { axes, words: written } = canvas.heard || { axes: [], words: [] };
+    if (axes.length < 3) found.push('a path without axes');
+    for (const [text, box] of written) if (axes.some((axis) => runs(axis, box))) found.push(`struck through by an axis: ${text}`);
+  }
   for (const svg of document.querySelectorAll('svg')) {
     const edge = svg.getBoundingClientRect();
     if (edge.width === 0) continue;
     const texts = [...svg.querySelectorAll('text')].map((text) => [text, text.getBoundingClientRect()]);
     for (const [text, box] of texts) {
       if (box.left < edge.left - 1 || box.right > edge.right + 1 || box.bottom > edge.bottom + 1) found.push(`cut in a drawing: ${words(text)}`);
+    }
+    const straight = [...svg.querySelectorAll('path')].map((path) => path.getBoundingClientRect()).filter((box) => box.width < 3 || box.height < 3);
+    for (const [text, box] of texts) {
+      const inside = { left: box.left + 1, right: box.right - 1, top: box.top + 3, bottom: box.bottom - 3 };
+      if (straight.some((line) => runs([[line.left, line.top], [line.right, line.bottom]], inside))) found.push(`struck through by a line: ${words(text)}`);
     }
     texts.forEach(([text, a], index) => {
       for (const [other, b] of texts.slice(index + 1)) {
@@ -77,6 +126,7 @@ try {
   tab.on('console', (message) => said.push(message.text()));
   tab.on('pageerror', (error) => said.push(String(error.message)));
   tab.on('request', (request) => requests.push(request.url()));
+  await tab.evaluateOnNewDocument(listen);
   await tab.setViewport({ width: WIDTHS[0], height: 844, deviceScaleFactor: 1 });
   await within(tab.goto(pathToFileURL(resolve(page)).href, { waitUntil: 'load' }), 60, 'the page');
   const settled = () => tab.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))));

@@ -56,6 +56,29 @@ fn a_drag_that_is_hardly_known_is_not_written_and_not_called_none() {
     assert!(told(&none, "not written: the model contains no drag"), "{:?}", none.left_out);
 }
 
+/// A drag that may as well be the largest that the autopilot documents is that one, and says so.
+#[test]
+fn a_drag_whose_error_reaches_the_documented_limit_is_the_limit() {
+    let drag = 1.05 * vehicle().body.mass_kg;
+    let of = |std: f64| {
+        let axis = format!("{{ value = {drag}, std = {std} }}");
+        let mass = "mass = { value = 2.0, std = 0.02 }";
+        let identified = format!("{mass}\n[effects.linear_drag]\ndx = {axis}\ndy = {axis}\n");
+        with_drag(&identified, [drag, drag, 0.4], Autopilot::Px4)
+    };
+    let near = of(0.1);
+    let momentum = near.parameters.iter().find(|parameter| parameter.name == "EKF2_MCOEF").unwrap();
+    assert!(
+        (momentum.value - 1.0).abs() < 1e-12 && momentum.why.starts_with("the limit of 1 "),
+        "{momentum:?}"
+    );
+    assert!(momentum.why.contains("in place of 1.05 +- 0.05,"), "{}", momentum.why);
+    assert!(has(&near, "EKF2_DRAG_CTRL") && near.text.contains("in place of 1.05"), "{}", near.text);
+    let far = of(0.02);
+    assert!(!has(&far, "EKF2_MCOEF") && !has(&far, "EKF2_DRAG_CTRL"), "{:?}", far.parameters);
+    assert!(told(&far, "EKF2_MCOEF would be 1.050 1/s, more than the 1"), "{:?}", far.left_out);
+}
+
 #[test]
 fn a_rough_hover_throttle_is_not_written_and_says_what_it_rests_on() {
     let drag = "[effects.linear_drag]\ndx = { value = 0.4, std = 0.02 }\ndy = { value = 0.4, std = 0.02 }\n";

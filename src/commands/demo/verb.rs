@@ -7,15 +7,13 @@ use mavid::study::effects_file;
 
 use crate::cli::{DemoArgs, RunArgs, ShapeArgs};
 use crate::commands::live::{self, Work};
-use crate::commands::run::{Recipe, story};
+use crate::commands::run::{CONCEALED, Recipe, is_read_once, kept, story};
 use crate::commands::sitl::DEFAULT_VEHICLE;
 use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, leftover, output};
 
 /// What is concealed where nothing else is asked for.
 const EFFECTS: &str = include_str!("../../../configs/demo/concealed.toml");
-/// Its file, which neither the flight nor the explanation reads.
-const CONCEALED: &str = "concealed.toml";
 /// The room, and how lively it is flown.
 const LIMITS: &str = include_str!("../../../configs/demo/limits.toml");
 /// The folder where none is given.
@@ -28,7 +26,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &DemoArgs) -> Result<Outcom
 }
 
 fn run_demo(out: (bool, &StandardError), args: &DemoArgs, work: &Work) -> Result<Outcome, CommandError> {
-    if let Some(file) = &args.effects {
+    if let Some(file) = args.effects.as_ref().filter(|file| !is_read_once(file)) {
         // a file that cannot be used is told before the work
         let vehicle = parse_vehicle(DEFAULT_VEHICLE, "the vehicle within the program")?.vehicle;
         effects_file(file, &vehicle)?;
@@ -36,7 +34,7 @@ fn run_demo(out: (bool, &StandardError), args: &DemoArgs, work: &Work) -> Result
     let folder = folder(args)?;
     output::file(&folder.join("limits.toml"), LIMITS)?;
     let effects = match &args.effects {
-        Some(file) => file.clone(),
+        Some(file) => kept(file, &folder)?,
         None => {
             let file = folder.join(CONCEALED);
             output::file(&file, EFFECTS)?;

@@ -70,12 +70,15 @@ impl Folder {
         self.0.join(name)
     }
 
-    /// Adds a step to those that made what is in the folder.
+    /// Adds a step to those that made what is in the folder, unless it is one of them already.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn remember(&self, step: &str) -> Result<(), CommandError> {
         let path = self.of(COMMANDS);
+        if fs::read_to_string(&path).is_ok_and(|text| text.lines().any(|known| known == step)) {
+            return Ok(());
+        }
         let opened = OpenOptions::new().create(true).append(true).open(&path);
         opened
             .and_then(|mut file| writeln!(file, "{step}"))
@@ -202,7 +205,9 @@ mod tests {
     fn a_flight_that_is_recorded_counts_and_what_never_flew_does_not() {
         let folder = made("state");
         assert_eq!(folder.flights(), []);
-        ["mavid plan v.toml", "mavid fly"].iter().for_each(|step| folder.remember(step).unwrap());
+        // of a run that is taken up no step stands there twice
+        let steps = ["mavid plan v.toml", "mavid fly", "mavid plan v.toml", "mavid fly"];
+        steps.iter().for_each(|step| folder.remember(step).unwrap());
         assert_eq!(fs::read_to_string(folder.of(COMMANDS)).unwrap(), "mavid plan v.toml\nmavid fly\n");
         assert_eq!(folder.remembered(), 2);
         fs::create_dir_all(folder.of("flight1")).unwrap();

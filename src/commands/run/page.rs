@@ -89,7 +89,11 @@ pub fn places(context: &Context<'_>, made: &Made<'_>) -> String {
         lines.push(format!("simulators  {} ({} files)", place("export"), made.exports.len()));
     }
     lines.extend(made.parameters.iter().map(|file| format!("aircraft    {file}")));
-    let steps = context.folder.remembered().max(context.steps().len());
+    let steps = match context.folder.remembered() {
+        // they could not be written
+        0 => context.steps().len(),
+        steps => steps,
+    };
     lines.push(format!(
         "commands    {} ({steps} steps, each of which can be repeated alone)",
         place(COMMANDS)

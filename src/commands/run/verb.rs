@@ -11,7 +11,7 @@ use mavid::study::{ExplainStudy, check_given};
 use mavid::vehicle::Vehicle;
 
 use super::ask::Ask;
-use super::concealed::{acting, compare, table};
+use super::concealed::{acting, compare, is_read_once, kept, table};
 use super::context::{Context, Recipe};
 use super::embedded::Embedded;
 use super::explained::{Explained, answer, explained};
@@ -47,9 +47,11 @@ pub fn story(
     work: &Work,
 ) -> Result<Outcome, CommandError> {
     let since = Instant::now();
+    let kept = with_kept_effects(args)?;
+    let args = kept.as_ref().unwrap_or(args);
     checked(args)?;
     let ask = Ask::new(args.yes)?;
-    let folder = Folder::at(args.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER)))?;
+    let folder = folder_of(args)?;
     let context = Context::new((args, recipe), (folder, ask), (stderr, work));
     let flown = all_flights(&context).inspect_err(|_| context.tell_kept())?;
     let FlownFlights { explained: Explained { study, logs }, record, flights } = &flown;
@@ -78,6 +80,17 @@ pub fn story(
         Some(record) => fly::outcome(record, Some(Ok(explain::outcome(study)))),
         None => Ok(explain::outcome(study)),
     }
+}
+
+fn folder_of(args: &RunArgs) -> Result<Folder, CommandError> {
+    Folder::at(args.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER)))
+}
+
+/// The arguments with the effects in the folder; none where their file can be read more than once.
+fn with_kept_effects(args: &RunArgs) -> Result<Option<RunArgs>, CommandError> {
+    let Some(file) = args.effects.as_ref().filter(|file| is_read_once(file)) else { return Ok(None) };
+    let effects = kept(file, folder_of(args)?.path())?;
+    Ok(Some(RunArgs { effects: Some(effects), ..args.clone() }))
 }
 
 /// What can be told before anybody is spoken to.

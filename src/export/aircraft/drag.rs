@@ -7,7 +7,7 @@
 //! `M = d / m` and `B = rho_0 m / (2 c)` in air of the density rho_0.
 
 use super::determined::Determined;
-use super::parameter::AircraftParameter;
+use super::parameter::{AircraftParameter, within};
 use super::table::{DragNames, Table};
 use crate::export::source::Source;
 use crate::text::{significant, with_error};
@@ -153,12 +153,13 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
     if across.differs() {
         source.note(format!("{name} is the same along x and y: from the mean of {x} and {y} N per m/s"));
     }
-    if value > MOST_MOMENTUM {
+    let std = value * (mean_std / mean).hypot(mass_std);
+    let Some((held, limited)) = within((value, std), (0.0, MOST_MOMENTUM)) else {
         source.note(format!(
             "{name} would be {value:.3} 1/s, more than the {MOST_MOMENTUM} that the autopilot documents"
         ));
         return Coefficient::Beyond;
-    }
+    };
     // the answer has one figure for all axes that agree, also z, which the estimator does not take
     let has_z = determined.std("linear_drag", "dz").is_some();
     let z = if has_z {
@@ -167,12 +168,11 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
         ""
     };
     let why = format!(
-        "drag at hover of {} N per m/s ({x} along x and {y} along y of the body{z}) over the mass of {mass_kg:.4} kg, {air}; wind was \
+        "{limited}drag at hover of {} N per m/s ({x} along x and {y} along y of the body{z}) over the mass of {mass_kg:.4} kg, {air}; wind was \
          estimated with it where there was one",
         with_error(mean, mean_std)
     );
-    let std = value * (mean_std / mean).hypot(mass_std);
-    Coefficient::Found(AircraftParameter::number(name, (value, std), "1/s", why))
+    Coefficient::Found(AircraftParameter::number(name, (held, std), "1/s", why))
 }
 
 /// From the drag with the square of the airspeed, along x or y.

@@ -1,5 +1,26 @@
 //! Parameters of an autopilot that follow from a model.
 
+use crate::text::with_error;
+
+/// A value may be so many of its standard errors beyond a documented limit for the limit to stand in its place. It is the usual 95 %.
+const BEYOND: f64 = 2.0;
+
+/// What a parameter with documented limits holds of a value with its standard error: the value, or the limit where its error reaches
+/// that, and what is to be said of it before the reason. `None` of a value that is further beyond.
+pub(super) fn within((value, std): (f64, f64), (least, most): (f64, f64)) -> Option<(f64, String)> {
+    if (least..=most).contains(&value) {
+        return Some((value, String::new()));
+    }
+    let limit = value.clamp(least, most);
+    let told = || {
+        let value = with_error(value, std);
+        format!(
+            "the limit of {limit} that the autopilot documents, in place of {value}, which is beyond it by at most two standard errors; "
+        )
+    };
+    ((value - limit).abs() <= BEYOND * std).then(|| (limit, told()))
+}
+
 /// One parameter that follows from the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AircraftParameter {
@@ -48,4 +69,19 @@ pub struct AircraftParameters {
     pub left_out: Vec<String>,
     /// the file
     pub text: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_whose_error_reaches_the_limit_is_the_limit() {
+        let limits = (0.0, 1.0);
+        assert_eq!(within((0.7, 0.01), limits), Some((0.7, String::new())));
+        let (held, told) = within((1.029, 0.02), limits).unwrap();
+        assert!(held == 1.0 && told.contains("the limit of 1 ") && told.contains("1.03 +- 0.02"), "{told}");
+        assert_eq!(within((-0.1, 0.06), limits).unwrap().0, 0.0);
+        assert_eq!((within((1.029, 0.01), limits), within((f64::NAN, 0.1), limits)), (None, None));
+    }
 }

@@ -4,7 +4,7 @@
 //! THR_MDL_FAC or MOT_THST_EXPO. MPC_THR_HOVER and MOT_THST_HOVER are shares of thrust behind that curve.
 
 use super::determined::Determined;
-use super::parameter::AircraftParameter;
+use super::parameter::{AircraftParameter, within};
 use super::table::{Table, ThrustNames};
 use crate::export::source::Source;
 use crate::text::{significant, with_error};
@@ -86,21 +86,21 @@ fn curve(
     let curvature = source.take("thrust_curve", "curvature");
     let at = |curvature: f64| AtHover { elasticity: law.elasticity * (1.0 + curvature), ..law }.factor();
     let value = at(curvature);
+    let value_std = 0.5 * (at(curvature + std) - at(curvature - std)).abs();
     let (least, most) = names.curve_bounds;
-    if !(least..=most).contains(&value) {
+    let Some((held, limited)) = within((value, value_std), (least, most)) else {
         source.refuse("thrust_curve");
         source.note(format!(
             "{} is left out: the curve that was identified would need {value:.3}, and the autopilot documents {least} to {most}",
             names.curve
         ));
         return None;
-    }
-    let value_std = 0.5 * (at(curvature + std) - at(curvature - std)).abs();
+    };
     let why = format!(
-        "thrust curve about hover, bent by {} against that of the vehicle file",
+        "{limited}thrust curve about hover, bent by {} against that of the vehicle file",
         with_error(curvature, std)
     );
-    Some(AircraftParameter::number(names.curve, (value, value_std), "-", why))
+    Some(AircraftParameter::number(names.curve, (held, value_std), "-", why))
 }
 
 /// Largest relative standard error of a hover throttle that is written. Autopilots learn it in flight, and find it by themselves from a
@@ -158,15 +158,15 @@ fn hover(
     let command = behind.command;
     let (air_ratio, air) = air(source.altitude_m, names.by_density);
     let value = air_ratio * share(behind.factor, command);
+    let std = air_ratio * command_std;
     let (least, most) = names.hover_bounds;
-    if !(least..=most).contains(&value) {
+    let Some((held, limited)) = within((value, std), (least, most)) else {
         source.note(format!(
             "{} is left out: it would be {value:.3}, and the autopilot documents {least} to {most}",
             names.hover
         ));
         return None;
-    }
-    let std = air_ratio * command_std;
+    };
     if std > MOST_HOVER_STD * value {
         let why = too_rough((value, std), &cause(source.vehicle, determined, behind));
         source.note(format!("{} {why}", names.hover));
@@ -176,8 +176,9 @@ fn hover(
         Some(_) => "the motors' command at hover, as flown",
         None => "weight over full thrust of all rotors",
     };
-    let why = format!("{what}, {}, {}; {air}", held_at(source, determined), behind.words(names.curve));
-    Some(AircraftParameter::number(names.hover, (value, std), "-", why))
+    let why =
+        format!("{limited}{what}, {}, {}; {air}", held_at(source, determined), behind.words(names.curve));
+    Some(AircraftParameter::number(names.hover, (held, std), "-", why))
 }
 
 /// At which voltage and mass a hover throttle holds.

@@ -3,7 +3,6 @@
   'use strict';
   var HUES = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9'];
   var DARK = ['#56b4e9', '#ff8a3d', '#2fc99b', '#e5a3c6', '#f0bd3c', '#8fd0f5'];
-  var MARKS = { dashed: 'dashed', dots: 'dotted' };
   var SPAN = 'rgba(230,159,0,0.22)';
   var night = window.matchMedia('(prefers-color-scheme: dark)');
   var groups = {};
@@ -48,7 +47,7 @@
         value: function (u, v) { return rough(v); }, points: { show: false }
       };
       if (line.stroke === 'dashed') one.dash = [6, 4];
-      if (line.stroke === 'dots') { one.paths = function () { return null; }; one.points = { show: true, size: 7, fill: one.stroke }; }
+      if (line.stroke === 'dots') { one.paths = function () { return null; }; one.points = { show: true, size: 7, fill: one.stroke }; one.class = 'dots'; }
       if (line.stroke === 'stems') one.paths = uPlot.paths.bars({ size: [0.4, 3] });
       all.push(one);
     });
@@ -71,8 +70,11 @@
         Object.assign({ label: of.y_label, labelSize: 18, size: narrow ? 46 : 56 }, axis)
       ],
       series: series(of),
-      // a mark is a line as it is drawn
-      legend: { markers: { dash: function (u, index) { return MARKS[(of.lines[index - 1] || {}).stroke] || 'solid'; } } },
+      // a mark is a line or a dot as it is drawn
+      legend: { markers: {
+        dash: function (u, index) { return (of.lines[index - 1] || {}).stroke === 'dashed' ? 'dashed' : 'solid'; },
+        fill: function (u, index) { var line = of.lines[index - 1]; return line && line.stroke === 'dots' ? hue(line.colour) : 'transparent'; }
+      } },
       bands: of.bands.map(function (band, place) {
         return { series: [first + 2 * place + 1, first + 2 * place], fill: faint(hue(band.colour)), dir: -1 };
       }),
@@ -142,6 +144,25 @@
     var last = of.ramp.length - 1;
     return of.ramp[Math.min(last, Math.max(0, Math.floor(of.ramp.length * value / of.full)))];
   }
+
+  // whether a line from a to b runs through a rectangle
+  function crosses(a, b, left, top, right, bottom) {
+    var from = 0, to = 1;
+    [[a[0], b[0], left, right], [a[1], b[1], top, bottom]].forEach(function (of) {
+      var way = of[1] - of[0];
+      if (Math.abs(way) < 1e-9) {
+        if (of[0] < of[2] || of[0] > of[3]) to = -1;
+        return;
+      }
+      var one = (of[2] - of[0]) / way, other = (of[3] - of[0]) / way;
+      from = Math.max(from, Math.min(one, other));
+      to = Math.min(to, Math.max(one, other));
+    });
+    return from <= to;
+  }
+  // so far a word may be from the place it is meant for, the nearest first, dots
+  var STEPS = [0];
+  for (var step = 5; step <= 75; step += 5) STEPS.push(step, -step);
 
   function path(box) {
     var of = read(box), canvas = document.createElement('canvas'), place = document.createElement('div');
@@ -236,20 +257,20 @@
         pen.lineTo(flat[i + 1][0], flat[i + 1][1]);
         pen.stroke();
       }
-      // words last, on a halo of the page's colour: no line runs through them
+      // words last, beside the axes and on a halo of the page's colour: no line runs through them
       var written = [];
       function isFree(x, y, long) {
         return y >= 12 && y <= tall - 4 && written.every(function (other) {
           return Math.abs(y - other[1]) >= 15 || x + long + 6 <= other[0] || other[0] + other[2] + 6 <= x;
-        });
+        }) && ends.every(function (axis) { return !crosses(axis[0], axis[1], x - 3, y - 13, x + long + 3, y + 5); });
       }
       ends.forEach(function (axis, k) {
         var a = axis[0], b = axis[1], words = of.axes[k] + ' ' + (+(high[k] - low[k]).toPrecision(2)) + ' m';
         var long = pen.measureText(words).width, x = k === 2 ? a[0] - long / 2 : b[0] + (b[0] < a[0] ? -long / 2 : 4), y = k === 2 ? a[1] + 14 : b[1] + 14;
         x = Math.min(Math.max(x, 4), wide - long - 4);
         y = Math.min(Math.max(y, 12), tall - 4);
-        // of a flight that is long in one direction only, the ends lie together: one line of words each
-        y += 15 * ([0, 1, -1, 2, -2, 3, -3, 4, -4].filter(function (lines) { return isFree(x, y + 15 * lines, long); })[0] || 0);
+        // at an end there may be an axis, and of a flight that is long in one direction only the ends lie together
+        y += STEPS.filter(function (far) { return isFree(x, y + far, long); })[0] || 0;
         written.push([x, y, long]);
         pen.lineWidth = 4;
         pen.lineJoin = 'round';

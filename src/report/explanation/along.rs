@@ -2,7 +2,7 @@
 
 use crate::diagnose::{Named, NamedParameter, Owner, brief};
 use crate::report::comparison::value_of;
-use crate::report::html::{Cell, note, number, section, table, text};
+use crate::report::html::{Cell, name, note, number, section, table, text};
 use crate::study::{AlongFlights, ExplainStudy, Track};
 use maud::{Markup, html};
 use schemars::JsonSchema;
@@ -193,7 +193,7 @@ fn together(along: &AlongFlights, track: &Track, untold: &[&str]) -> String {
 }
 
 fn row(along: &AlongFlights, track: &Track, untold: &[&str]) -> Vec<Cell> {
-    let mut cells = vec![text(track.name.as_str()), text(track.unit), number(together(along, track, untold))];
+    let mut cells = vec![name(track.name.as_str()), text(track.unit), number(together(along, track, untold))];
     cells.extend((0..track.values.len()).map(|flight| number(value_of(track, along.alone(track, flight)))));
     cells
 }

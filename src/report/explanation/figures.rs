@@ -25,6 +25,11 @@ pub(super) fn model_after(study: &ExplainStudy) -> &'static str {
     if study.empirical.is_some() { "with the empirical force" } else { FOUND }
 }
 
+/// The same in a picture of one axis: an empirical force changes no torque of a model that has names.
+pub(super) fn model_after_along(study: &ExplainStudy, axis: usize) -> &'static str {
+    if axis < 3 || study.effects.is_empty() { model_after(study) } else { FOUND }
+}
+
 /// Displayed name of an axis.
 fn spoken(axis: &str) -> String {
     axis.replace('_', " ")

@@ -12,7 +12,7 @@ use super::text::{ERRORS, after, scale};
 use crate::diagnose::holdout::RateLaw;
 use crate::diagnose::{Empirical, NO_LATENCY, Named, Slight, Verdict, called, clause};
 use crate::report::html::{
-    self, Cell, folded, folded_numbers, note, number, paragraph, section, table, text, warning,
+    self, Cell, folded, folded_numbers, name, note, number, paragraph, section, table, text, warning,
 };
 use crate::report::number::{chance, significant, spoken, with_error};
 use crate::report::page::page;
@@ -86,8 +86,8 @@ fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
         .parameters
         .iter()
         .map(|p| match motor(study, effect, p.name) {
-            Some(motor) => vec![text(p.name), number(motor), text("")],
-            None => vec![text(p.name), number(with_error(p.value, p.std)), text(spoken(p.unit))],
+            Some(motor) => vec![name(p.name), number(motor), text("")],
+            None => vec![name(p.name), number(with_error(p.value, p.std)), text(spoken(p.unit))],
         })
         .collect();
     let caption = format!(
@@ -260,7 +260,7 @@ fn next_flight(study: &ExplainStudy) -> Markup {
 
 fn limits(study: &ExplainStudy) -> Markup {
     let limits = &study.explanation.limits;
-    let row = |(id, from): (&'static str, String)| vec![text(called(id)), text(id), text(from)];
+    let row = |(id, from): (&'static str, String)| vec![text(called(id)), name(id), text(from)];
     let rows: Vec<Vec<Cell>> = named_from(limits).into_iter().map(row).collect();
     let content = table(
         &format!("The smallest size of each effect that {} would have shown", study.these_flights()),

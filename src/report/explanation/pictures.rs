@@ -27,7 +27,7 @@ pub(super) fn proof(study: &ExplainStudy, numbers: &Figures) -> Markup {
             "Mean residual in bins of the state, with 95 % bands of a bootstrap over the flight's periods.",
         )
     } else if let Some(of) = numbers.recorded.first() {
-        recorded(of, figures::model_after(study))
+        recorded(study, of)
     } else {
         Markup::default()
     };
@@ -39,7 +39,8 @@ pub(super) fn proof(study: &ExplainStudy, numbers: &Figures) -> Markup {
 }
 
 /// Recorded and simulated motion.
-fn recorded(of: &RecordedAndSimulated, after: &str) -> Markup {
+fn recorded(study: &ExplainStudy, of: &RecordedAndSimulated) -> Markup {
+    let after = figures::model_after_along(study, of.axis);
     figure(&inline(&figures::recorded_and_simulated(of, after)), &recorded_caption(&of.spans_s))
 }
 
@@ -83,7 +84,7 @@ pub(super) fn places(study: &ExplainStudy, numbers: &Figures) -> Markup {
     let shown_above = numbers.portrait.is_none() && (numbers.followed.is_none() || !study.effects.is_empty());
     let content = html! {
         @for of in numbers.recorded.iter().take(DRAWN).skip(usize::from(shown_above)) {
-            (recorded(of, after))
+            (recorded(study, of))
         }
         @if let Some(of) = &study.path() {
             (figure(&figures::path(of, after).inline(), ""))
@@ -100,6 +101,7 @@ pub(super) fn details(study: &ExplainStudy, numbers: &Figures) -> Markup {
     let after = figures::model_after(study);
     let content = html! {
         @if let Some(of) = &numbers.left {
+            @let after = figures::model_after_along(study, of.axis);
             (figure(&inline(&figures::left_along_time(of, after)), "Recorded less simulated."))
         }
         @if let Some(of) = numbers.followed.as_ref().filter(|_| !study.effects.is_empty()) {
