@@ -294,15 +294,16 @@ fn within_bounds(
     for (index, (place, slot)) in slots().enumerate() {
         let (at, present) = (1 + index, &base.effects[place]);
         let (estimate, bound) = (pooled.values[at], present.possible(slot, pooled.values[at], &base.size));
-        // what the search took for another one comes out at nothing, and then leaves the model
+        // what the search took for a drag, or for another law of it, comes out at nothing, and then leaves the model
         let is_drag = present.signature.is_drag();
-        let beside_a_law = is_drag
-            && base.effects.iter().any(|other| other.signature.is_drag() && other.id() != present.id());
+        let beside_a_drag =
+            base.effects.iter().any(|other| other.signature.is_drag() && other.id() != present.id());
         let ends_at_nothing = present.is_amount(slot) && bound == present.nothing_at(slot);
-        let deviates = match (beside_a_law, is_drag || ends_at_nothing) {
-            (true, _) => BEYOND_BOUND_BESIDE_A_LAW,
-            (false, true) => BEYOND_BOUND,
-            (false, false) => 0.0,
+        let deviates = match (is_drag, beside_a_drag) {
+            (true, true) => BEYOND_BOUND_BESIDE_A_LAW,
+            (true, false) => BEYOND_BOUND,
+            (false, true) if ends_at_nothing => BEYOND_BOUND,
+            _ => 0.0,
         };
         if (bound - estimate).abs() > deviates * pooled.std(at) {
             tracing::debug!(what = present.id(), estimate, std = pooled.std(at), "beyond what is possible");
