@@ -18,7 +18,7 @@ use super::refinement::{fitted_strength, refine};
 use super::search::search;
 use super::signature::{EffectTerm, Signature};
 use super::signatures::ALL;
-use super::slight::{FoundEffect, Slight, named_and_slight, stated, uncertain};
+use super::slight::{FoundEffect, Slight, named_and_slight, stated, untold};
 use super::tested::{Search, Step, Tested};
 use super::torque_law::torque_law;
 use super::trace::Trace;
@@ -145,7 +145,7 @@ pub fn explain_watched(
             search(&traces, vehicle, &settings.gates, (settings.signatures, &refused, &mut pace))?;
         refine((flights, &traces), vehicle, (&mut found, &refused, &mut pace))?;
         // what its size does not tell from nothing stood in the place of another one
-        match uncertain(&found.after).filter(|id| !refused.contains(id)) {
+        match untold(&found.after).filter(|id| !refused.contains(id)) {
             Some(id) => {
                 tracing::debug!(effect = id, "explained again without what is not told from nothing");
                 refused.push(id);

@@ -29,7 +29,8 @@ const BIAS_STD_M_S2: f64 = 0.2;
 
 /// Standard deviation of the prior of the share of the gyroscopic torque that a simulator has, about that of a body. It has all or none.
 const GYROSCOPIC_STD: f64 = 1.0;
-/// Standard deviation of the prior of a product of inertia, as a share of the geometric mean of its two moments. Multirotors are built
+/// Standard deviation of the prior of a product of inertia, as a share of the geometric mean of its two moments, of the vehicle
+/// file or of the fit, whichever is larger. Multirotors are built
 /// symmetrically; of a Crazyflie 2.0 they were measured as 3, 5 and 8 % (Förster 2015, ETH Zürich), and on larger vehicles they are less.
 const PRODUCT_STD: f64 = 0.03;
 /// Share of the gyroscopic torque of a body.
@@ -95,10 +96,12 @@ pub(super) fn nuisances(
 /// A motion that goes round, as a planned one may, makes a product look like more damping about one axis and less about the other.
 fn product_prior(base: &Base, entry: usize) -> Option<(f64, f64)> {
     let (row, column) = INERTIA_ENTRIES[entry];
-    let now = &base.vehicle.body.inertia_kg_m2;
+    let (begun, now) = (&base.begun_kg_m2, &base.vehicle.body.inertia_kg_m2);
+    // a fit that leaves no moment must not hold the products as well
+    let moment = |axis: usize| begun[(axis, axis)].max(now[(axis, axis)]);
     (row != column).then(|| {
-        let std = PRODUCT_STD * (now[(row, row)] * now[(column, column)]).sqrt();
-        (std, base.begun_kg_m2[(row, column)] - now[(row, column)])
+        let std = PRODUCT_STD * (moment(row) * moment(column)).sqrt();
+        (std, begun[(row, column)] - now[(row, column)])
     })
 }
 

@@ -114,7 +114,7 @@ fn differs_from_nothing(amounts: &[(f64, f64)]) -> bool {
 }
 
 /// An effect of the fit that would matter and is not certain.
-pub(super) fn uncertain(fitted: &Fitted) -> Option<&'static str> {
+pub(super) fn untold(fitted: &Fitted) -> Option<&'static str> {
     let mut first = fitted.rows.nuisances.len();
     for term in &fitted.base.effects {
         let columns = first..first + term.free.len();
