@@ -2,6 +2,7 @@
 //!
 //! Nothing here fits, computes a statistic, or prints.
 
+mod bare;
 mod chart;
 mod comparison;
 mod effects;
