@@ -145,7 +145,7 @@ pub fn explain_watched(
             search(&traces, vehicle, &settings.gates, (settings.signatures, &refused, &mut pace))?;
         refine((flights, &traces), vehicle, (&mut found, &refused, &mut pace))?;
         // what its size does not tell from nothing stood in the place of another one
-        match untold(&found.after).filter(|id| !refused.contains(id)) {
+        match untold(&found.after, &found.by_other_law).filter(|id| !refused.contains(id)) {
             Some(id) => {
                 tracing::debug!(effect = id, "explained again without what is not told from nothing");
                 refused.push(id);
@@ -344,7 +344,7 @@ fn names(traces: &[Trace], found: &Search) -> (Vec<Named>, Vec<Slight>) {
         };
         found_effects.push(FoundEffect { effect, place, columns: first..index });
     }
-    named_and_slight(fitted, found_effects)
+    named_and_slight((fitted, &found.by_other_law), found_effects)
 }
 
 fn strength(step: &Step) -> Strength {

@@ -7,6 +7,7 @@ mod by_flight;
 mod by_part;
 mod candidates;
 mod channels;
+mod climb_alone;
 mod columns;
 mod common_values;
 mod confusable;

@@ -17,9 +17,12 @@ use nalgebra::{DMatrix, DVector};
 /// Most units of one law that one unit of another one can be, SI: the ratio of both forces at speeds from 0.02 to 50 m/s.
 const MOST_OF_OTHER: f64 = 50.0;
 
-/// Adds to the covariance of a fit's effects what the drag laws among the candidates that were not taken may bring into them.
-pub(super) fn add_other_laws(flights: &[Trace], last: &[Tested], fitted: &mut Fitted) {
-    fitted.covariance += of_other_laws(flights, last, fitted);
+/// Adds to the covariance of a fit's effects what the drag laws among the candidates that were not taken may bring into them. Returns the
+/// variances that it adds to the free values of the effects.
+pub(super) fn add_other_laws(flights: &[Trace], last: &[Tested], fitted: &mut Fitted) -> Vec<f64> {
+    let added = of_other_laws(flights, last, fitted);
+    fitted.covariance += &added;
+    added.diagonal().iter().skip(fitted.rows.nuisances.len()).copied().collect()
 }
 
 /// A drag law that a fit does not have.

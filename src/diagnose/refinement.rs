@@ -2,6 +2,7 @@
 //! not bias (flight path reconstruction, instruments).
 
 use super::base::Base;
+use super::climb_alone::is_of_climb;
 use super::drag_law::settle_laws;
 use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
@@ -61,7 +62,7 @@ pub(super) fn refine(
         pace.again();
     }
     // which law a drag follows says nothing of whether it is there
-    add_other_laws(traces, &found.last, &mut found.after);
+    found.by_other_law = add_other_laws(traces, &found.last, &mut found.after);
     add_floors(&mut found.after);
     // the model where nothing serves
     add_left_over(&mut found.before, &[]);
@@ -164,7 +165,7 @@ fn without(base: &Base, leaves: impl Fn(usize) -> bool) -> Base {
 }
 
 /// Which effects of a fit get no name: those of ordinary size, the least certain of those that are not certain, those that the
-/// accelerometer does not feel, and those that hover excludes.
+/// accelerometer does not feel, those of descents that a loss of thrust in climb explains as well, and those that hover excludes.
 fn unnamed(
     (traces, given): (&[Trace], (&[Signals], &Vehicle)),
     trim: &Trim,
@@ -178,10 +179,11 @@ fn unnamed(
         let unseen = bent && (!shows_in_forces(fitted, present, first) || is_noise(present, traces, fitted));
         let unbalanced = is_refuted(given, fitted, present, first);
         let ordinary = is_ordinary(present, &fitted.base, traces);
-        let is_unnamed = refuted || unseen || unbalanced || ordinary;
+        let of_climb = is_of_climb(traces, fitted, present, first);
+        let is_unnamed = refuted || unseen || unbalanced || ordinary || of_climb;
         if is_unnamed {
             let effect = present.id();
-            tracing::info!(effect, refuted, unseen, unbalanced, ordinary, "effect gets no name");
+            tracing::info!(effect, refuted, unseen, unbalanced, ordinary, of_climb, "effect gets no name");
         }
         is_unnamed
     };

@@ -80,7 +80,8 @@ pub fn search(
     }
     let after = with_last(flights, after)?;
     let latency = told(finding_of(&after), latency, beside);
-    Ok(Search { before, after, latency, steps, last, by_wider_window: [f64::NAN; 3], paths: Vec::new() })
+    let (by_wider_window, by_other_law, paths) = ([f64::NAN; 3], Vec::new(), Vec::new());
+    Ok(Search { before, after, latency, steps, last, by_wider_window, by_other_law, paths })
 }
 
 /// The latency of the final model, with its kind as the rigid body alone tells it. What could be taken for a latency makes it uncertain,

@@ -317,6 +317,8 @@ pub struct Role {
     pub by_motion: bool,
     /// whether a nuisance models small sizes of it
     pub stands_for: fn(&EffectTerm, Nuisance) -> bool,
+    /// it acts in descents alone
+    pub in_descent: bool,
     /// it rotates the inertial unit against the body
     pub turns_inertial_unit: bool,
 }
@@ -344,6 +346,7 @@ impl Role {
         of_the_loading: false,
         by_motion: true,
         stands_for: |_, _| false,
+        in_descent: false,
         turns_inertial_unit: false,
     };
 }

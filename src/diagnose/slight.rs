@@ -33,7 +33,11 @@ pub(super) const BEYOND: f64 = 2.0;
 
 /// Those that matter, and the others. What is one effect to a reader is judged as one; and where what each of several can take over
 /// of the others matters together, the greatest of them is named.
-pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) -> (Vec<Named>, Vec<Slight>) {
+pub(super) fn named_and_slight(
+    (fitted, by_other_law): (&Fitted, &[f64]),
+    candidates: Vec<FoundEffect>,
+) -> (Vec<Named>, Vec<Slight>) {
+    let is_certain = |term: &EffectTerm, first: usize| is_certain((fitted, by_other_law), term, first);
     let term = |of: &FoundEffect| &fitted.base.effects[of.place];
     let together = |those: &[&FoundEffect]| {
         let each: Vec<_> = those.iter().map(|of| (term(of), of.columns.clone())).collect();
@@ -57,7 +61,7 @@ pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) ->
         .iter()
         .zip(&alone)
         .map(|(of, materiality)| {
-            is_certain(fitted, term(of), of.columns.start) && is_material(fitted, of, *materiality)
+            is_certain(term(of), of.columns.start) && is_material(fitted, of, *materiality)
         })
         .collect();
     loop {
@@ -65,7 +69,7 @@ pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) ->
             !matters[*index]
                 && !term(of).is_of_sensors()
                 && !term(of).is_of_every_vehicle(&fitted.base.size)
-                && is_certain(fitted, term(of), of.columns.start)
+                && is_certain(term(of), of.columns.start)
         };
         let left: Vec<(usize, &FoundEffect)> = candidates.iter().enumerate().filter(left).collect();
         let those: Vec<&FoundEffect> = left.iter().map(|(_, of)| *of).collect();
@@ -90,35 +94,47 @@ pub(super) fn named_and_slight(fitted: &Fitted, candidates: Vec<FoundEffect>) ->
 
 /// Whether the errors of an effect of several amounts leave a size: one of them, or the norm of all, is [`NAME_Z`] standard errors from
 /// nothing. It was taken for the deviate of its score, which amounts may have made that are not told beside each other; of a single amount the
-/// score is its own. Errors of laws and of guesses are shares of an amount, and say nothing against it. Its first free value has the
-/// column `first`.
-fn is_certain(fitted: &Fitted, term: &EffectTerm, first: usize) -> bool {
-    let each = term.free.iter().enumerate().filter(|(_, slot)| term.is_amount(**slot));
-    let amounts: Vec<(f64, f64)> = each
+/// score is its own. Errors of laws and of guesses are shares of an amount, and say nothing against it, nor does what another law of a drag
+/// brings into it (`by_other_law`, variances of the effects' free values): it says which law, not whether there is a drag. An amount that
+/// is next to nothing beside usual ones is none. Its first free value has the column `first`.
+fn is_certain((fitted, by_other_law): (&Fitted, &[f64]), term: &EffectTerm, first: usize) -> bool {
+    let amounts = || term.free.iter().enumerate().filter(|(_, slot)| term.is_amount(**slot));
+    let counts = |slot: usize| {
+        let usual =
+            term.parameter(slot).and_then(|of| (term.signature.naming.usual)(of.name, &fitted.base.vehicle));
+        usual.is_none_or(|usual| term.from_nothing(slot).abs() >= LEAST_OF_USUAL * usual)
+    };
+    let told: Vec<(f64, f64)> = amounts()
+        .filter(|(_, slot)| counts(**slot))
         .map(|(index, &slot)| {
             let column = first + index;
-            let by_law = of_law(fitted, term, (slot, column)).powi(2);
+            let of_other = by_other_law.get(column - fitted.rows.nuisances.len()).copied().unwrap_or(0.0);
+            let by_law = of_law(fitted, term, (slot, column)).powi(2) + of_other;
             let variance = (fitted.covariance[(column, column)] - by_law).max(0.0);
             (term.from_nothing(slot), variance.sqrt())
         })
         .collect();
-    amounts.len() < 2 || differs_from_nothing(&amounts)
+    amounts().count() < 2 || differs_from_nothing(&told)
 }
+
+/// Share of its usual size below which an amount is next to nothing. Set by judgement.
+const LEAST_OF_USUAL: f64 = 0.02;
 
 /// Whether any of these, each with its standard error, or the norm of all is [`NAME_Z`] standard errors from zero.
 fn differs_from_nothing(amounts: &[(f64, f64)]) -> bool {
     let norm = |of: fn(&(f64, f64)) -> f64| amounts.iter().map(|each| of(each).powi(2)).sum::<f64>().sqrt();
     // the error of the norm is that along itself
     let (size, along) = (norm(|(from, _)| *from), norm(|(from, std)| from * std));
-    size * size >= NAME_Z * along || amounts.iter().any(|(from, std)| from.abs() >= NAME_Z * std)
+    size > 0.0 && size * size >= NAME_Z * along
+        || amounts.iter().any(|(from, std)| from.abs() >= NAME_Z * std)
 }
 
 /// An effect of the fit that would matter and is not certain.
-pub(super) fn untold(fitted: &Fitted) -> Option<&'static str> {
+pub(super) fn untold(fitted: &Fitted, by_other_law: &[f64]) -> Option<&'static str> {
     let mut first = fitted.rows.nuisances.len();
     for term in &fitted.base.effects {
         let columns = first..first + term.free.len();
-        let is_certain = is_certain(fitted, term, first);
+        let is_certain = is_certain((fitted, by_other_law), term, first);
         first = columns.end;
         if !is_certain && Materiality::of(fitted, &[(term, columns)]).is_none_or(|of| of.matters()) {
             return Some(term.id());

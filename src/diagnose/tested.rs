@@ -59,6 +59,9 @@ pub struct Search {
     /// Ixx, Iyy, Izz of the rigid body alone by a window of twice the width, as shares of those by the usual one; NaN before the model is
     /// refined, and where either has none
     pub by_wider_window: [f64; 3],
+    /// variance that a law of the drag that the model does not have may bring into each free value of its effects; none before the model is
+    /// refined
+    pub(super) by_other_law: Vec<f64>,
     /// of each flight, once its forces were estimated with it
     pub(super) paths: Vec<Path>,
 }
@@ -73,6 +76,7 @@ impl Search {
             steps: Vec::new(),
             last: Vec::new(),
             by_wider_window: [f64::NAN; 3],
+            by_other_law: Vec::new(),
             paths: Vec::new(),
         }
     }

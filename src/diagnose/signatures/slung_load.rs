@@ -45,7 +45,8 @@ pub static SIGNATURE: Signature = Signature {
     naming: Naming {
         extra_z: 1.0,
         least_of_mass: LEAST_OF_MASS,
-        is_ordinary: |term, _| damping_ratio(term) > SWINGS_BELOW,
+        // what swings too fast for the kernel is no load that a flight shows
+        is_ordinary: |term, _| damping_ratio(term) > SWINGS_BELOW || term.values[1] < CORDS_M.0,
         usual: |parameter, vehicle| (parameter == "mass").then_some(0.08 * vehicle.body.mass_kg),
         ..Naming::PLAIN
     },

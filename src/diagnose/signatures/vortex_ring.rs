@@ -12,7 +12,7 @@ use crate::text::significant;
 pub static SIGNATURE: Signature = Signature {
     needs: &[Need::Velocity],
     forms: |_| vec![SIGNATURE.form(&[0.0], &[0])],
-    role: Role { of_air: true, ..Role::NONE },
+    role: Role { of_air: true, in_descent: true, ..Role::NONE },
     picture: Picture::of(&[2], Over::AirspeedUp),
     sizes: &[("loss", UsualSize::Of(2.0))],
     ..Signature::of(

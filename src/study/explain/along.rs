@@ -208,7 +208,8 @@ const ALONE_Z: f64 = 2.0 * NAME_Z;
 
 fn is_told_by_one(named: &Named, of: &Signature) -> bool {
     let mut amounts = of.amounts.iter().filter_map(|&slot| named.get(of.effect.parameters().get(slot)?.name));
-    amounts.any(|amount| (amount.value - of.nothing).abs() > ALONE_Z * amount.std)
+    // what is stated without an error was given, not found
+    amounts.any(|amount| amount.std > 0.0 && (amount.value - of.nothing).abs() > ALONE_Z * amount.std)
 }
 
 /// Ratio of the periods of commands from which on flights are logged in different ways.
