@@ -99,6 +99,11 @@ impl BalanceChange {
     }
 }
 
+/// Share of a move that each flight of a group shows at least, unless its errors allow all of it.
+const HALF: f64 = 0.5;
+/// Standard errors by which a flight lacks a move. The usual three.
+const CERTAIN: f64 = 3.0;
+
 /// The comparison of two groups.
 struct Pair<'a> {
     balance: &'a Balance,
@@ -120,6 +125,8 @@ pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> B
     let beyond_load = by.component_mul(&by).component_div(&variances_of(&loaded)).sum();
     let shares: Vec<f64> = (0..vehicle.rotors.len()).map(|rotor| pair.share(rotor)).collect();
     let mut found = found(&known, &moved, &shares, (strength, beyond_load));
+    // what did not happen between the groups has no name there
+    found.take_if(|_| pair.is_elsewhere(&by));
     if let Some(found) = &mut found {
         found.carried_by = carriers(&pair, found, &known);
     }
@@ -261,6 +268,21 @@ impl Pair<'_> {
             after: (value(&after), std(&after)),
             by: (value(&after) - value(&before), std(&(after - before))),
         }
+    }
+
+    /// Whether a flight certainly shows less than half of a move between the groups: it happened between other flights. A battery that sits
+    /// elsewhere in the flight is in its error.
+    fn is_elsewhere(&self, by: &Vector3<f64>) -> bool {
+        let lacks_it = |groups: &Groups| {
+            let one = Pair { groups, scale: 1.0, ..*self };
+            let moved: [Moved; AXES] = std::array::from_fn(|axis| beside_a_load(axis, &one.moved(axis)));
+            let (share, std) = along(by, &difference(&moved), &variances_of(&moved));
+            share < HALF && 1.0 - share > CERTAIN * std
+        };
+        let Groups { before, after } = self.groups;
+        let of_before = before.iter().map(|&flight| Groups { before: vec![flight], after: after.clone() });
+        let of_after = after.iter().map(|&flight| Groups { before: before.clone(), after: vec![flight] });
+        of_before.chain(of_after).any(|groups| lacks_it(&groups))
     }
 
     /// Mean share of a rotor in the commanded thrust after.
