@@ -54,7 +54,7 @@ pub struct FlightBalance {
     pub felt: [f64; 2],
     /// mean share of each rotor in the commanded thrust
     pub shares: Vec<f64>,
-    /// specific thrust over g that full commands would give, with the standard error of its mean
+    /// specific thrust over g that full commands would give, with the standard error of its mean, of the legs on which the air hardly pushes
     pub lift: Option<(f64, f64)>,
     /// V, mean
     pub voltage_v: Option<f64>,
@@ -101,7 +101,7 @@ pub fn balance(flights: &[Vec<Leg>]) -> Balance {
             legs: legs.len(),
             felt: [0, 1].map(|axis| mean(&|leg| leg.felt[axis])),
             shares: (0..rotors).map(|rotor| mean(&|leg| leg.shares[rotor])).collect(),
-            lift: mean_of(legs.iter().map(|leg| leg.lift)),
+            lift: mean_of(legs.iter().filter(|leg| is_calm(leg)).map(|leg| leg.lift)),
             voltage_v: mean_of(legs.iter().map(|leg| leg.voltage_v)).map(|(mean, _)| mean),
         }
     });
@@ -112,9 +112,21 @@ pub fn balance(flights: &[Vec<Leg>]) -> Balance {
     }
 }
 
-/// Mean and standard error, where every leg has a value.
+/// Push of the air across the rotor axis over the weight, up to which thrust tells the weight. What the air pushes along the axis is not known
+/// and may be as large as the push times the tilt, here 2 % of the weight.
+const CALM: f64 = 0.15;
+
+/// Whether the air hardly pushes a vehicle.
+fn is_calm(leg: &Leg) -> bool {
+    leg.felt[0].hypot(leg.felt[1]) < CALM
+}
+
+/// Mean and standard error, where there are values and every leg has one.
 fn mean_of(values: impl Iterator<Item = Option<f64>>) -> Option<(f64, f64)> {
     let values: Vec<f64> = values.collect::<Option<_>>()?;
+    if values.is_empty() {
+        return None;
+    }
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
@@ -313,6 +325,16 @@ mod tests {
         let ratio = (squares / 400.0).sqrt() / 0.01;
         // by the number of legs less 1.5 it was 0.77
         assert!((0.88..1.12).contains(&ratio), "{ratio}");
+    }
+
+    #[test]
+    fn legs_in_strong_wind_do_not_tell_the_lift() {
+        let mut legs = flight([0.0; AXES], 0.05);
+        for leg in legs.iter_mut().skip(10) {
+            (leg.felt, leg.lift) = ([0.3, 0.15], Some(1.46));
+        }
+        assert_eq!(balance(&[legs.clone()]).flights[0].lift, Some((2.0, 0.0)));
+        assert_eq!(balance(&[legs.split_off(10)]).flights[0].lift, None);
     }
 
     #[test]
