@@ -16,12 +16,14 @@ const HOVER_M_S: f64 = 1.5;
 const BETWEEN_FLIGHTS: f64 = 0.01;
 
 /// Command of the motors at which their thrust carries the weight, mean over the rotors (0 to 1), and its standard error, from what was flown at
-/// less than 1.5 m/s: there the upward part of the thrust is the weight in the mean, in wind as well. `None` where no flight has commands,
+/// less than 1.5 m/s: there the upward part of the thrust is the weight in the mean, in wind as well, once the vehicle's own acceleration upwards
+/// is taken out: between climb and descent it is slow where it turns over. `None` where no flight has commands,
 /// attitude and velocity for ten seconds of this.
 #[must_use]
 pub fn hover_command(flights: &[Signals], vehicle: &Vehicle) -> Option<(f64, f64)> {
     let rotors = vehicle.rotors.len().max(1) as f64;
-    let parts: Vec<f64> = flights.iter().flat_map(|signals| parts(signals, rotors)).collect();
+    let of = |signals: &Signals| parts(signals, (rotors, vehicle.gravity_m_s2));
+    let parts: Vec<f64> = flights.iter().flat_map(of).collect();
     let (share, share_std) = mean(&parts)?;
     let propulsion = &vehicle.propulsion;
     let command = propulsion.command_from_thrust(share * propulsion.full_thrust_n());
@@ -29,8 +31,8 @@ pub fn hover_command(flights: &[Signals], vehicle: &Vehicle) -> Option<(f64, f64
     (command.is_finite() && command > 0.0).then_some((command, command * relative))
 }
 
-/// Of each part of a flight's hover the mean share of full thrust that acts upwards.
-fn parts(signals: &Signals, rotors: f64) -> Vec<f64> {
+/// Of each part of a flight's hover the mean share of full thrust that acts upwards, over what it would be without acceleration.
+fn parts(signals: &Signals, (rotors, gravity_m_s2): (f64, f64)) -> Vec<f64> {
     let (Some(attitude), Some(velocity)) = (&signals.attitude, &signals.velocity) else { return Vec::new() };
     if signals.quality.thrust_source != ThrustSource::Command {
         return Vec::new();
@@ -41,18 +43,24 @@ fn parts(signals: &Signals, rotors: f64) -> Vec<f64> {
             signals.quality.airborne_s.iter().any(|(from_s, to_s)| (*from_s..=*to_s).contains(&time_s));
         flies && velocity[index].norm() < HOVER_M_S
     };
-    let used: Vec<(f64, f64)> = (0..signals.grid.count)
+    let last = signals.grid.count.saturating_sub(1);
+    let upward_m_s2 = |index: usize| {
+        let (before, after) = (index.saturating_sub(1), (index + 1).min(last));
+        (velocity[after].z - velocity[before].z) / (signals.grid.step_s * (after - before).max(1) as f64)
+    };
+    let used: Vec<(f64, f64, f64)> = (0..signals.grid.count)
         .filter(|&index| is_hover(index))
         .map(|index| {
             let part = (index as f64 * signals.grid.step_s / PART_S).floor();
             let upwards = (attitude[index] * Vector3::z()).z;
-            (part, upwards * signals.wrench[index][0] / (rotors * signals.full_thrust_n))
+            let share = upwards * signals.wrench[index][0] / (rotors * signals.full_thrust_n);
+            (part, share, 1.0 + upward_m_s2(index) / gravity_m_s2)
         })
         .collect();
     let least = (0.5 * PART_S / signals.grid.step_s).max(1.0);
     used.chunk_by(|one, next| (next.0 - one.0).abs() < 0.5)
         .filter(|part| part.len() as f64 >= least)
-        .map(|part| part.iter().map(|of| of.1).sum::<f64>() / part.len() as f64)
+        .map(|part| part.iter().map(|of| of.1).sum::<f64>() / part.iter().map(|of| of.2).sum::<f64>())
         .collect()
 }
 

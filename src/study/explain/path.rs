@@ -3,6 +3,7 @@
 use super::result::ExplainStudy;
 use crate::diagnose::AXES;
 use crate::stats::quantile;
+use nalgebra::Vector3;
 
 /// Least residual with the last colour: what is left after is one. Only colours depend on it.
 const LEAST_FULL: f64 = 2.0;
@@ -42,12 +43,17 @@ impl ExplainStudy {
             sum.into_iter().map(|sum| (sum / axes.len().max(1) as f64).sqrt()).collect()
         };
         let before = missed(&|axis| self.left_before(axis));
+        // a flight that is seen with its wind drifts with it
+        let own = self.along.as_ref().and_then(|along| *along.winds_m_s.first()?);
+        let wind_m_s = own.map_or_else(Vector3::zeros, |[north, west]| Vector3::new(north, west, 0.0));
+        let flown =
+            |center: usize| trace.states[center].position_m + wind_m_s * (trace.grid.step_s * center as f64);
         let mut ranked = before.clone();
         ranked.sort_by(f64::total_cmp);
         Some(FlownPath {
             full: quantile(&ranked, (9, 10)).unwrap_or(0.0).max(LEAST_FULL),
             time_s: search.before.rows.time_s.get(..rows)?.to_vec(),
-            position_m: trace.centers.iter().map(|&center| trace.states[center].position_m.into()).collect(),
+            position_m: trace.centers.iter().map(|&center| flown(center).into()).collect(),
             before,
             after: missed(&|axis| self.left_after(axis)),
         })

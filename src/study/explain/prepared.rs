@@ -51,6 +51,7 @@ pub(in crate::study) fn explain_prepared(
 ) -> Result<ExplainStudy, StudyError> {
     // the wind of one flight is for its explanation to name
     let several = flights.signals.len() > 1;
+    let flown_hover = hover_command(&flights.signals, asked.vehicle);
     let winds_m_s = if several { with_own_winds(flights, asked.vehicle) } else { Vec::new() };
     let held_winds_m_s = if several { with_own_winds(held, asked.vehicle) } else { Vec::new() };
     let alone = if several { with_own(flights, asked.vehicle) } else { Vec::new() };
@@ -63,7 +64,9 @@ pub(in crate::study) fn explain_prepared(
     let is_short = matches!(shown_on, ValidationData::Nothing { .. });
     let usable_s = flights.signals.iter().map(|signals| signals.quality.usable.usable_s).sum();
     let short = is_short.then_some(Short { usable_s, unsure: Vec::new() });
-    let mut task = Task { asked, winds_m_s: &winds_m_s, alone: &alone, short, own_load: false, progress };
+    let own_load = false;
+    let mut task =
+        Task { asked, winds_m_s: &winds_m_s, flown_hover, alone: &alone, short, own_load, progress };
     progress.stage(Stage::Explaining);
     let (mut study, refused) = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
     // payload and wind of another day make no other vehicle; the names stay as they were found
@@ -97,6 +100,8 @@ struct Task<'a> {
     asked: Asked<'a>,
     /// of each flight, where they are several
     winds_m_s: &'a [Option<[f64; 2]>],
+    /// command of the flown hover with its standard error, of the flights before any wind was taken out of them
+    flown_hover: Option<(f64, f64)>,
     /// of each flight, where they are several and not alike
     alone: &'a [Vec<Named>],
     /// where one flight is given, and no part of it can be held back
@@ -215,12 +220,15 @@ impl Task<'_> {
         let own = |flight: usize| flights.signals.get(flight).is_some_and(|signals| !signals.own.is_none());
         let mut contradicting = contradicting_flights(&flights.signals, self.asked.vehicle);
         contradicting.retain(|apart| !own(apart.flight) && !own(0));
+        // a hover in moving air is none to who moves with it
+        let of_one = || hover_command(&flights.signals, self.asked.vehicle);
+        let hover_command = if flights.signals.len() > 1 { self.flown_hover } else { of_one() };
         Given {
             vehicle: self.asked.vehicle.clone(),
             inputs: flights.inputs.clone(),
             quality: flights.signals.iter().map(|signals| signals.quality.clone()).collect(),
             battery_voltage_v: airborne_voltage_v(&flights.signals),
-            hover_command: hover_command(&flights.signals, self.asked.vehicle),
+            hover_command,
             by_guessed_curve: moved_by_guessed_curve(&flights.signals, self.asked.vehicle),
             contradicting,
             settings,
