@@ -36,11 +36,12 @@ pub(super) fn is_identity(name: &str) -> bool {
     has("MAG") && of_field()
         || has("UID")
         || has("UUID")
-        || has("GUID")
+        // not the parameters of ArduPilot's guided mode, GUID_TIMEOUT and others
+        || words.last().is_some_and(|word| word == "GUID")
         || has("ICAO")
         || has("DEVID")
         || has("SERIALNO")
-        || (has("DEVICE") && has("ID"))
+        || (has("DEVICE") && (has("ID") || has("IDS")))
         || (has("SERIAL") && (has("NUMBER") || has("NUM") || has("NO")))
 }
 
@@ -96,9 +97,16 @@ mod tests {
         for name in ["lateral_acceleration", "alt", "LONGSHOT", "x"] {
             assert_eq!(coordinate(name), None, "{name}");
         }
-        for name in
-            ["device_id", "serial_number", "uid", "UID1", "mag_inclination_ref_deg", "mag_strength_ref_gs"]
-        {
+        for name in [
+            "device_id",
+            "accel_device_ids",
+            "sys_guid",
+            "serial_number",
+            "uid",
+            "UID1",
+            "mag_inclination_ref_deg",
+            "mag_strength_ref_gs",
+        ] {
             assert!(is_identity(name), "{name}");
         }
         for name in
