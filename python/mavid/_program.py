@@ -59,5 +59,9 @@ def run(*arguments: Word) -> dict[str, Any]:
     done = subprocess.run([*words, "--json"], capture_output=True, text=True, check=False)
     if done.returncode not in _DONE:
         raise MavidError(done.returncode, done.stderr.strip())
-    document: dict[str, Any] = json.loads(done.stdout)
+    try:
+        document: dict[str, Any] = json.loads(done.stdout)
+    except json.JSONDecodeError as error:
+        said = done.stdout.strip().splitlines()[:1] or ["nothing"]
+        raise MavidError(done.returncode, f"expected a JSON document of {' '.join(words)} --json, got {said[0]!r}") from error
     return document

@@ -18,16 +18,17 @@ Log = Union[str, "os.PathLike[str]"]
 
 
 def _given(options: dict[str, Any]) -> list[Word]:
-    """`mass=2.0, set_logging=True` is `--mass 2.0 --set-logging`; None is nothing."""
+    """`mass=2.0, set_logging=True` is `--mass 2.0 --set-logging`, `with_=["inflow", "tether"]` is `--with inflow --with tether`; None is nothing."""
     words: list[Word] = []
     for name, value in options.items():
         if value is None or value is False:
             continue
-        words.append("--" + name.replace("_", "-"))
+        # a word that Python keeps for itself ends with an underscore
+        option = "--" + name.rstrip("_").replace("_", "-")
         if isinstance(value, (list, tuple)):
-            words.extend(value)
-        elif value is not True:
-            words.append(value)
+            words.extend(word for one in value for word in (option, one))
+        else:
+            words.extend([option] if value is True else [option, value])
     return words
 
 
@@ -37,7 +38,7 @@ def explain(*logs: Log, mass: float | None = None, vehicle: Log | None = None, *
 
 
 def identify(*logs: Log, mass: float | None = None, vehicle: Log | None = None, **options: Any) -> dict[str, Any]:
-    """What `mavid identify LOG...` estimates; arguments as of `explain`."""
+    """What `mavid identify LOG...` estimates; arguments as of `explain`, and effects by `with_=["linear_drag", "motor_lag"]`."""
     return run("identify", *logs, *_given({"mass": mass, "vehicle": vehicle, **options}))
 
 
@@ -52,12 +53,14 @@ def effects(name: str | None = None, **options: Any) -> list[dict[str, Any]]:
     return found
 
 
-def parameters(explanation: dict[str, Any]) -> pd.DataFrame:
-    """Mass, inertia and the named effects of an explanation, one row a parameter: of, value, std, unit."""
+def parameters(found: dict[str, Any]) -> pd.DataFrame:
+    """Mass, inertia and the effects of what `explain` or `identify` found (of its best method), one row a parameter: of, value, std, unit."""
     import pandas as pd
 
-    body = [{"of": "body", "name": name, **row} for name, row in explanation["parameters"].items()]
-    named = [{"of": effect["id"], **row} for effect in explanation["effects"] for row in effect["parameters"]]
+    of_body = found["parameters"] if "parameters" in found else found["methods"][found["best"]["method"]]
+    effects = found["effects"] if "effects" in found else found.get("with", {}).get("effects", [])
+    body = [{"of": "body", "name": name, **row} for name, row in of_body.items()]
+    named = [{"of": effect["id"], **row} for effect in effects for row in effect["parameters"]]
     return pd.DataFrame(body + named, columns=["of", "name", "value", "std", "unit"]).set_index(["of", "name"])
 
 

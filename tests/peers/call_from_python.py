@@ -24,6 +24,13 @@ try:
     refusal = None
 except mavid.MavidError as error:
     refusal = [error.status, str(error)]
+identified = mavid.parameters(mavid.identify(given["log"], vehicle=given["vehicle"], with_=["linear_drag", "motor_lag"]))
+assert {"body", "linear_drag", "motor_lag"} == set(identified.index.get_level_values("of"))
+try:
+    mavid.run("completions", "bash")
+    raise SystemExit("expected a refusal of what is no document")
+except mavid.MavidError as error:
+    assert "expected a JSON document" in str(error), error
 assert isinstance(table, pandas.DataFrame) and isinstance(rates.values, numpy.ndarray)
 print(
     json.dumps(
