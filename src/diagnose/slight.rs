@@ -95,8 +95,8 @@ pub(super) fn named_and_slight(
 /// Whether the errors of an effect of several amounts leave a size: one of them, or the norm of all, is [`NAME_Z`] standard errors from
 /// nothing. It was taken for the deviate of its score, which amounts may have made that are not told beside each other; of a single amount the
 /// score is its own. Errors of laws and of guesses are shares of an amount, and say nothing against it, nor does what another law of a drag
-/// brings into it (`by_other_law`, variances of the effects' free values): it says which law, not whether there is a drag. An amount that
-/// is next to nothing beside usual ones is none. Its first free value has the column `first`.
+/// brings into it across the rotor axis (`by_other_law`, variances of the effects' free values): it says which law, not whether there is a
+/// drag. An amount that is next to nothing beside usual ones is none. Its first free value has the column `first`.
 fn is_certain((fitted, by_other_law): (&Fitted, &[f64]), term: &EffectTerm, first: usize) -> bool {
     let amounts = || term.free.iter().enumerate().filter(|(_, slot)| term.is_amount(**slot));
     let counts = |slot: usize| {
@@ -108,7 +108,10 @@ fn is_certain((fitted, by_other_law): (&Fitted, &[f64]), term: &EffectTerm, firs
         .filter(|(_, slot)| counts(**slot))
         .map(|(index, &slot)| {
             let column = first + index;
-            let of_other = by_other_law.get(column - fitted.rows.nuisances.len()).copied().unwrap_or(0.0);
+            let place = column - fitted.rows.nuisances.len();
+            // along the rotor axis a force that one law alone tells may be the rotors'
+            let is_across = term.signature.role.vertical != Some(slot);
+            let of_other = by_other_law.get(place).copied().filter(|_| is_across).unwrap_or(0.0);
             let by_law = of_law(fitted, term, (slot, column)).powi(2) + of_other;
             let variance = (fitted.covariance[(column, column)] - by_law).max(0.0);
             (term.from_nothing(slot), variance.sqrt())
