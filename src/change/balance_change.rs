@@ -99,7 +99,7 @@ impl BalanceChange {
     }
 }
 
-/// Share of a move that each flight of a group shows at least, unless its errors allow all of it.
+/// Share of a move that the flights next to it show at least, unless their errors allow all of it.
 const HALF: f64 = 0.5;
 /// Standard errors by which a flight lacks a move. The usual three.
 const CERTAIN: f64 = 3.0;
@@ -270,7 +270,7 @@ impl Pair<'_> {
         }
     }
 
-    /// Whether a flight certainly shows less than half of a move between the groups: it happened between other flights. A battery that sits
+    /// Whether the last flight before or the first after certainly shows less than half of a move: it happened between other flights. A battery that sits
     /// elsewhere in the flight is in its error.
     fn is_elsewhere(&self, by: &Vector3<f64>) -> bool {
         let lacks_it = |groups: &Groups| {
@@ -280,9 +280,10 @@ impl Pair<'_> {
             share < HALF && 1.0 - share > CERTAIN * std
         };
         let Groups { before, after } = self.groups;
-        let of_before = before.iter().map(|&flight| Groups { before: vec![flight], after: after.clone() });
-        let of_after = after.iter().map(|&flight| Groups { before: before.clone(), after: vec![flight] });
-        of_before.chain(of_after).any(|groups| lacks_it(&groups))
+        // next to where it would have happened: later it may have gone away again
+        let of_before = before.last().map(|&last| Groups { before: vec![last], after: after.clone() });
+        let of_after = after.first().map(|&first| Groups { before: before.clone(), after: vec![first] });
+        of_before.iter().chain(&of_after).any(lacks_it)
     }
 
     /// Mean share of a rotor in the commanded thrust after.
