@@ -8,8 +8,7 @@ use super::wording::Words;
 use crate::physics::{Effect, Hook};
 use crate::vehicle::Vehicle;
 
-/// Knowledge of the diagnosis about an effect: data and small functions. Nothing else in the diagnosis, the report or
-/// the commands depends on an effect's identifier.
+/// Knowledge of the diagnosis about an effect: data and small functions. Nothing else depends on an effect's identifier.
 #[derive(Debug)]
 pub struct Signature {
     /// the equation
@@ -298,8 +297,7 @@ pub struct Role {
     pub damped_by: Option<fn() -> EffectTerm>,
     /// an effect whose columns resemble those of a latency
     pub like_latency: Option<fn() -> EffectTerm>,
-    /// slot of the inertia of a rotor (kg m^2) that takes yaw torque when its speed changes; without it the latency is
-    /// found too long
+    /// slot of a rotor's inertia (kg m^2) that takes yaw torque when its speed changes; without it the latency is found too long
     pub spin_up: Option<usize>,
     /// slot of the curvature that it gives to the thrust law
     pub bends_thrust: Option<usize>,
@@ -311,7 +309,7 @@ pub struct Role {
     pub moment: Option<usize>,
     /// it belongs to the day, not to the vehicle
     pub of_the_day: bool,
-    /// it belongs to how the vehicle is loaded: its first two amounts change where a battery is put back elsewhere
+    /// it belongs to the loading: its first two amounts change where a battery is put back elsewhere
     pub of_the_loading: bool,
     /// depends on how the vehicle moves
     pub by_motion: bool,
@@ -377,8 +375,7 @@ pub type JointForms = fn(&Recorded, &[&'static Signature]) -> Vec<EffectTerm>;
 /// How an effect is fitted by `--with`.
 #[derive(Debug, Clone, Copy)]
 pub struct Joint {
-    /// forms, of which the most likely is taken, given all effects of `--with`. `None`: one form, all parameters from
-    /// zero
+    /// forms, of which the most likely is taken, given all effects of `--with`. `None`: one form, all parameters from zero
     pub forms: Option<JointForms>,
     /// why a parameter has its value
     pub whence: fn(&EffectTerm, usize, &Vehicle, &[&'static Signature]) -> Option<Whence>,
