@@ -99,7 +99,7 @@ impl BalanceChange {
     }
 }
 
-/// Share of a move that the flights next to it show at least, unless their errors allow all of it.
+/// Share of a move that the flights next to it show at least, unless their errors allow all of it. Set by judgement.
 const HALF: f64 = 0.5;
 /// Standard errors by which a flight lacks a move. The usual three.
 const CERTAIN: f64 = 3.0;
@@ -125,7 +125,7 @@ pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> B
     let beyond_load = by.component_mul(&by).component_div(&variances_of(&loaded)).sum();
     let shares: Vec<f64> = (0..vehicle.rotors.len()).map(|rotor| pair.share(rotor)).collect();
     let mut found = found(&known, &moved, &shares, (strength, beyond_load));
-    // what did not happen between the groups has no name there
+    // a move that happened elsewhere has no name here
     found.take_if(|_| pair.is_elsewhere(&by));
     if let Some(found) = &mut found {
         found.carried_by = carriers(&pair, found, &known);
@@ -270,8 +270,8 @@ impl Pair<'_> {
         }
     }
 
-    /// Whether the last flight before or the first after certainly shows less than half of a move: it happened between other flights. A battery that sits
-    /// elsewhere in the flight is in its error.
+    /// Whether the last flight before a move or the first one after it certainly shows less than half of it: then it happened between other
+    /// flights. The error of this flight contains a battery that sits elsewhere.
     fn is_elsewhere(&self, by: &Vector3<f64>) -> bool {
         let lacks_it = |groups: &Groups| {
             let one = Pair { groups, scale: 1.0, ..*self };
@@ -280,7 +280,7 @@ impl Pair<'_> {
             share < HALF && 1.0 - share > CERTAIN * std
         };
         let Groups { before, after } = self.groups;
-        // next to where it would have happened: later it may have gone away again
+        // later flights may have lost it again
         let of_before = before.last().map(|&last| Groups { before: vec![last], after: after.clone() });
         let of_after = after.first().map(|&first| Groups { before: before.clone(), after: vec![first] });
         of_before.iter().chain(&of_after).any(lacks_it)

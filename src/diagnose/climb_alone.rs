@@ -8,6 +8,7 @@ use super::evidence::weighted;
 use super::fit::Fitted;
 use super::signature::EffectTerm;
 use super::trace::Trace;
+use crate::physics::State;
 use nalgebra::Vector3;
 
 /// Share of its size that an effect of descents keeps beside the loss in climb. Set by judgement.
@@ -15,8 +16,8 @@ const KEPT: f64 = 0.5;
 /// Standard errors from which on it is shown beside the loss in climb. The usual three.
 const SHOWN: f64 = 3.0;
 
-/// Whether a loss of thrust in climb alone may be what an effect of descents explains: with both, little of the effect is left. Of other
-/// effects that is not asked. The effect's first column in the model has the index `first`.
+/// Whether a loss of thrust in climb alone may be what an effect of descents explains: with both in the model, little of the effect is left.
+/// `false` of effects that do not act in descents alone. The effect's first column in the model has the index `first`.
 pub(super) fn is_of_climb(traces: &[Trace], fitted: &Fitted, term: &EffectTerm, first: usize) -> bool {
     let amount = term.free.iter().position(|slot| term.is_amount(*slot));
     let Some(place) = amount.filter(|_| term.signature.role.in_descent) else { return false };
@@ -28,7 +29,7 @@ pub(super) fn is_of_climb(traces: &[Trace], fitted: &Fitted, term: &EffectTerm, 
         return false;
     }
     let index = first + place;
-    // with the further column a coefficient is less by what stands for it
+    // where the further column is in the fit, the coefficient loses its share in that column
     let stands_for = fitted.weighted.part_in(&weighted(&column, &fitted.weighted.sigma))[index];
     let beside = size - stands_for * lost;
     let std = fitted.covariance[(index, index)].max(0.0).sqrt().hypot(stands_for * lost_std);
@@ -41,7 +42,7 @@ fn lost_in_climb(traces: &[Trace], fitted: &Fitted) -> Channels {
     let wind_m_s = fitted.base.wind_m_s();
     let mut out = Channels::default();
     for trace in traces {
-        let lost = |state: &crate::physics::State| {
+        let lost = |state: &State| {
             let air = state.attitude.inverse_transform_vector(&(state.velocity_m_s - wind_m_s));
             Vector3::new(0.0, 0.0, -air.z.max(0.0).powi(2))
         };
@@ -54,18 +55,15 @@ fn lost_in_climb(traces: &[Trace], fitted: &Fitted) -> Channels {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+    use crate::diagnose::made_flights::flown;
     use crate::diagnose::{ExplainSettings, explain};
     use crate::physics::effects::by_id;
     use crate::physics::{ActiveEffect, Wrench};
-    use crate::signals::{ConditionSettings, condition};
-    use crate::simulate::{
-        Disturbance, FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight,
-    };
+    use crate::simulate::{Disturbance, RandomTrajectory, Truth};
     use nalgebra::Vector3;
 
     /// Names of a flight that climbs and descends fast.
     fn named(seed: u64, conceal: impl Fn(&mut Truth, f64)) -> Vec<&'static str> {
-        let pair = random_vehicle(seed.wrapping_mul(7919));
         let random = RandomTrajectory {
             height_m: (2.0, 24.0),
             harmonics: 3,
@@ -73,16 +71,8 @@ mod tests {
             acceleration_max_m_s2: 5.0,
             ..RandomTrajectory::default()
         };
-        let trajectory = random.draw(seed.wrapping_mul(104_729)).unwrap();
-        let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
-        let weight_n = pair.truth.body.mass_kg * 9.81;
-        let mut truth = Truth::clean(pair.truth);
-        conceal(&mut truth, weight_n);
-        let settings = FlightSettings { seed, ..FlightSettings::default() };
-        let flight = simulate_flight(truth, &pair.nominal, &reference, &settings).unwrap();
-        let conditioning = ConditionSettings { transient_s: Some(1.0), ..ConditionSettings::default() };
-        let signals = condition(&flight.recording, &pair.nominal, &conditioning).unwrap();
-        let found = explain(&[signals], &pair.nominal, &ExplainSettings::default()).unwrap();
+        let (signals, vehicle) = flown(seed, &random, conceal);
+        let found = explain(&[signals], &vehicle, &ExplainSettings::default()).unwrap();
         found.named.iter().chain(&found.closest).map(|named| named.id).collect()
     }
 

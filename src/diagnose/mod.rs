@@ -43,6 +43,8 @@ mod latency_name;
 mod left_over;
 mod limits;
 pub mod locate;
+#[cfg(test)]
+mod made_flights;
 mod materiality;
 mod measured_force;
 mod model_wrench;
@@ -115,7 +117,7 @@ pub use materiality::Materiality;
 pub use model_wrench::wrench_along;
 pub use named::{Confusable, DetectionLimit, Named, NamedParameter, Strength};
 pub use own_of_flights::{Apart, apart};
-pub use own_wind::{own_wind, relative_to_air};
+pub use own_wind::{drift_m, own_wind, relative_to_air};
 pub use pace::Pace;
 pub use recorded::{Need, Recorded};
 pub use rotors::{OfRotors, RotorMotion, Thrusts};

@@ -87,6 +87,12 @@ fn spread_m_s(trace: &Trace) -> f64 {
     spread.sqrt()
 }
 
+/// How far air that moves at `wind` (world, m/s) is after `count` steps of `step_s`, m.
+#[must_use]
+pub fn drift_m(wind: &Vector3<f64>, step_s: f64, count: usize) -> Vector3<f64> {
+    wind * (step_s * count as f64)
+}
+
 /// The flight as seen with air that moves at `wind` (world, m/s).
 #[must_use]
 pub fn relative_to_air(signals: &Signals, wind: &Vector3<f64>) -> Signals {
@@ -96,7 +102,7 @@ pub fn relative_to_air(signals: &Signals, wind: &Vector3<f64>) -> Signals {
     seen.velocity = seen.velocity.as_ref().map(moving);
     seen.position = seen.position.as_ref().map(|position| {
         let drifted =
-            position.iter().enumerate().map(|(index, at)| at - wind * (signals.grid.step_s * index as f64));
+            position.iter().enumerate().map(|(index, at)| at - drift_m(wind, signals.grid.step_s, index));
         Arc::new(drifted.collect::<Vec<_>>())
     });
     let recorded = |stream: &Arc<Stream>| {

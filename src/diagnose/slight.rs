@@ -109,7 +109,7 @@ fn is_certain((fitted, by_other_law): (&Fitted, &[f64]), term: &EffectTerm, firs
         .map(|(index, &slot)| {
             let column = first + index;
             let place = column - fitted.rows.nuisances.len();
-            // along the rotor axis a force that one law alone tells may be the rotors'
+            // a force along the rotor axis, told by one law alone, may come from the rotors
             let is_across = term.signature.role.vertical != Some(slot);
             let of_other = by_other_law.get(place).copied().filter(|_| is_across).unwrap_or(0.0);
             let by_law = of_law(fitted, term, (slot, column)).powi(2) + of_other;

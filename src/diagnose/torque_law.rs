@@ -137,12 +137,10 @@ fn columns(
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
+    use crate::diagnose::made_flights::flown;
     use crate::diagnose::{ExplainSettings, explain};
     use crate::physics::{ActiveEffect, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
-    use crate::signals::{ConditionSettings, condition};
-    use crate::simulate::{
-        FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight,
-    };
+    use crate::simulate::RandomTrajectory;
 
     /// Torques that go with a power of the thrust.
     #[derive(Debug)]
@@ -181,18 +179,12 @@ mod tests {
     }
 
     fn told(seed: u64, exponent: f64) -> Option<TorqueLaw> {
-        let pair = random_vehicle(seed.wrapping_mul(7919));
-        let trajectory = RandomTrajectory::default().draw(seed.wrapping_mul(104_729)).unwrap();
-        let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
-        let mut truth = Truth::clean(pair.truth);
-        if exponent != 1.0 {
-            truth.effects.push(ActiveEffect::new(&Powered, &[exponent - 1.0]).unwrap());
-        }
-        let settings = FlightSettings { seed, ..FlightSettings::default() };
-        let flight = simulate_flight(truth, &pair.nominal, &reference, &settings).unwrap();
-        let conditioning = ConditionSettings { transient_s: Some(1.0), ..ConditionSettings::default() };
-        let signals = condition(&flight.recording, &pair.nominal, &conditioning).unwrap();
-        explain(&[signals], &pair.nominal, &ExplainSettings::default()).unwrap().torque_law
+        let (signals, vehicle) = flown(seed, &RandomTrajectory::default(), |truth, _| {
+            if exponent != 1.0 {
+                truth.effects.push(ActiveEffect::new(&Powered, &[exponent - 1.0]).unwrap());
+            }
+        });
+        explain(&[signals], &vehicle, &ExplainSettings::default()).unwrap().torque_law
     }
 
     #[test]

@@ -16,9 +16,9 @@ const HOVER_M_S: f64 = 1.5;
 const BETWEEN_FLIGHTS: f64 = 0.01;
 
 /// Command of the motors at which their thrust carries the weight, mean over the rotors (0 to 1), and its standard error, from what was flown at
-/// less than 1.5 m/s: there the upward part of the thrust is the weight in the mean, in wind as well, once the vehicle's own acceleration upwards
-/// is taken out: between climb and descent it is slow where it turns over. `None` where no flight has commands,
-/// attitude and velocity for ten seconds of this.
+/// less than 1.5 m/s. There the mean of the upward part of the thrust is the weight and what the upward acceleration takes, in wind as well. The
+/// acceleration is taken out: a vehicle is slow also where it turns from climb to descent. `None` where no flight has commands, attitude and
+/// velocity for ten seconds of this.
 #[must_use]
 pub fn hover_command(flights: &[Signals], vehicle: &Vehicle) -> Option<(f64, f64)> {
     let rotors = vehicle.rotors.len().max(1) as f64;

@@ -1,12 +1,10 @@
 use super::*;
+use crate::diagnose::made_flights;
 use crate::diagnose::{ExplainSettings, Explanation, Trace, Verdict, by_part, explain};
 use crate::physics::effects::by_id;
 use crate::physics::{ActiveEffect, Wrench};
 use crate::signals::Signals;
-use crate::signals::{ConditionSettings, condition};
-use crate::simulate::{
-    Disturbance, FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight,
-};
+use crate::simulate::{Disturbance, RandomTrajectory, Truth};
 use crate::vehicle::{Guess, Guessed, Vehicle};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -17,17 +15,7 @@ fn explained(seed: u64, conceal: impl Fn(&mut Truth, f64)) -> Explanation {
 }
 
 fn flown(seed: u64, conceal: impl Fn(&mut Truth, f64)) -> (Signals, Vehicle) {
-    let pair = random_vehicle(seed.wrapping_mul(7919));
-    let trajectory = RandomTrajectory::default().draw(seed.wrapping_mul(104_729)).unwrap();
-    let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
-    let weight_n = pair.truth.body.mass_kg * 9.81;
-    let mut truth = Truth::clean(pair.truth);
-    conceal(&mut truth, weight_n);
-    let settings = FlightSettings { seed, ..FlightSettings::default() };
-    let flight = simulate_flight(truth, &pair.nominal, &reference, &settings).unwrap();
-    let conditioning = ConditionSettings { transient_s: Some(1.0), ..ConditionSettings::default() };
-    let signals = condition(&flight.recording, &pair.nominal, &conditioning).unwrap();
-    (signals, pair.nominal)
+    made_flights::flown(seed, &RandomTrajectory::default(), conceal)
 }
 
 /// A force of `share` of the weight along a world axis that wanders within some seconds and never repeats.

@@ -1,7 +1,7 @@
 //! The flown path with what is left of it.
 
 use super::result::ExplainStudy;
-use crate::diagnose::AXES;
+use crate::diagnose::{AXES, drift_m};
 use crate::stats::quantile;
 use nalgebra::Vector3;
 
@@ -43,11 +43,11 @@ impl ExplainStudy {
             sum.into_iter().map(|sum| (sum / axes.len().max(1) as f64).sqrt()).collect()
         };
         let before = missed(&|axis| self.left_before(axis));
-        // a flight that is seen with its wind drifts with it
+        // explained together, each flight was seen with the air; the path is over the ground
         let own = self.along.as_ref().and_then(|along| *along.winds_m_s.first()?);
         let wind_m_s = own.map_or_else(Vector3::zeros, |[north, west]| Vector3::new(north, west, 0.0));
         let flown =
-            |center: usize| trace.states[center].position_m + wind_m_s * (trace.grid.step_s * center as f64);
+            |center: usize| trace.states[center].position_m + drift_m(&wind_m_s, trace.grid.step_s, center);
         let mut ranked = before.clone();
         ranked.sort_by(f64::total_cmp);
         Some(FlownPath {
