@@ -57,8 +57,12 @@ def parameters(found: dict[str, Any]) -> pd.DataFrame:
     """Mass, inertia and the effects of what `explain` or `identify` found (of its best method), one row a parameter: of, value, std, unit."""
     import pandas as pd
 
-    of_body = found["parameters"] if "parameters" in found else found["methods"][found["best"]["method"]]
-    effects = found["effects"] if "effects" in found else found.get("with", {}).get("effects", [])
+    if found.get("best"):
+        of_body, effects = found["best"]["parameters"], found.get("with", {}).get("effects", [])
+    elif "effects" in found:
+        of_body, effects = found["parameters"], found["effects"]
+    else:
+        raise ValueError(f"expected what explain or identify found, got a document of {', '.join(map(repr, found)) or 'nothing'}")
     body = [{"of": "body", "name": name, **row} for name, row in of_body.items()]
     named = [{"of": effect["id"], **row} for effect in effects for row in effect["parameters"]]
     return pd.DataFrame(body + named, columns=["of", "name", "value", "std", "unit"]).set_index(["of", "name"])
