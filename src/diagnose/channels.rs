@@ -39,6 +39,8 @@ pub enum Nuisance {
     Inertia(usize),
     /// share of the gyroscopic torque, of simulators that leave it out
     Gyroscopic,
+    /// kg m^2, the moment about z in the gyroscopic torque beyond that of [`Self::Inertia`], which goes with a guessed torque per thrust
+    GuessedMomentAboutZ,
     /// s, of all channels
     Latency,
     /// s, of the force beyond that of the torque

@@ -43,7 +43,8 @@ impl Weighted {
         (0..CHANNELS).map(|channel| self.gamma(residual, channel)).collect()
     }
 
-    fn gamma(&self, residual: &DVector<f64>, channel: usize) -> Vec<f64> {
+    /// Autocovariance of one channel.
+    pub(super) fn gamma(&self, residual: &DVector<f64>, channel: usize) -> Vec<f64> {
         let series = &residual.as_slice()[channel * self.rows..(channel + 1) * self.rows];
         let [zero] = autocovariances(series, &self.measured[channel], 0);
         let mut gamma = vec![zero];

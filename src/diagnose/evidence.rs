@@ -6,7 +6,7 @@
 
 use super::channels::{AXES, CHANNELS, Channels, SECOND};
 use super::columns::Columns;
-use super::priors::{OF_KERNEL, Priors};
+use super::priors::{Alike, Priors};
 use super::rows::Rows;
 use crate::stats::{chance_by_stretches, normal_deviate};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -88,7 +88,7 @@ impl Weighted {
         let mut this = Self::at(rows, &sigma);
         for _ in 0..2 {
             sigma = this.residual_sigma();
-            let alike = this.long_run_deviation().powi(2);
+            let alike = this.alike();
             // two of a long flight at a time take much memory
             drop(this);
             this = Self::with(rows, &sigma, alike);
@@ -99,37 +99,37 @@ impl Weighted {
     /// The same with given standard deviations of the channels (N, N m), for simulated flights.
     #[must_use]
     pub fn at(rows: &Rows, sigma: &[f64; CHANNELS]) -> Self {
-        Self::with(rows, sigma, OF_KERNEL)
+        Self::with(rows, sigma, Alike::OF_WHITE_NOISE)
     }
 
     /// The same with the standard deviations and the correlation of other rows' residual.
     pub(super) fn like(rows: &Rows, other: &Self) -> Self {
-        Self::with(rows, &other.sigma, other.long_run_deviation().powi(2))
+        Self::with(rows, &other.sigma, other.alike())
     }
 
     /// The same by the first reading of the force alone.
     pub(super) fn by_first_reading(rows: &Rows, other: &Self) -> Self {
         let mut sigma = other.sigma;
         sigma[SECOND..].fill(0.0);
-        Self::with(rows, &sigma, other.long_run_deviation().powi(2))
+        Self::with(rows, &sigma, other.alike())
     }
 
     /// The same without a channel.
     pub(super) fn without(rows: &Rows, other: &Self, channel: usize) -> Self {
         let mut sigma = other.sigma;
         sigma[channel] = 0.0;
-        Self::with(rows, &sigma, other.long_run_deviation().powi(2))
+        Self::with(rows, &sigma, other.alike())
     }
 
     /// By the forces alone.
     pub(super) fn by_forces(rows: &Rows, other: &Self) -> Self {
         let mut sigma = other.sigma;
         sigma[3..AXES].fill(0.0);
-        Self::with(rows, &sigma, other.long_run_deviation().powi(2))
+        Self::with(rows, &sigma, other.alike())
     }
 
-    /// The same if this many rows of a reading count as one independent measurement of a slow error.
-    fn with(rows: &Rows, sigma: &[f64; CHANNELS], alike: f64) -> Self {
+    /// The same if so many rows of a reading count as one independent measurement.
+    fn with(rows: &Rows, sigma: &[f64; CHANNELS], alike: Alike) -> Self {
         let nuisances = Columns::weighted(&rows.nuisances, &rows.effects, sigma, rows.len());
         let priors = Priors::of(&rows.nuisances, nuisances.len(), alike);
         let mut normal = nuisances.gram() + DMatrix::from_diagonal(&priors.precision);
@@ -194,16 +194,23 @@ impl Weighted {
     /// residual's long-run variance, mean of the channels.
     #[must_use]
     pub fn long_run_deviation(&self) -> f64 {
-        let gammas = self.gammas(&self.left);
-        let used: Vec<f64> = gammas
-            .iter()
-            .enumerate()
-            .filter(|(channel, _)| !(self.averaged_torques && (3..AXES).contains(channel)))
-            .map(|(_, gamma)| gamma)
-            .filter(|gamma| gamma[0] > 0.0)
-            .map(|gamma| (gamma[0] + 2.0 * gamma[1..].iter().sum::<f64>()).max(gamma[0]))
-            .collect();
-        (used.iter().sum::<f64>() / used.len().max(1) as f64).max(1.0).sqrt()
+        self.alike().all.sqrt()
+    }
+
+    /// Rows of the residual that count as one independent measurement: its long-run variance relative to independent rows.
+    pub(super) fn alike(&self) -> Alike {
+        let variances: [Option<f64>; CHANNELS] = std::array::from_fn(|channel| {
+            if self.averaged_torques && (3..AXES).contains(&channel) {
+                return None;
+            }
+            let gamma = self.gamma(&self.left, channel);
+            (gamma[0] > 0.0).then(|| (gamma[0] + 2.0 * gamma[1..].iter().sum::<f64>()).max(gamma[0]))
+        });
+        let mean = |channels: &[Option<f64>]| {
+            let used = || channels.iter().flatten();
+            (used().sum::<f64>() / used().count().max(1) as f64).max(1.0)
+        };
+        Alike { all: mean(&variances), torques: mean(&variances[3..AXES]) }
     }
 
     /// Coefficients of the nuisances and of the base's effects, in the order of the rows' columns.

@@ -59,6 +59,7 @@ pub(super) fn nuisances(
             column(Nuisance::Inertia(entry), prior_std, channels(trace, nothing(trace), torque(values)));
         out.push(NuisanceColumn { prior_mean: prior_mean.unwrap_or_default(), ..known });
     }
+    out.extend(guessed_moment_about_z(trace, &base.vehicle));
     if base.estimates_gyroscopic {
         let values = gyroscopic_column(trace, &base.vehicle.body);
         // known is the share, and the column is of what it changes by
@@ -102,6 +103,20 @@ fn product_prior(base: &Base, entry: usize) -> Option<(f64, f64)> {
     (row != column).then(|| {
         let std = PRODUCT_STD * (moment(row) * moment(column)).sqrt();
         (std, begun[(row, column)] - now[(row, column)])
+    })
+}
+
+/// The moment about z that the gyroscopic torque shows, of a vehicle whose torque per thrust or arms are a guess. The motion about z tells
+/// only the ratio of izz to that torque. An izz on the scale of a wrong guess would make a gyroscopic torque about x and y that looks like
+/// damping and latency.
+fn guessed_moment_about_z(trace: &Trace, vehicle: &Vehicle) -> Option<NuisanceColumn> {
+    let guessed = vehicle.guessed(Guessed::TorqueRatio).hypot(vehicle.guessed(Guessed::Arms));
+    (trace.torques && guessed > 0.0).then(|| {
+        let [about_x, about_y, _] = &trace.momentum(vehicle.body.gyroscopic)[INERTIA_ENTRIES.len() - 1];
+        let negative = |values: &[f64]| values.iter().map(|v| -v).collect::<Vec<f64>>();
+        let torque = [negative(about_x), negative(about_y), vec![0.0; trace.rows()]];
+        let std = guessed * vehicle.body.inertia_kg_m2[(2, 2)];
+        column(Nuisance::GuessedMomentAboutZ, Some(std), channels(trace, nothing(trace), torque))
     })
 }
 

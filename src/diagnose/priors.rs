@@ -5,7 +5,21 @@ use nalgebra::DVector;
 
 /// Rows of white noise that count as one independent measurement of something slow: one over the rows' distance and the
 /// integral of the squared test function, 1 / (0.05 s x 4.54 1/s).
-pub(super) const OF_KERNEL: f64 = 4.4;
+const OF_KERNEL: f64 = 4.4;
+
+/// Rows of one reading that count as one independent measurement of something slow: those that overlap, or whose noise lasts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Alike {
+    /// mean of all channels
+    pub(super) all: f64,
+    /// mean of the torques
+    pub(super) torques: f64,
+}
+
+impl Alike {
+    /// Of rows whose noise is white.
+    pub(super) const OF_WHITE_NOISE: Self = Self { all: OF_KERNEL, torques: OF_KERNEL };
+}
 
 /// One entry a column of the rows: nuisances first, then the base's effects, which have no prior.
 #[derive(Debug, Clone)]
@@ -19,17 +33,16 @@ pub(super) struct Priors {
 }
 
 impl Priors {
-    /// Of these nuisances among `columns` columns. `alike` rows of one reading count as one independent measurement of a slow
-    /// error: rows that overlap, noise that lasts, and a second reading that shares the error must not outvote what is known
-    /// of it.
-    pub(super) fn of(nuisances: &[NuisanceColumn], columns: usize, alike: f64) -> Self {
+    /// Of these nuisances among `columns` columns. Rows that overlap, noise that lasts, and a second reading that shares the error
+    /// must not outvote what is known.
+    pub(super) fn of(nuisances: &[NuisanceColumn], columns: usize, alike: Alike) -> Self {
         let zeros = || DVector::zeros(columns);
         let mut priors = Self { precision: zeros(), meat: zeros(), pull: zeros() };
         for (index, column) in nuisances.iter().enumerate() {
             let Some(std) = column.prior_std else { continue };
             let counts = match column.nuisance {
-                Nuisance::VelocityError => alike * readings(column),
-                Nuisance::Inertia(_) => alike,
+                Nuisance::VelocityError => alike.all * readings(column),
+                Nuisance::Inertia(_) => alike.torques,
                 _ => 1.0,
             };
             priors.precision[index] = counts * std.powi(-2);
@@ -66,7 +79,7 @@ mod tests {
                 considered: None,
             }
         };
-        let priors = Priors::of(&[column(0.0), column(1.0)], 3, 10.0);
+        let priors = Priors::of(&[column(0.0), column(1.0)], 3, Alike { all: 10.0, torques: 1.0 });
         assert_eq!(priors.precision.as_slice(), [40.0, 80.0, 0.0]);
         assert_eq!(priors.meat.as_slice(), [400.0, 1600.0, 0.0]);
     }

@@ -225,11 +225,11 @@ type Estimate = fn(Problem, &[usize]) -> Result<Fit, FitError>;
 
 fn known_lag(fitted: &Fitted, signals: &Signals, std_s: f64) -> KnownLag {
     if signals.quality.thrust_source == ThrustSource::MeasuredSpeed {
-        return KnownLag { delay_s: 0.0, lag_s: 0.0, lag_std_s: NO_LAG_STD_S };
+        return KnownLag { delay_s: 0.0, lag_s: 0.0, lag_std_s: NO_LAG_STD_S, uneven: 0.0 };
     }
     let latency = &fitted.base.latency;
     let lag_std_s = if latency.lag_s > 0.0 { LAG_STD_S.hypot(std_s.min(LAG_STD_S)) } else { NO_LAG_STD_S };
-    KnownLag { delay_s: latency.delay_s.max(0.0), lag_s: latency.lag_s, lag_std_s }
+    KnownLag { delay_s: latency.delay_s.max(0.0), lag_s: latency.lag_s, lag_std_s, uneven: latency.uneven }
 }
 
 fn fitted_flight(

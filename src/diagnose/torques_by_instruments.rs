@@ -114,7 +114,7 @@ impl Projected {
             asked.view_mut((rows.start, 0), (rows.len(), count)).copy_from(&along);
             given.view_mut((rows.start, 0), (rows.len(), count)).copy_from(&own);
         }
-        let alike = fitted.weighted.long_run_deviation().powi(2);
+        let alike = fitted.weighted.alike();
         let priors = Priors::of(&fitted.rows.nuisances, fitted.coefficients.len(), alike);
         let normal = asked.tr_mul(&asked) + DMatrix::from_diagonal(&priors.precision.select_rows(&places));
         let scale = normal.diagonal().map(f64::sqrt);
@@ -224,7 +224,7 @@ fn estimated(
     };
     for (place, column) in rows.nuisances.iter().enumerate() {
         let wanted = match column.nuisance {
-            Nuisance::Inertia(_) => true,
+            Nuisance::Inertia(_) | Nuisance::GuessedMomentAboutZ => true,
             Nuisance::Latency => newton != Newton::Held,
             _ => false,
         };

@@ -58,11 +58,12 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// The airborne part of a flight.
+    /// The airborne part of a flight, of a vehicle whose rotors slow down as `uneven` says
+    /// ([`crate::physics::ActuationLatency::uneven`]).
     ///
     /// # Errors
     /// [`ReconstructionError`] where a stream is missing, or the flight is too short.
-    pub fn of(signals: &Signals, vehicle: &Vehicle) -> Result<Self, ReconstructionError> {
+    pub fn of(signals: &Signals, vehicle: &Vehicle, uneven: f64) -> Result<Self, ReconstructionError> {
         let missing = ReconstructionError::Missing;
         let attitude = signals.attitude.as_ref().ok_or(missing(Quantity::Attitude))?;
         let rate = signals.rate.as_ref().ok_or(missing(Quantity::AngularRate))?;
@@ -102,7 +103,7 @@ impl Cells {
                 Received::of(stream, (&signals.grid, on_grid), &time_s)
             }),
             borders_m_s: time_s.iter().map(|t| Place::of(&signals.grid, *t).between(on_grid)).collect(),
-            thrusts: CellThrusts::of(signals, vehicle, from_s, count),
+            thrusts: CellThrusts::of((signals, vehicle, uneven), from_s, count),
             time_s,
         })
     }

@@ -31,6 +31,8 @@ pub struct KnownLag {
     pub lag_s: f64,
     /// s, standard deviation of the lag
     pub lag_std_s: f64,
+    /// of the lag, as [`crate::physics::ActuationLatency::uneven`]; it is held
+    pub uneven: f64,
 }
 
 /// Standard deviation of the lateness of the commands, s. An autopilot stamps its outputs within its loop, 2.5 ms at
@@ -85,7 +87,7 @@ pub fn force_problem(
     if terms.len() > MOST_TERMS || terms.iter().any(|term| term.values.len() > MOST_VALUES) {
         return Err(ReconstructionError::TooMany);
     }
-    let cells = Cells::of(signals, vehicle)?;
+    let cells = Cells::of(signals, vehicle, known.uneven)?;
     let airframe = Airframe::new(vehicle).map_err(|error| ReconstructionError::Vehicle(error.to_string()))?;
     let intervals = (0..cells.len()).collect();
     let flight = Arc::new(Flight { airframe, terms, intervals, cells });

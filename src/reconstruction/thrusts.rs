@@ -29,8 +29,13 @@ pub struct CellThrusts {
 }
 
 impl CellThrusts {
-    /// Of `count` cells from `from_s` on.
-    pub(super) fn of(signals: &Signals, vehicle: &Vehicle, from_s: f64, count: usize) -> Self {
+    /// Of `count` cells from `from_s` on. Rotors that slow down more slowly than they speed up (`uneven`) turn faster in the mean than they
+    /// are commanded to: by 1 % where a controller is busy and slowing down takes twice as long.
+    pub(super) fn of(
+        (signals, vehicle, uneven): (&Signals, &Vehicle, f64),
+        from_s: f64,
+        count: usize,
+    ) -> Self {
         let (rotors, factor) = (vehicle.rotors.len(), signals.thrust_factor(&vehicle.propulsion));
         let start_s = from_s - LEAD as f64 * STEP_S;
         let mut held = Vec::with_capacity((count + LEAD) * PER_CELL * rotors);
@@ -41,7 +46,7 @@ impl CellThrusts {
         }
         let mut thrust_n = vec![0.0; count * rotors * LAGS * LATE];
         for lag in 0..LAGS {
-            let latency = ActuationLatency { delay_s: 0.0, lag_s: lag as f64 * LAG_STEP_S, uneven: 0.0 };
+            let latency = ActuationLatency { delay_s: 0.0, lag_s: lag as f64 * LAG_STEP_S, uneven };
             let lagged = delayed_thrusts_n(&held, rotors, FINE_S, latency);
             for cell in 0..count {
                 let first = (LEAD + cell) * PER_CELL;

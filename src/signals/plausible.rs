@@ -7,7 +7,7 @@
 use super::Signals;
 use crate::note::{About, Note};
 use crate::vehicle::{AXIS_NAMES, Vehicle};
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DMatrix, DVector, Vector3, Vector4};
 
 /// Time over which rotations and torques are compared, s. Shorter windows hold the noise of differences, longer ones
 /// average the motion away.
@@ -226,21 +226,22 @@ fn positions(signals: &Signals) -> Vec<String> {
 }
 
 /// Torque of the rotors about each axis against the change of the body rates, with columns for the aerodynamic torques
-/// of velocity and rates. Without them, on a circle a hub moment would look like the torque of another axis.
+/// of velocity and rates, and for the thrust. Without the first, on a circle a hub moment would look like the torque of another axis,
+/// and without the last a centre of mass that is off would.
 fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Option<String> {
     let (rate, velocity, attitude) =
         (signals.rate.as_ref()?, signals.velocity.as_ref()?, signals.attitude.as_ref()?);
     let inverse = vehicle.body.inertia_kg_m2.try_inverse()?;
-    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); 9];
+    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); 10];
     let mut changed: Vec<Vector3<f64>> = Vec::with_capacity(spans.len());
     for &(first, last) in spans {
-        let wrenches = signals.wrench[first..=last].iter();
-        let torque = wrenches.map(|wrench| wrench.fixed_rows::<3>(1).into_owned()).sum::<Vector3<f64>>();
+        let wrench = signals.wrench[first..=last].iter().sum::<Vector4<f64>>();
+        let torque = wrench.fixed_rows::<3>(1).into_owned();
         let middle = (first + last) / 2;
         let through_air = attitude[middle].inverse_transform_vector(&velocity[middle]);
         let parts = [inverse * torque * signals.grid.step_s, through_air, mean(&rate[first..=last])];
-        let values = parts.iter().flat_map(Vector3::iter);
-        columns.iter_mut().zip(values).for_each(|(column, value)| column.push(*value));
+        let values = parts.iter().flat_map(Vector3::iter).copied().chain([wrench[0]]);
+        columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
         changed.push(rate[last] - rate[first]);
     }
     let columns: Vec<DVector<f64>> =

@@ -130,7 +130,7 @@ fn drag(with_speed: f64, free: &[usize]) -> Term {
 
 fn fitted(signals: &Signals, vehicle: &Vehicle, term: Term) -> Fit {
     // the commands of this flight act at once
-    let known = KnownLag { delay_s: -0.004, lag_s: 0.0, lag_std_s: 1e-4 };
+    let known = KnownLag { delay_s: -0.004, lag_s: 0.0, lag_std_s: 1e-4, uneven: 0.0 };
     let problem = force_problem(signals, vehicle, known, vec![term]).unwrap();
     let free: Vec<usize> = (0..problem.unknowns.len()).collect();
     fit(problem, &free).unwrap()
@@ -185,7 +185,7 @@ fn the_drag_of_a_body_is_told_from_that_of_the_rotors() {
 fn what_is_not_recorded_is_said() {
     let vehicle = vehicle();
     let mut signals = recorded(&vehicle, 15);
-    let known = KnownLag { delay_s: 0.0, lag_s: 0.05, lag_std_s: 0.01 };
+    let known = KnownLag { delay_s: 0.0, lag_s: 0.05, lag_std_s: 0.01, uneven: 0.0 };
     let refused = |signals: &Signals| {
         force_problem(signals, &vehicle, known, vec![drag(1.0, &[0])]).unwrap_err().to_string()
     };
@@ -201,7 +201,7 @@ fn what_is_not_recorded_is_said() {
 #[test]
 fn derivatives_are_those_of_the_residuals() {
     let vehicle = vehicle();
-    let known = KnownLag { delay_s: 0.0, lag_s: 0.034, lag_std_s: 0.01 };
+    let known = KnownLag { delay_s: 0.0, lag_s: 0.034, lag_std_s: 0.01, uneven: 0.0 };
     let term = drag(0.4, &[0, 1, 2, 4]);
     let problem = force_problem(&recorded(&vehicle, 16), &vehicle, known, vec![term]).unwrap();
     let mut theta: Vec<f64> = problem.unknowns.iter().map(|unknown| unknown.mean).collect();

@@ -124,7 +124,7 @@ fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
             | Nuisance::Level(_)
             | Nuisance::KinematicLatency
             | Nuisance::LateralLatency => own.coefficients[index],
-            Nuisance::ForceLatency | Nuisance::Tilt(_) | Nuisance::Jitter => {
+            Nuisance::GuessedMomentAboutZ | Nuisance::ForceLatency | Nuisance::Tilt(_) | Nuisance::Jitter => {
                 let columns = &identified.rows.nuisances;
                 let place = columns.iter().position(|known| known.nuisance == column.nuisance);
                 place.map_or(0.0, |index| identified.coefficients[index])
