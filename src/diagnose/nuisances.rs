@@ -254,6 +254,10 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::super::rows::tests::vehicle;
     use super::*;
+    use crate::diagnose::made_flights::flown;
+    use crate::diagnose::{ExplainSettings, explain};
+    use crate::simulate::RandomTrajectory;
+    use std::cell::Cell;
 
     #[test]
     fn products_of_inertia_are_known_about_those_of_the_vehicle_that_was_given() {
@@ -269,5 +273,27 @@ mod tests {
         assert!((mean - (stated - 0.1 * ixx)).abs() < 1e-12);
         let moment = INERTIA_ENTRIES.iter().position(|entry| *entry == (0, 0)).unwrap();
         assert_eq!(product_prior(&base, moment), None);
+    }
+
+    #[test]
+    fn the_gyroscopic_torque_tells_the_moment_about_z_that_a_guessed_torque_puts_on_another_scale() {
+        let truth_kg_m2 = Cell::new(0.0);
+        let random = RandomTrajectory::default();
+        let (signals, mut vehicle) =
+            flown(4711, &random, |truth, _| truth_kg_m2.set(truth.vehicle.body.inertia_kg_m2[(2, 2)]));
+        vehicle.propulsion.torque_per_thrust_m *= 1.5;
+        vehicle.guesses = vec![Guess { of: Guessed::TorqueRatio, relative: 0.45, why: String::new() }];
+        let found = explain(&[signals], &vehicle, &ExplainSettings::default()).unwrap().search.after;
+        let of = |column: &NuisanceColumn| column.nuisance == Nuisance::GuessedMomentAboutZ;
+        let place = found.rows.nuisances.iter().position(of).unwrap();
+        let on_scale_kg_m2 = found.base.vehicle.body.inertia_kg_m2[(2, 2)];
+        let (told, std) =
+            (on_scale_kg_m2 + found.coefficients[place], found.covariance[(place, place)].sqrt());
+        let truth_kg_m2 = truth_kg_m2.get();
+        assert!((on_scale_kg_m2 / truth_kg_m2 - 1.5).abs() < 0.1, "{on_scale_kg_m2}, {truth_kg_m2}");
+        assert!(
+            std < 0.15 * truth_kg_m2 && (told - truth_kg_m2).abs() < 4.0 * std,
+            "{told} +- {std}, {truth_kg_m2}"
+        );
     }
 }

@@ -7,10 +7,13 @@ use super::acceptance::started;
 use super::base::Base;
 use super::explain::{ExplainSettings, explain};
 use super::explanation::Verdict;
-use super::fit::{Newton, fit};
+use super::fit::{Fitted, Newton, fit};
+use super::latency::finding_of;
+use super::reconstructed::{Forms, reconstruct};
 use super::score::test_winds;
 use super::signature::EffectTerm;
 use super::signatures::{ALL, CALM_M_S};
+use super::tested::Search;
 use super::trace::Trace;
 use crate::recording::Stream;
 use crate::signals::Signals;
@@ -40,26 +43,64 @@ pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings
     let mut base = calm.base.clone();
     base.effects = started(&best, &base.size);
     let fitted = fit(&traces, base, Newton::Free).ok().filter(|windy| windy.misfit() < calm.misfit())?;
-    let mut column = fitted.rows.nuisances.len();
-    let mut certain = Vec::new();
-    for present in &fitted.base.effects {
-        let of = present.free.iter().map(|&slot| {
-            let std = fitted.covariance[(column, column)].max(0.0).sqrt();
-            column += 1;
-            present.values[slot].abs() > CERTAIN * std
-        });
-        certain.push(of.collect::<Vec<bool>>());
+    let shown = Shown::by(&fitted);
+    tracing::debug!(?shown, "wind of a flight, by a drag alone");
+    let wind_m_s = shown.wind_m_s()?;
+    if wind_m_s.norm() > FAR * spread_m_s(&traces[0]) {
+        return told_alone(signals, vehicle, settings);
     }
-    let wind = &fitted.base.effects.get(1)?.values;
-    let wind = Vector3::new(wind[0], wind[1], 0.0);
-    let is_shown = certain[0].iter().all(|yes| *yes) && certain[1].iter().any(|yes| *yes);
-    let is_dragged =
-        fitted.base.effects[0].free.iter().all(|&slot| fitted.base.effects[0].values[slot] > 0.0);
-    let wind = (is_shown && is_dragged && wind.norm() > CALM_M_S).then_some(wind)?;
-    if wind.norm() < FAR * spread_m_s(&traces[0]) {
-        Some(wind)
-    } else {
-        told_alone(signals, vehicle, settings)
+    // the autopilot's velocity wanders by as much as the wind may be wrong
+    let mut found = Search::of(fitted, finding_of(&calm));
+    let by_path = reconstruct(std::slice::from_ref(signals), &traces, (Forms::Chosen, &mut found), None);
+    let by_path = by_path.unwrap_or(false).then(|| Shown::by(&found.after));
+    tracing::debug!(?by_path, "wind of a flight, by its path");
+    Some(by_path.and_then(|shown| shown.wind_m_s()).unwrap_or(wind_m_s))
+}
+
+/// A wind and the drag that it acts through, as a fit shows them.
+#[derive(Debug)]
+struct Shown {
+    /// north and west, m/s
+    wind_m_s: [f64; 2],
+    /// one of both is certain
+    blows: bool,
+    /// all of it is there and certain
+    is_dragged: bool,
+}
+
+impl Shown {
+    /// Of a fit to a drag and a wind, in this order.
+    fn by(fitted: &Fitted) -> Self {
+        let mut column = fitted.rows.nuisances.len();
+        let sizes: Vec<Vec<(f64, f64)>> = fitted
+            .base
+            .effects
+            .iter()
+            .map(|present| {
+                let of = present.free.iter().map(|&slot| {
+                    let std = fitted.covariance[(column, column)].max(0.0).sqrt();
+                    column += 1;
+                    (present.values[slot], std)
+                });
+                of.collect()
+            })
+            .collect();
+        let is_certain = |(value, std): &(f64, f64)| value.abs() > CERTAIN * std;
+        let [drag, wind] = &sizes[..] else {
+            return Self { wind_m_s: [0.0; 2], blows: false, is_dragged: false };
+        };
+        let along = |axis: usize| wind.get(axis).map_or(0.0, |(value, _)| *value);
+        Self {
+            wind_m_s: [along(0), along(1)],
+            blows: wind.iter().any(is_certain),
+            is_dragged: drag.iter().all(|of| is_certain(of) && of.0 > 0.0),
+        }
+    }
+
+    /// World, m/s, where it is certain and more than none.
+    fn wind_m_s(&self) -> Option<Vector3<f64>> {
+        let wind_m_s = Vector3::new(self.wind_m_s[0], self.wind_m_s[1], 0.0);
+        (self.blows && self.is_dragged && wind_m_s.norm() > CALM_M_S).then_some(wind_m_s)
     }
 }
 
