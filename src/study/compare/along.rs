@@ -217,31 +217,6 @@ mod tests {
     }
 
     #[test]
-    fn another_lift_is_a_doubt_where_no_voltage_and_no_parameter_accounts_for_it() {
-        let vehicle = vehicle();
-        let mut balance = balance(&[Vector3::zeros(); 4]);
-        let apart = |balance: &Balance, groups: Option<&Groups>| {
-            Judge { vehicle: &vehicle, balance, tracks: &[], alone: &[], is_known: false }.lifts_apart(groups)
-        };
-        let groups = Groups::split(4, 2);
-        assert_eq!(apart(&balance, Some(&groups)), None);
-        for (flight, lift) in balance.flights.iter_mut().zip([2.4, 2.5, 2.4, 3.5]) {
-            flight.lift = Some((lift, 0.01));
-        }
-        assert_eq!(apart(&balance, Some(&groups)), None);
-        let along = apart(&balance, None).unwrap();
-        assert!(along.from == Some(3) && along.after == 3.5, "{along:?}");
-        balance.flights[2].lift = Some((3.5, 0.01));
-        let between = apart(&balance, Some(&groups)).unwrap();
-        assert!(between.from.is_none() && between.after == 3.5, "{between:?}");
-        // a drained battery
-        for (flight, volts) in balance.flights.iter_mut().zip([10.2, 10.4, 12.4, 12.6]) {
-            flight.voltage_v = Some(volts);
-        }
-        assert_eq!(apart(&balance, Some(&groups)), None);
-    }
-
-    #[test]
     fn an_unchanged_history_says_what_a_border_in_its_middle_would_have_shown() {
         let (vehicle, balance) = (vehicle(), balance(&[Vector3::zeros(); 5]));
         let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], alone: &[], is_known: true };
