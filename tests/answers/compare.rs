@@ -161,6 +161,13 @@ fn flights_that_may_be_of_two_vehicles_have_an_exit_status_of_their_own() {
     let text = String::from_utf8_lossy(&told.stdout).into_owned();
     assert!(text.contains("It is doubtful that this is one vehicle"), "{text}");
     assert_eq!(told.status.code(), Some(3), "{text}");
+    // also between others of a history, where it is named
+    let again = simulated(&folder, "heavy", (2.0643, 0.3), 3);
+    let row =
+        mavid(&["compare", &heavy, &light, &again, "--balance-only", "--vehicle", &config("x500.toml")]);
+    let text = String::from_utf8_lossy(&row.stdout).into_owned();
+    assert!(text.contains(&format!(" in {light} and ")) && text.contains(" in the other flights"), "{text}");
+    assert_eq!(row.status.code(), Some(3), "{text}");
 }
 
 /// A change of drag needs several flights, because it differs between flights of one vehicle: what does not suffice is told.
