@@ -396,6 +396,11 @@ fn an_output_that_left_the_mixer_is_told_with_its_times_and_nothing_hidden_is_se
             assert_eq!(Some(off.held), fault["command_held_us"].as_f64(), "{name}");
         }
         assert!(inspection.advice[0].contains("does not follow the controllers"), "{:?}", inspection.advice);
+        // nothing after it can be used
+        let (flight, left_s) = (&inspection.flight, found[0].left_s);
+        assert!(flight.usable_s < left_s - flight.segments[0].start_s, "{name}: {flight:?}");
+        let ends_s = flight.segments.last().unwrap().end_s;
+        assert!((flight.off_mixer_s - (ends_s - left_s)).abs() < 0.5, "{name}: {flight:?}");
     }
     let faulty = ["flight_01.bin", "flight_02.bin"].map(|name| folder.join(name));
     let request = CompareRequest { before: faulty.to_vec(), ..CompareRequest::default() };
