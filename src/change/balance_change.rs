@@ -286,12 +286,15 @@ impl Pair<'_> {
         of_before.iter().chain(&of_after).any(lacks_it)
     }
 
-    /// Mean share of a rotor in the commanded thrust after.
     fn share(&self, rotor: usize) -> f64 {
-        let after = &self.groups.after;
-        after.iter().map(|&flight| self.balance.flights[flight].shares[rotor]).sum::<f64>()
-            / after.len() as f64
+        share_after(self.balance, self.groups, rotor)
     }
+}
+
+/// Mean share of a rotor in the commanded thrust of the later flights.
+pub(super) fn share_after(balance: &Balance, groups: &Groups, rotor: usize) -> f64 {
+    let each = groups.after.iter().map(|&flight| balance.flights[flight].shares[rotor]);
+    each.sum::<f64>() / groups.after.len() as f64
 }
 
 /// Scatter of the flights of each group over what is expected beforehand, learned as far as there are flights to learn it from.

@@ -149,6 +149,7 @@ fn add_rivals(change: &mut Compared, other: &Compared) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::by_motion::WeakAlone;
     use super::*;
     use crate::config::load_vehicle;
     use crate::trim::{Balance, FlightBalance, mean_arm_m};
@@ -316,5 +317,29 @@ mod tests {
         let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], alone: &[], is_known: true };
         let compared = judge.compared(&Groups::split(2, 1));
         assert_eq!(compared.changes.iter().map(|change| change.what).collect::<Vec<_>>(), [Changed::Balance]);
+    }
+
+    #[test]
+    fn a_rotor_that_the_motion_names_accounts_for_the_balance_that_it_moves_and_for_no_more() {
+        let vehicle = vehicle();
+        let alone = [None, Some((2, (0.93, 0.002)))].map(|rotor| Some(WeakAlone { rotor, limit: 0.008 }));
+        let changed = |more: Vector3<f64>, alone: &[Option<WeakAlone>]| -> Vec<Changed> {
+            let balance = balance(&[Vector3::zeros(), weak(&vehicle, 2) + more]);
+            let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], alone, is_known: true };
+            let compared = judge.compared(&Groups::split(2, 1));
+            assert!(
+                alone.is_empty()
+                    || compared.changes.iter().all(|change| !change.rivals.contains(&What::Rotor(2)))
+            );
+            compared.changes.iter().map(|change| change.what).collect()
+        };
+        // a load that sits elsewhere
+        let load = Vector3::new(0.03, 0.0, 0.0);
+        assert_eq!(changed(load, &[]), [Changed::Balance]);
+        assert_eq!(changed(load, &alone), [Changed::Rotor(2)]);
+        // a centre of mass that moved as well
+        let mut both = changed(Vector3::new(-0.09, -0.02, 0.0), &alone);
+        both.sort_by_key(|what| *what == Changed::Balance);
+        assert_eq!(both, [Changed::Rotor(2), Changed::Balance]);
     }
 }

@@ -5,8 +5,8 @@ use super::lifts::are_apart;
 use super::result::{Change, Changed, Compared, LeastChange, UndecidedAlong};
 use super::scale::ScaleMoved;
 use crate::change::{
-    BalanceChange, Groups, NAMED_SIGMAS, ParameterChange, Step, UNDECIDED, What, find_returns,
-    judge_at_both_scales, judge_balance, judge_parameter, steps,
+    BalanceChange, Groups, NAMED, NAMED_SIGMAS, ParameterChange, Step, UNDECIDED, What, find_returns,
+    judge_at_both_scales, judge_balance, judge_parameter, left_beside_rotor, steps,
 };
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{Need, Owner, follows_force};
@@ -109,11 +109,11 @@ impl Judge<'_> {
     pub fn compared(&self, groups: &Groups) -> Compared {
         let balance = judge_balance(self.balance, groups, self.vehicle);
         let mut changes = self.of_balance(&balance);
-        if !changes.iter().any(|change| matches!(change.what, Changed::Rotor(_))) {
-            let by_motion = rotor_by_motion(self.alone, groups).map(of_rotor);
-            // it accounts for a balance that has no name
-            changes.retain(|change| by_motion.is_none() || change.what != Changed::Balance);
-            changes.extend(by_motion);
+        if !changes.iter().any(|change| matches!(change.what, Changed::Rotor(_)))
+            && let Some(moved) = rotor_by_motion(self.alone, groups)
+        {
+            self.keep_beside(&mut changes, &moved, (&balance, groups));
+            changes.push(of_rotor(moved));
         }
         let mut least = self.least_of_balance(&balance);
         let mut undecided = Vec::new();
@@ -142,6 +142,22 @@ impl Judge<'_> {
         let are_several = compared.moved_by_motion(UNDECIDED) >= OTHER_PARAMETERS;
         compared.other_vehicle = self.lifts(groups).filter(|lifts| are_several && are_apart(*lifts));
         compared
+    }
+
+    /// Of a balance that moved without a name keeps what a rotor that the motion names does not account for.
+    fn keep_beside(
+        &self,
+        changes: &mut Vec<Change>,
+        rotor: &RotorMoved,
+        (balance, groups): (&BalanceChange, &Groups),
+    ) {
+        let known = (rotor.rotor, rotor.moved.after);
+        let left = left_beside_rotor((self.balance, balance), groups, self.vehicle, known);
+        changes.retain(|change| change.what != Changed::Balance || left >= NAMED);
+        for change in changes.iter_mut().filter(|change| change.what == Changed::Balance) {
+            change.sigmas = change.sigmas.min(left.sqrt());
+            change.rivals.retain(|rival| *rival != What::Rotor(rotor.rotor));
+        }
     }
 
     /// Whether a parameter moved, where the scale that it goes with may have moved.
