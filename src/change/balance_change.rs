@@ -92,10 +92,12 @@ impl BalanceChange {
         beside_a_load(axis, &self.moved[axis])
     }
 
-    /// What is left of this move in a later one, as a share of it, with its standard error.
+    /// What is left of this move in a later one, as a share of it, with its standard error: that of the later one where a load or a battery
+    /// may sit elsewhere on each side, as it may where a move is judged.
     #[must_use]
     pub fn left_in(&self, later: &Self) -> (f64, f64) {
-        along(&difference(&self.moved), &difference(&later.moved), &variances_of(&later.moved))
+        let loaded: [Moved; AXES] = std::array::from_fn(|axis| later.beside_a_load(axis));
+        along(&difference(&self.moved), &difference(&loaded), &variances_of(&loaded))
     }
 }
 
