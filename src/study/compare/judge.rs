@@ -1,7 +1,6 @@
 //! What changed between groups of flights whose balance and parameters are known.
 
 use super::by_motion::{RotorMoved, WeakAlone, rotor_by_motion};
-use super::lifts::are_apart;
 use super::result::{Change, Changed, Compared, LeastChange, UndecidedAlong};
 use super::scale::ScaleMoved;
 use crate::change::{
@@ -140,7 +139,7 @@ impl Judge<'_> {
         undecided.sort_by(|(a, _), (b, _)| b.sigmas.total_cmp(&a.sigmas));
         let mut compared = Compared { balance, changes, undecided, least, other_vehicle: None };
         let are_several = compared.moved_by_motion(UNDECIDED) >= OTHER_PARAMETERS;
-        compared.other_vehicle = self.lifts(groups).filter(|lifts| are_several && are_apart(*lifts));
+        compared.other_vehicle = self.differing_lifts(groups).filter(|_| are_several);
         compared
     }
 

@@ -39,7 +39,7 @@ impl Judge<'_> {
     /// Full thrust over weight of two groups, if it differs and no parameter tells that it is one vehicle. Where one moved by `least_sigmas`
     /// standard deviations, they tell nothing.
     fn apart(&self, groups: &Groups, of: LiftsOf, least_sigmas: f64) -> Option<LiftsApart> {
-        let (before, after) = self.lifts(groups).filter(|lifts| are_apart(*lifts))?;
+        let (before, after) = self.differing_lifts(groups)?;
         let for_voltage = self.lifts_for_voltage(groups).is_none_or(are_apart);
         let tells = |track: &Track| {
             is_of_vehicle(track) && judge_parameter(&track.values, groups, &track.spread).is_some()
@@ -98,12 +98,12 @@ impl Judge<'_> {
         self.balance.flights.iter().enumerate().filter_map(of).collect()
     }
 
-    /// Mean full thrust over weight of both groups, where all flights have it.
-    pub(super) fn lifts(&self, groups: &Groups) -> Option<(f64, f64)> {
-        self.means(groups, |flight| Some(flight.lift?.0))
+    /// Mean full thrust over weight of both groups, where all flights have it and it differs by more than that of one vehicle.
+    pub(super) fn differing_lifts(&self, groups: &Groups) -> Option<(f64, f64)> {
+        self.means(groups, |flight| Some(flight.lift?.0)).filter(|lifts| are_apart(*lifts))
     }
 
-    /// The same over the square of the voltage, with which a battery's goes, where all flights have both.
+    /// Mean full thrust over weight of both groups over the square of the voltage, with which a battery's goes, where all flights have both.
     fn lifts_for_voltage(&self, groups: &Groups) -> Option<(f64, f64)> {
         self.means(groups, |flight| Some(flight.lift?.0 / flight.voltage_v?.powi(2)))
     }
@@ -118,7 +118,7 @@ impl Judge<'_> {
 }
 
 /// Full thrust over weight of two groups that differs by more than that of one vehicle.
-pub(super) fn are_apart((before, after): (f64, f64)) -> bool {
+fn are_apart((before, after): (f64, f64)) -> bool {
     before.max(after) > OTHER_LIFT * before.min(after)
 }
 
