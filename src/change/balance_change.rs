@@ -92,10 +92,12 @@ impl BalanceChange {
         beside_a_load(axis, &self.moved[axis])
     }
 
-    /// What is left of this move in a later one, as a share of it, with its standard error.
+    /// What is left of this move in a later one, as a share of it, with its standard error: that of the later one where a load or a battery
+    /// may sit elsewhere on each side, as it may where a move is judged.
     #[must_use]
     pub fn left_in(&self, later: &Self) -> (f64, f64) {
-        along(&difference(&self.moved), &difference(&later.moved), &variances_of(&later.moved))
+        let loaded: [Moved; AXES] = std::array::from_fn(|axis| later.beside_a_load(axis));
+        along(&difference(&self.moved), &difference(&loaded), &variances_of(&loaded))
     }
 }
 
@@ -286,12 +288,15 @@ impl Pair<'_> {
         of_before.iter().chain(&of_after).any(lacks_it)
     }
 
-    /// Mean share of a rotor in the commanded thrust after.
     fn share(&self, rotor: usize) -> f64 {
-        let after = &self.groups.after;
-        after.iter().map(|&flight| self.balance.flights[flight].shares[rotor]).sum::<f64>()
-            / after.len() as f64
+        share_after(self.balance, self.groups, rotor)
     }
+}
+
+/// Mean share of a rotor in the commanded thrust of the later flights.
+pub(super) fn share_after(balance: &Balance, groups: &Groups, rotor: usize) -> f64 {
+    let each = groups.after.iter().map(|&flight| balance.flights[flight].shares[rotor]);
+    each.sum::<f64>() / groups.after.len() as f64
 }
 
 /// Scatter of the flights of each group over what is expected beforehand, learned as far as there are flights to learn it from.

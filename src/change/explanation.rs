@@ -1,7 +1,7 @@
 //! What can move the balance of a vehicle, and the direction in which it does.
 
 use crate::trim::{AXES, FlightBalance, TORQUE_SPREAD, mean_arm_m};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Rotor, Vehicle};
 use nalgebra::Vector3;
 
 /// What changed of a vehicle.
@@ -40,18 +40,21 @@ pub(super) struct Account {
 
 /// All explanations for a vehicle. `after` is what a changed rotor's share is taken from.
 pub(super) fn explanations(vehicle: &Vehicle, before: &Vector3<f64>) -> Vec<Explanation> {
-    let arm_m = mean_arm_m(vehicle);
-    let rotors = vehicle.rotors.iter().enumerate().map(|(place, rotor)| {
-        let at = (rotor.position_m - vehicle.body.center_of_mass_m) / arm_m;
-        // where the rotor pulls the balance to
-        let pull = Vector3::new(at.x, at.y, rotor.spin.yaw_sign()) - before;
-        Explanation { what: What::Rotor(place), directions: vec![pull] }
+    let rotors = vehicle.rotors.iter().enumerate().map(|(place, rotor)| Explanation {
+        what: What::Rotor(place),
+        directions: vec![pull(vehicle, rotor, before)],
     });
     let others = [
         Explanation { what: What::CentreOfMass, directions: vec![Vector3::x(), Vector3::y()] },
         Explanation { what: What::YawTorque, directions: vec![Vector3::z()] },
     ];
     rotors.chain(others).collect()
+}
+
+/// Where a rotor that is commanded more pulls the balance to, from where it was.
+pub(super) fn pull(vehicle: &Vehicle, rotor: &Rotor, before: &Vector3<f64>) -> Vector3<f64> {
+    let at = (rotor.position_m - vehicle.body.center_of_mass_m) / mean_arm_m(vehicle);
+    Vector3::new(at.x, at.y, rotor.spin.yaw_sign()) - before
 }
 
 impl Explanation {
@@ -130,6 +133,11 @@ pub(super) fn other_rotor_and_load(
 /// The factor of a rotor's thrust that an amount means, with its standard error: the rotor takes a larger share of the commands.
 pub(super) fn factor((amount, std): (f64, f64), share: f64) -> (f64, f64) {
     (1.0 - amount / share, std / share)
+}
+
+/// The amount that a factor on a rotor's thrust means, with its standard error.
+pub(super) fn amount((factor, std): (f64, f64), share: f64) -> (f64, f64) {
+    ((1.0 - factor) * share, std * share)
 }
 
 /// A balance as a vector.

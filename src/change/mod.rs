@@ -2,6 +2,7 @@
 //! could not have been seen.
 
 mod balance_change;
+mod beside_rotor;
 mod both_scales;
 mod explanation;
 mod groups;
@@ -10,6 +11,7 @@ mod parameter;
 mod pooled;
 
 pub use balance_change::{BalanceChange, BalanceFound, LOADED, Least, NAMED, NAMED_SIGMAS, judge_balance};
+pub use beside_rotor::left_beside_rotor;
 pub use both_scales::judge_at_both_scales;
 pub use explanation::What;
 pub use groups::{Groups, Moved, interval_95};

@@ -2,17 +2,18 @@
 
 use super::airborne::{Before, airborne, normalized_commands};
 use super::excitation::ExcitationTally;
+use super::flown::{FlightSummary, Segment};
 use super::flown_rates::FlownRates;
 use super::forecast::Learnt;
-use super::inspection::{Excitation, FlightSummary, OffsetSummary, Segment};
+use super::inspection::{Excitation, OffsetSummary};
 use super::motion::Motion;
+use super::off_mixer::OffMixerTally;
 use crate::estimate::{Estimated, FlightApart, flights_apart};
 use crate::note::Note;
 use crate::recording::{Quantity, Recording};
-use crate::signals::{
-    ConditionSettings, OffMixer, Quality, Signals, SignalsError, Usable, condition, outputs_off_mixer,
-};
+use crate::signals::{ConditionSettings, OffMixer, Quality, Signals, SignalsError, Usable, condition};
 use crate::vehicle::Vehicle;
+use std::borrow::Cow;
 
 /// Segments kept; a log with more is counted.
 const KEPT_SEGMENTS: usize = 1000;
@@ -40,8 +41,8 @@ pub(super) struct Assessor<'a> {
     offsets: Vec<OffsetSum>,
     notes: Vec<Note>,
     refusal: Option<SignalsError>,
-    off_mixer: Vec<OffMixer>,
-    /// the window with the most seconds that can be used, and these
+    off_mixer: OffMixerTally,
+    /// the window with the most seconds that can be used, until an output left the mixer, and these
     liveliest: Option<(f64, Recording)>,
 }
 
@@ -71,13 +72,34 @@ pub(super) struct Assessment {
     pub refusal: Option<SignalsError>,
     /// outputs that left the mixer in the air, each once
     pub off_mixer: Vec<OffMixer>,
-    /// the window with the most seconds that can be used, and these
+    /// the window with the most seconds that can be used, until an output left the mixer, and these
     pub liveliest: Option<(f64, Recording)>,
+}
+
+impl Assessment {
+    /// Says nothing of outputs that left the mixer: a VTOL plane's rotors stand still by design once its wings carry it.
+    pub(super) fn leave_outputs_untold(&mut self) {
+        self.off_mixer.clear();
+        self.flight.off_mixer_s = 0.0;
+    }
 }
 
 /// Refusals of one window that say nothing of the others, nor of the vehicle file.
 fn is_of_the_window(refusal: &SignalsError) -> bool {
     matches!(refusal, SignalsError::NothingUsable { .. } | SignalsError::TooFewSamples { .. })
+}
+
+/// What is used of a window: until `left_s`, at which an output left the mixer; `None` where that was before it.
+fn followed(recording: &Recording, left_s: Option<f64>) -> Option<Cow<'_, Recording>> {
+    match left_s {
+        None => Some(Cow::Borrowed(recording)),
+        Some(left_s) if left_s.is_finite() => {
+            let mut kept = recording.clone();
+            kept.end_at(left_s);
+            Some(Cow::Owned(kept))
+        }
+        Some(_) => None,
+    }
 }
 
 impl<'a> Assessor<'a> {
@@ -86,20 +108,53 @@ impl<'a> Assessor<'a> {
         Self { vehicle, ..Self::default() }
     }
 
-    /// Looks at a window.
+    /// Looks at a window. Nothing is learnt of what comes after an output left the mixer: the command of that motor is known, and nothing
+    /// is balanced any more.
     pub(super) fn window(&mut self, recording: &Recording) {
         self.restarted |= !recording.clock_resets_s.is_empty();
         self.anew |= !recording.clock_resets_s.is_empty();
-        self.off_mixer(recording);
         let commands = normalized_commands(recording);
         let airborne = airborne(recording, commands.as_ref(), &mut self.before);
         self.flight.airborne_from = airborne.from;
         self.rates.add(recording, &airborne.flown_s);
+        let left_s = self.off_mixer.add(recording);
+        if let Some(left_s) = left_s {
+            self.flight.add_off_mixer(&airborne.flown_s, left_s);
+        }
+        let known = followed(recording, left_s);
+        let motion = known.as_deref().and_then(|known| {
+            let until_s = left_s.unwrap_or(f64::INFINITY);
+            let before = |(start_s, end_s): &(f64, f64)| {
+                (*start_s < until_s).then_some((*start_s, end_s.min(until_s)))
+            };
+            let free_s: Vec<(f64, f64)> = airborne.free_s.iter().filter_map(before).collect();
+            self.motion(known, &free_s)
+        });
+        let usable_before_s = self.flight.usable_s;
+        match motion {
+            Some((motion, used)) => {
+                self.flight.add(&used);
+                self.segments(&airborne.flown_s, &motion.usable, |i| motion.grid.time_s(i));
+                self.excitation.add(&motion);
+            }
+            None => self.segments(&airborne.flown_s, &[], |_| f64::NAN),
+        }
+        let usable_s = self.flight.usable_s - usable_before_s;
+        if let Some(known) = known
+            && usable_s > self.liveliest.as_ref().map_or(0.0, |(most_s, _)| *most_s)
+        {
+            self.liveliest = Some((usable_s, known.into_owned()));
+        }
+        self.flown |= !airborne.flown_s.is_empty();
+    }
+
+    /// How the body moved in what is used of a window, which is in the air without taking off and landing in these spans, s.
+    fn motion(&mut self, recording: &Recording, free_s: &[(f64, f64)]) -> Option<(Motion, Usable)> {
         // only the first flight begins with the take-off's transient
         let transient_s = self.flown.then_some(0.0);
         let settings = ConditionSettings { transient_s, ..ConditionSettings::default() };
         let conditioned = self.vehicle.map(|vehicle| (condition(recording, vehicle, &settings), vehicle));
-        let motion = match conditioned {
+        match conditioned {
             Some((Ok(signals), vehicle)) => {
                 self.inform(&signals, vehicle);
                 let used = signals.quality.usable;
@@ -111,30 +166,7 @@ impl<'a> Assessor<'a> {
                 {
                     self.refusal = Some(refusal);
                 }
-                Motion::of_recording(recording, &airborne.free_s, transient_s)
-            }
-        };
-        let usable_before_s = self.flight.usable_s;
-        match motion {
-            Some((motion, used)) => {
-                self.flight.add(&used);
-                self.segments(&airborne.flown_s, &motion.usable, |i| motion.grid.time_s(i));
-                self.excitation.add(&motion);
-            }
-            None => self.segments(&airborne.flown_s, &[], |_| f64::NAN),
-        }
-        let usable_s = self.flight.usable_s - usable_before_s;
-        if usable_s > self.liveliest.as_ref().map_or(0.0, |(most_s, _)| *most_s) {
-            self.liveliest = Some((usable_s, recording.clone()));
-        }
-        self.flown |= !airborne.flown_s.is_empty();
-    }
-
-    /// Outputs that left the mixer in it and not before.
-    fn off_mixer(&mut self, recording: &Recording) {
-        for off in outputs_off_mixer(recording) {
-            if self.off_mixer.iter().all(|known| known.output != off.output) {
-                self.off_mixer.push(off);
+                Motion::of_recording(recording, free_s, transient_s)
             }
         }
     }
@@ -222,28 +254,8 @@ impl<'a> Assessor<'a> {
             apart: flights_apart(&each).iter().map(FlightApart::told).collect(),
             offsets: self.offsets.iter().map(offset).collect(),
             notes: self.notes,
-            off_mixer: self.off_mixer,
+            off_mixer: self.off_mixer.found(),
             liveliest: self.liveliest,
         }
-    }
-}
-
-impl FlightSummary {
-    /// Adds what a window's mask left out; what is not flight counts for nothing here.
-    pub(super) fn add(&mut self, used: &Usable) {
-        self.transient_s += used.transient_s;
-        self.idle_s += used.idle_s;
-        self.saturated_s += used.saturated_s;
-        self.gap_s += used.gap_s;
-    }
-
-    /// Of a log whose samples are out of order: no time is known.
-    pub(super) fn out_of_order() -> Self {
-        Self { airborne_from: "nothing: its samples are out of order", ..Self::default() }
-    }
-
-    /// Of a vehicle that does not fly, whatever its motors did.
-    pub(super) fn on_the_ground() -> Self {
-        Self { airborne_from: "the kind of vehicle", ..Self::default() }
     }
 }

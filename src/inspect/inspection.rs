@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::flown::FlightSummary;
 use super::onboard::OnboardReading;
 use super::quantity::QuantitySummary;
 use crate::signals::OffMixer;
@@ -267,40 +268,6 @@ pub struct ModeChange {
     pub number: f64,
     /// its name where it is known
     pub name: Option<&'static str>,
-}
-
-/// When it flew and how much of that can be used.
-#[derive(Debug, Clone, PartialEq, Serialize, Default)]
-pub struct FlightSummary {
-    /// from what the time in the air is known
-    pub airborne_from: &'static str,
-    /// s in the air
-    pub airborne_s: f64,
-    /// s left for identification: in the air, exciting, no actuator at its end stop, no gap
-    pub usable_s: f64,
-    /// s of flight left out as transient at the beginning
-    pub transient_s: f64,
-    /// s of flight without excitation
-    pub idle_s: f64,
-    /// s with an actuator at its end stop
-    pub saturated_s: f64,
-    /// s inside gaps of a stream
-    pub gap_s: f64,
-    /// each flight
-    pub segments: Vec<Segment>,
-    /// segments beyond those kept
-    pub segments_dropped: u64,
-}
-
-/// A time in the air.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Segment {
-    /// s
-    pub start_s: f64,
-    /// s
-    pub end_s: f64,
-    /// s of it that can be used
-    pub usable_s: f64,
 }
 
 /// How the vehicle was moved in the time that can be used, seen through the identification's kernel.

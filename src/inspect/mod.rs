@@ -9,11 +9,13 @@ mod assess;
 mod clock;
 mod evidence;
 mod excitation;
+mod flown;
 mod flown_rates;
 mod forecast;
 mod inspection;
 mod missing_streams;
 mod motion;
+mod off_mixer;
 mod onboard;
 mod outlook;
 mod parameters;
@@ -26,10 +28,10 @@ mod timeline;
 mod verdict;
 mod window;
 
+pub use flown::{FlightSummary, Segment};
 pub use inspection::{
-    ClockSummary, CsvReading, Excitation, FlightSummary, Inspection, ModeChange, OffsetSummary, Outlook,
-    ParameterSummary, Reading, Segment, SenderSummary, StreamSummary, Text, TextSummary, Timeline,
-    TlogReading, Unflown, VehicleSummary,
+    ClockSummary, CsvReading, Excitation, Inspection, ModeChange, OffsetSummary, Outlook, ParameterSummary,
+    Reading, SenderSummary, StreamSummary, Text, TextSummary, Timeline, TlogReading, Unflown, VehicleSummary,
 };
 pub use onboard::{OnboardReading, TopicSummary};
 pub use quantity::{ExpectedParameter, QuantitySummary};

@@ -3,8 +3,9 @@
 use super::assess::{Assessment, Assessor};
 use super::clock::ClockTally;
 use super::evidence::Evidence;
+use super::flown::FlightSummary;
 use super::forecast::{Forecast, forecast};
-use super::inspection::{FlightSummary, Inspection, Reading, Text, TextSummary, Timeline, VehicleSummary};
+use super::inspection::{Inspection, Reading, Text, TextSummary, Timeline, VehicleSummary};
 use super::outlook::outlook;
 use super::parameters::Parameters;
 use super::quantities::{Outcome, quantities};
@@ -307,8 +308,7 @@ impl Found {
             assessment.flight = FlightSummary::on_the_ground();
         }
         if self.kind.is_some_and(|kind| kind != VehicleKind::Multirotor) {
-            // a VTOL plane's rotors stand still by design once its wings carry it
-            assessment.off_mixer.clear();
+            assessment.leave_outputs_untold();
         }
         if self.steps_back.is_some() {
             // then no time in the air is known

@@ -14,8 +14,8 @@ const CELL_S: f64 = 10.0;
 /// Fewer samples of body motion, or of what drives the body, than this in a cell are silence: nothing is identified from
 /// 2 Hz.
 const LEAST_SAMPLES: u32 = 20;
-/// A longer silence divides two flights; of a silence at the ends so much is kept, s.
-const SILENCE_S: f64 = 60.0;
+/// A longer silence of motion or actuators divides two flights; of a silence at the ends so much is kept, s.
+pub const SILENCE_S: f64 = 60.0;
 /// Kept before and after the time in the air where time on the ground is left out, s.
 const GROUND_S: f64 = 10.0;
 

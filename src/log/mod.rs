@@ -32,7 +32,7 @@ pub use dataflash::{
     Letter, Message,
 };
 pub use error::LogError;
-pub use flights::{Flights, Hold, LogFlight};
+pub use flights::{Flights, Hold, LogFlight, SILENCE_S};
 pub use format::{Certainty, Format, Place, ReadWhole, Sink};
 pub use input::Input;
 pub use loss::{Loss, Oddity, Position, RowRejection};

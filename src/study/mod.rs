@@ -33,7 +33,7 @@ pub use after_flight::{AfterFlight, FlightLogs, after_flight};
 pub use alone::{AloneFlight, AloneRequest, AloneStudy, Depth, Explained, OwnWords, Whose, alone};
 pub use compare::{
     Change, Changed, CompareRequest, CompareStudy, Compared, ComparedFlight, Judge, LeastChange, LeftOut,
-    LiftsApart, ScaleMoved, UndecidedAlong, WeakAlone, compare,
+    LiftsApart, LiftsOf, ScaleMoved, UndecidedAlong, WeakAlone, compare,
 };
 pub use correlation::Correlation;
 pub use effects::{effects_file, with_further, with_stated_lag};

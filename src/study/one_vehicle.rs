@@ -20,68 +20,87 @@ const PARTS: [&[&str]; 3] =
     [&["BRD_SERIAL_NUM"], &["CAL_ACC0_ID", "CAL_GYRO0_ID", "INS_ACC_ID"], &["COMPASS_DEV_ID"]];
 
 /// Logs of different autopilots number the motors differently, and so do different frames.
-pub(super) fn refuse_others<'a>(mut flights: impl Iterator<Item = &'a Flight>) -> Result<(), StudyError> {
-    let Some(first) = flights.next() else { return Ok(()) };
-    for flight in flights {
-        let Some((own, other)) = differ(&flight.recording, &first.recording) else { continue };
-        return Err(StudyError::File {
-            file: flight.input.path.clone(),
-            why: format!(
-                "expected flights of one vehicle, got a log of {own} beside one of {other} ({})",
-                first.input.path
-            ),
-        });
-    }
-    Ok(())
+pub(super) fn refuse_others<'a>(flights: impl Iterator<Item = &'a Flight>) -> Result<(), StudyError> {
+    let flights: Vec<&Flight> = flights.collect();
+    let Some((place, earlier, (own, other))) = first_pair(&recordings(&flights), differ) else {
+        return Ok(());
+    };
+    Err(StudyError::File {
+        file: flights[place].input.path.clone(),
+        why: format!(
+            "expected flights of one vehicle, got a log of {own} beside one of {other} ({})",
+            flights[earlier].input.path
+        ),
+    })
 }
 
 /// Flights of one answer are of one build: a log whose parameters put the rotors elsewhere is of another vehicle, or of the same
 /// after it was rebuilt.
 pub(super) fn refuse_other_builds<'a>(
-    mut flights: impl Iterator<Item = &'a Flight> + Clone,
+    flights: impl Iterator<Item = &'a Flight> + Clone,
 ) -> Result<(), StudyError> {
     refuse_others(flights.clone())?;
-    let Some(first) = flights.next() else { return Ok(()) };
-    for flight in flights {
-        if !are_elsewhere(&flight.recording, &first.recording) {
-            continue;
-        }
-        return Err(StudyError::File {
-            file: flight.input.path.clone(),
-            why: format!(
-                "expected flights of one vehicle, got a log whose parameters put the rotors elsewhere than those of {}: `mavid compare` \
-                 says what changed between flights before and after",
-                first.input.path
-            ),
-        });
-    }
-    Ok(())
+    let flights: Vec<&Flight> = flights.collect();
+    let elsewhere = |one: &Recording, other: &Recording| are_elsewhere(one, other).then_some(());
+    let Some((place, earlier, ())) = first_pair(&recordings(&flights), elsewhere) else { return Ok(()) };
+    Err(StudyError::File {
+        file: flights[place].input.path.clone(),
+        why: format!(
+            "expected flights of one vehicle, got a log whose parameters put the rotors elsewhere than those of {}: `mavid compare` \
+             says what changed between flights before and after",
+            flights[earlier].input.path
+        ),
+    })
 }
 
-/// A warning for each flight whose log states another airframe or other serial numbers than that of the first: such flights may be of
+/// The first flight that differs from one before it, that one, and how: a log that states nothing differs from none, so the first flight
+/// does not speak for all.
+fn first_pair<T>(
+    flights: &[&Recording],
+    differ: impl Fn(&Recording, &Recording) -> Option<T>,
+) -> Option<(usize, usize, T)> {
+    (1..flights.len()).find_map(|place| {
+        (0..place).find_map(|earlier| Some((place, earlier, differ(flights[place], flights[earlier])?)))
+    })
+}
+
+fn recordings<'a>(flights: &[&'a Flight]) -> Vec<&'a Recording> {
+    flights.iter().map(|flight| &flight.recording).collect()
+}
+
+/// A warning for each flight whose log states another airframe or other serial numbers than a flight before it: such flights may be of
 /// two vehicles, or of one that was rebuilt.
-pub(super) fn doubt_one_vehicle<'a>(mut flights: impl Iterator<Item = &'a Flight>) -> Vec<Note> {
-    let Some(first) = flights.next() else { return Vec::new() };
-    flights.filter_map(|flight| other_parts(flight, first, |others| !others.is_empty())).collect()
+pub(super) fn doubt_one_vehicle<'a>(flights: impl Iterator<Item = &'a Flight>) -> Vec<Note> {
+    let flights: Vec<&Flight> = flights.collect();
+    (1..flights.len()).filter_map(|place| other_parts(&flights, place, |others| !others.is_empty())).collect()
 }
 
 /// The first of these warnings by which more than one part has another serial number: one that was replaced is no other vehicle.
-pub(super) fn serials_apart<'a>(mut flights: impl Iterator<Item = &'a Flight>) -> Option<Note> {
-    let first = flights.next()?;
-    flights.find_map(|flight| other_parts(flight, first, |others| parts(others) > 1))
+pub(super) fn serials_apart<'a>(flights: impl Iterator<Item = &'a Flight>) -> Option<Note> {
+    let flights: Vec<&Flight> = flights.collect();
+    (1..flights.len()).find_map(|place| other_parts(&flights, place, |others| parts(others) > 1))
 }
 
-/// The warning that a flight's log states other parts than that of `first`, if those are `enough`.
-fn other_parts(flight: &Flight, first: &Flight, enough: impl Fn(&[&str]) -> bool) -> Option<Note> {
-    let others = stated_otherwise(&flight.recording, &first.recording);
+/// The warning that a flight's log states other parts than the flights before it, if those are `enough`.
+fn other_parts(flights: &[&Flight], place: usize, enough: impl Fn(&[&str]) -> bool) -> Option<Note> {
+    let flight = flights[place];
+    let others = stated_otherwise(&recordings(&flights[..=place]));
+    let names: Vec<&str> = others.iter().map(|(name, _)| *name).collect();
     let text = || {
+        let mut paths: Vec<&str> = Vec::new();
+        for (_, stated_in) in &others {
+            let path = flights[*stated_in].input.path.as_str();
+            if !paths.contains(&path) {
+                paths.push(path);
+            }
+        }
         format!(
             "{} not as in {}: these flights are of two vehicles, or parts were replaced between them",
-            others.join(", "),
-            first.input.path
+            names.join(", "),
+            paths.join(" and ")
         )
     };
-    enough(&others).then(|| Note::warning(About::File(flight.input.path.clone()), text()))
+    enough(&names).then(|| Note::warning(About::File(flight.input.path.clone()), text()))
 }
 
 /// Parts of which these are serial numbers.
@@ -89,13 +108,17 @@ fn parts(names: &[&str]) -> usize {
     PARTS.iter().filter(|part| names.iter().any(|name| part.contains(name))).count()
 }
 
-/// What identifies a vehicle and is stated in both logs, otherwise in `one` than in `other`.
-fn stated_otherwise(one: &Recording, other: &Recording) -> Vec<&'static str> {
-    let is_other = |name: &&str| {
-        let value = |recording: &Recording| recording.parameters.get(*name).copied();
-        value(one).zip(value(other)).is_some_and(|(one, other)| one != other)
+/// What identifies a vehicle and is stated otherwise in the last of these logs than in the first one that states it, with the place of
+/// that one.
+fn stated_otherwise(flights: &[&Recording]) -> Vec<(&'static str, usize)> {
+    let value = |flight: &Recording, name: &str| flight.parameters.get(name).copied();
+    let is_other = |name: &'static str| {
+        let own = value(flights.last()?, name)?;
+        let mut stated =
+            flights.iter().enumerate().filter_map(|(place, flight)| Some((place, value(flight, name)?)));
+        stated.next().filter(|(_, first)| *first != own).map(|(place, _)| (name, place))
     };
-    AIRFRAME.into_iter().chain(SERIAL).filter(is_other).collect()
+    AIRFRAME.into_iter().chain(SERIAL).filter_map(is_other).collect()
 }
 
 /// The rotors of both are stated, and not at the same places.
@@ -148,6 +171,11 @@ mod tests {
         assert_eq!(said, Some(("a vehicle with FRAME_CLASS 2".to_owned(), "FRAME_CLASS 1".to_owned())));
         assert_eq!(differ(&of(Autopilot::Px4, 1.0), &quad), Some(("PX4".to_owned(), "ArduPilot".to_owned())));
         assert_eq!(differ(&Recording::default(), &quad), None);
+        // behind a log that states nothing
+        let (none, hexa) = (Recording::default(), of(Autopilot::ArduPilot, 2.0));
+        let found = first_pair(&[&none, &quad, &none, &hexa, &quad], differ);
+        assert_eq!(found.map(|(place, earlier, _)| (place, earlier)), Some((3, 1)));
+        assert!(first_pair(&[&none, &quad, &quad], differ).is_none());
     }
 
     #[test]
@@ -159,8 +187,13 @@ mod tests {
         let one = of(&[("SYS_AUTOSTART", 4001.0), ("CAL_ACC0_ID", 1.0), ("MPC_THR_HOVER", 0.5)]);
         let same = of(&[("SYS_AUTOSTART", 4001.0), ("CAL_GYRO0_ID", 7.0), ("MPC_THR_HOVER", 0.4)]);
         let other = of(&[("SYS_AUTOSTART", 4500.0), ("CAL_ACC0_ID", 2.0)]);
-        assert_eq!(stated_otherwise(&one, &same), Vec::<&str>::new());
-        assert_eq!(stated_otherwise(&other, &one), ["SYS_AUTOSTART", "CAL_ACC0_ID"]);
+        assert_eq!(stated_otherwise(&[&one, &same]), []);
+        assert_eq!(stated_otherwise(&[&one, &other]), [("SYS_AUTOSTART", 0), ("CAL_ACC0_ID", 0)]);
+        // the first that states it counts, and a flight like that one is no other
+        let (none, gyro) = (Recording::default(), of(&[("CAL_GYRO0_ID", 8.0)]));
+        assert_eq!(stated_otherwise(&[&none, &one, &other]), [("SYS_AUTOSTART", 1), ("CAL_ACC0_ID", 1)]);
+        assert_eq!(stated_otherwise(&[&one, &other, &one]), []);
+        assert_eq!(stated_otherwise(&[&one, &same, &gyro]), [("CAL_GYRO0_ID", 1)]);
     }
 
     #[test]

@@ -161,6 +161,13 @@ fn flights_that_may_be_of_two_vehicles_have_an_exit_status_of_their_own() {
     let text = String::from_utf8_lossy(&told.stdout).into_owned();
     assert!(text.contains("It is doubtful that this is one vehicle"), "{text}");
     assert_eq!(told.status.code(), Some(3), "{text}");
+    // also between others of a history, where it is named
+    let again = simulated(&folder, "heavy", (2.0643, 0.3), 3);
+    let row =
+        mavid(&["compare", &heavy, &light, &again, "--balance-only", "--vehicle", &config("x500.toml")]);
+    let text = String::from_utf8_lossy(&row.stdout).into_owned();
+    assert!(text.contains(&format!(" in {light} and ")) && text.contains(" in the other flights"), "{text}");
+    assert_eq!(row.status.code(), Some(3), "{text}");
 }
 
 /// A change of drag needs several flights, because it differs between flights of one vehicle: what does not suffice is told.
@@ -389,6 +396,11 @@ fn an_output_that_left_the_mixer_is_told_with_its_times_and_nothing_hidden_is_se
             assert_eq!(Some(off.held), fault["command_held_us"].as_f64(), "{name}");
         }
         assert!(inspection.advice[0].contains("does not follow the controllers"), "{:?}", inspection.advice);
+        // nothing after it can be used
+        let (flight, left_s) = (&inspection.flight, found[0].left_s);
+        assert!(flight.usable_s < left_s - flight.segments[0].start_s, "{name}: {flight:?}");
+        let ends_s = flight.segments.last().unwrap().end_s;
+        assert!((flight.off_mixer_s - (ends_s - left_s)).abs() < 0.5, "{name}: {flight:?}");
     }
     let faulty = ["flight_01.bin", "flight_02.bin"].map(|name| folder.join(name));
     let request = CompareRequest { before: faulty.to_vec(), ..CompareRequest::default() };

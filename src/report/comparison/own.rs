@@ -1,7 +1,7 @@
 //! What is the flights' own, and what speaks against one vehicle, in words.
 
 use crate::report::number::significant;
-use crate::study::{CompareStudy, LiftsApart};
+use crate::study::{CompareStudy, LiftsApart, LiftsOf};
 
 /// That full thrust over weight moved, which is each flight's own and may hide what is the vehicle's, as sentences behind a space; empty
 /// where it did not, or where the answer says it already.
@@ -25,16 +25,31 @@ pub(super) fn doubt(study: &CompareStudy) -> Option<String> {
         .as_ref()
         .map(|note| format!("It is doubtful that this is one vehicle. {}.", note.sentence()));
     let all: Vec<String> =
-        study.lifts_apart.map(|lifts| two_vehicles(study, lifts)).into_iter().chain(serials).collect();
+        study.lifts_apart.iter().map(|lifts| two_vehicles(study, lifts)).chain(serials).collect();
     (!all.is_empty()).then(|| all.join(" "))
 }
 
+/// Flights of another thrust over weight that are listed by name; of more their number is told.
+const LISTED: usize = 4;
+
 /// That full thrust over weight makes two vehicles of the flights, which nothing else tells.
-fn two_vehicles(study: &CompareStudy, lifts: LiftsApart) -> String {
+fn two_vehicles(study: &CompareStudy, lifts: &LiftsApart) -> String {
     let [before, after] = [lifts.before, lifts.after].map(|lift| significant(lift, 3));
-    let of = match lifts.from.map(|from| study.flights[from].input.path.as_str()) {
-        None => format!("{before} before and {after} after"),
-        Some(from) => format!("{before} before {from} and {after} from it on"),
+    let path = |place: usize| study.flights[place].input.path.as_str();
+    let of = match &lifts.of {
+        LiftsOf::Groups => format!("{before} before and {after} after"),
+        LiftsOf::From(from) => format!("{before} before {} and {after} from it on", path(*from)),
+        LiftsOf::Odd(flights) if flights.len() > LISTED => {
+            format!("{before} in most flights and as far from it as {after} in {} others", flights.len())
+        }
+        LiftsOf::Odd(flights) => {
+            let lift = |place: usize| study.balance.flights[place].lift.map_or(lifts.after, |(lift, _)| lift);
+            let of = |place: &usize| format!("{} in {}", significant(lift(*place), 3), path(*place));
+            format!(
+                "{} and {before} in the other flights",
+                flights.iter().map(of).collect::<Vec<_>>().join(", ")
+            )
+        }
     };
     let told = if lifts.moved {
         "a parameter of the motion moved by more than chance as well"

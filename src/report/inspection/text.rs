@@ -101,11 +101,16 @@ fn flight(page: &mut String, inspection: &Inspection) {
         "in the air",
         format!("{:.1} s, of which {:.1} s can be used", flight.airborne_s, flight.usable_s),
     );
+    let off_mixer = if flight.off_mixer_s > 0.0 {
+        format!("{:.1} s after an output left the mixer; before that ", flight.off_mixer_s)
+    } else {
+        String::new()
+    };
     row(
         page,
         "left out",
         format!(
-            "transient {:.1} s, without excitation {:.1} s, saturated {:.1} s, in gaps {:.1} s (may overlap)",
+            "{off_mixer}transient {:.1} s, without excitation {:.1} s, saturated {:.1} s, in gaps {:.1} s (may overlap)",
             flight.transient_s, flight.idle_s, flight.saturated_s, flight.gap_s
         ),
     );

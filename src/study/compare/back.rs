@@ -12,7 +12,8 @@ const CERTAIN: f64 = 2.0;
 
 impl Judge<'_> {
     /// Whether the later flights are as the earlier ones again after a step: nothing changed between them, and less than half of what the step
-    /// changed is left, by two standard errors.
+    /// changed is left, by two standard errors. Those of the balance contain a load that sits elsewhere, as where the step is judged: without it
+    /// a battery that was put back elsewhere would decide.
     pub(super) fn is_back(&self, groups: &Groups, step: &Compared) -> bool {
         let compared = self.compared(groups);
         let is_gone = |change: &Change| {

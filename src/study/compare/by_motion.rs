@@ -11,14 +11,16 @@ use crate::vehicle::Vehicle;
 /// Standard error by which a rotor's thrust differs between flights of one vehicle: its propeller and the air at it are not alike. The same
 /// difference is ordinary between two rotors.
 const FLIGHTS_APART: f64 = 0.005;
+/// Standard deviation of what is anywhere between two bounds, over half of their distance: the root of a third.
+const OF_EVEN: f64 = 0.577_350_269_189_625_8;
 
 /// What a flight by itself says of its rotors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeakAlone {
-    /// the rotor that it names, by its place in the vehicle's file, with the factor on its thrust and its standard error
+    /// the rotor that it names, by its place in the vehicle's file, with the factor on its thrust and its standard error, `-`
     pub rotor: Option<(usize, (f64, f64))>,
-    /// standard error of the factor of a rotor that it does not name
-    pub std: f64,
+    /// the factor of a rotor that it does not name is within so much of 1, `-`: it would have named one that is further off
+    pub limit: f64,
 }
 
 impl WeakAlone {
@@ -37,24 +39,22 @@ impl WeakAlone {
             let factor = named.get(name(amount)?)?;
             Some((vehicle.rotor_of(named.value(name(which)?))?, (factor.value, factor.std)))
         });
-        let std = match (rotor, limit) {
-            (Some((_, (_, std))), _) => std,
-            (None, Some(limit)) => limit / NAME_Z,
+        let limit = match (rotor, limit) {
+            (_, Some(limit)) => limit,
+            // it is not told beside the rotor that has a name: what a name needs of that one
+            (Some((_, (_, std))), None) => NAME_Z * std,
             (None, None) => return None,
         };
-        Some(Self { rotor, std })
+        Some(Self { rotor, limit })
     }
 
-    /// Factor on the thrust of a rotor.
-    fn factor(&self, rotor: usize) -> (f64, f64) {
-        match self.rotor {
-            Some((own, factor)) if own == rotor => factor,
-            _ => (1.0, self.std),
-        }
+    /// Factor on the thrust of a rotor with its standard error, if it names that one.
+    fn factor(&self, rotor: usize) -> Option<(f64, f64)> {
+        self.rotor.filter(|(own, _)| *own == rotor).map(|(_, factor)| factor)
     }
 
     fn names(&self, rotor: usize) -> bool {
-        self.rotor.is_some_and(|(own, _)| own == rotor)
+        self.factor(rotor).is_some()
     }
 }
 
@@ -95,12 +95,22 @@ pub(super) fn rotor_by_motion(flights: &[Option<WeakAlone>], groups: &Groups) ->
     })
 }
 
-/// Mean factor of a rotor over the flights of a group, with its standard error.
+/// Factor of a rotor in the flights of a group, with its standard error: all of them name it, or none does.
 fn pooled(group: &[WeakAlone], rotor: usize) -> (f64, f64) {
-    let weighed = group.iter().map(|flight| {
-        let (value, std) = flight.factor(rotor);
-        (value, std.hypot(FLIGHTS_APART).powi(-2))
-    });
+    let named: Vec<(f64, f64)> = group.iter().filter_map(|flight| flight.factor(rotor)).collect();
+    if named.is_empty() { whole(group) } else { mean(&named) }
+}
+
+/// Of flights that do not name it: the factor is anywhere within the limit of 1, as likely here as there, and the same in all of them. So their
+/// number tells nothing. The flight with the least limit tells the most, and has its own propeller and air as well.
+fn whole(group: &[WeakAlone]) -> (f64, f64) {
+    let least = group.iter().map(|flight| flight.limit).fold(f64::INFINITY, f64::min);
+    (1.0, (least * OF_EVEN).hypot(FLIGHTS_APART))
+}
+
+/// Of flights that name it, by their information.
+fn mean(named: &[(f64, f64)]) -> (f64, f64) {
+    let weighed = named.iter().map(|(value, std)| (value, std.hypot(FLIGHTS_APART).powi(-2)));
     let (sum, information) =
         weighed.fold((0.0, 0.0), |(sum, all), (value, weight)| (sum + weight * value, all + weight));
     (sum / information, information.recip().sqrt())
@@ -111,10 +121,10 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
 
-    const WHOLE: Option<WeakAlone> = Some(WeakAlone { rotor: None, std: 0.002 });
+    const WHOLE: Option<WeakAlone> = Some(WeakAlone { rotor: None, limit: 0.008 });
 
     fn weak(rotor: usize, factor: f64) -> Option<WeakAlone> {
-        Some(WeakAlone { rotor: Some((rotor, (factor, 0.002))), std: 0.002 })
+        Some(WeakAlone { rotor: Some((rotor, (factor, 0.002))), limit: 0.008 })
     }
 
     fn groups(before: &[usize], after: &[usize]) -> Groups {
@@ -142,5 +152,21 @@ mod tests {
         assert_eq!(rotor_by_motion(&[None, weak(1, 0.9), weak(1, 0.9)], &groups), None);
         assert_eq!(rotor_by_motion(&[WHOLE, weak(1, 0.98), weak(1, 0.98)], &groups), None);
         assert_eq!(rotor_by_motion(&[WHOLE, WHOLE, WHOLE], &groups), None);
+    }
+    #[test]
+    fn flights_that_name_no_rotor_tell_no_more_than_the_best_of_them() {
+        let whole = |limit: f64| WeakAlone { rotor: None, limit };
+        let (factor, one) = pooled(&[whole(0.006)], 0);
+        // the root of 12 bounds apart, and the flight's own air
+        assert!(factor == 1.0 && (one - (0.012 / 12.0_f64.sqrt()).hypot(0.005)).abs() < 1e-12);
+        assert_eq!(pooled(&[whole(0.006); 9], 0), (1.0, one));
+        assert_eq!(pooled(&[whole(0.05), whole(0.006)], 0), (1.0, one));
+        // another rotor that has a name is not this one
+        let other = WeakAlone { rotor: Some((1, (0.9, 0.001))), limit: 0.03 };
+        assert_eq!(pooled(&[other, whole(0.006)], 0), (1.0, one));
+        // those that name it scatter about what it is
+        let named = WeakAlone { rotor: Some((0, (0.9, 0.002))), limit: 0.008 };
+        let [(_, of_one), (factor, of_four)] = [1, 4].map(|count| pooled(&vec![named; count], 0));
+        assert!((factor - 0.9).abs() < 1e-12 && (of_four - 0.5 * of_one).abs() < 1e-12);
     }
 }

@@ -1,24 +1,22 @@
 //! What changed between groups of flights whose balance and parameters are known.
 
 use super::by_motion::{RotorMoved, WeakAlone, rotor_by_motion};
-use super::result::{Change, Changed, Compared, LeastChange, LiftsApart, UndecidedAlong};
+use super::result::{Change, Changed, Compared, LeastChange, UndecidedAlong};
 use super::scale::ScaleMoved;
 use crate::change::{
-    BalanceChange, Groups, NAMED_SIGMAS, ParameterChange, Step, UNDECIDED, What, find_returns,
-    judge_at_both_scales, judge_balance, judge_parameter, steps,
+    BalanceChange, Groups, NAMED, NAMED_SIGMAS, ParameterChange, Step, UNDECIDED, What, find_returns,
+    judge_at_both_scales, judge_balance, judge_parameter, left_beside_rotor, steps,
 };
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{Need, Owner, follows_force};
 use crate::study::Track;
-use crate::trim::{Balance, FlightBalance, mean_arm_m};
+use crate::trim::{Balance, mean_arm_m};
 use crate::vehicle::Vehicle;
 
-/// Full thrust over weight of one group over that of the other from which on, with [`OTHER_PARAMETERS`], this is hardly one vehicle. A
-/// battery takes a tenth of it, a load that leaves room to fly a fifth. Set by judgement.
-const OTHER_LIFT: f64 = 1.3;
 /// A centre of mass that moved along one axis has moved along the other from so many standard errors on. The usual two.
 const STAYED: f64 = 2.0;
-/// Parameters that moved by more than chance then.
+/// Parameters that moved by more than chance from which on, with full thrust over weight that is apart, this is hardly one vehicle. Set by
+/// judgement: one is moved by chance in one of 40 pairs of flights.
 const OTHER_PARAMETERS: usize = 2;
 
 /// What all comparisons have in common.
@@ -110,11 +108,11 @@ impl Judge<'_> {
     pub fn compared(&self, groups: &Groups) -> Compared {
         let balance = judge_balance(self.balance, groups, self.vehicle);
         let mut changes = self.of_balance(&balance);
-        if !changes.iter().any(|change| matches!(change.what, Changed::Rotor(_))) {
-            let by_motion = rotor_by_motion(self.alone, groups).map(of_rotor);
-            // it accounts for a balance that has no name
-            changes.retain(|change| by_motion.is_none() || change.what != Changed::Balance);
-            changes.extend(by_motion);
+        if !changes.iter().any(|change| matches!(change.what, Changed::Rotor(_)))
+            && let Some(moved) = rotor_by_motion(self.alone, groups)
+        {
+            self.keep_beside(&mut changes, &moved, (&balance, groups));
+            changes.push(of_rotor(moved));
         }
         let mut least = self.least_of_balance(&balance);
         let mut undecided = Vec::new();
@@ -140,9 +138,25 @@ impl Judge<'_> {
         changes.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
         undecided.sort_by(|(a, _), (b, _)| b.sigmas.total_cmp(&a.sigmas));
         let mut compared = Compared { balance, changes, undecided, least, other_vehicle: None };
-        let are_several = compared.moved_by_motion() >= OTHER_PARAMETERS;
-        compared.other_vehicle = self.lifts(groups).filter(|lifts| are_several && are_apart(*lifts));
+        let are_several = compared.moved_by_motion(UNDECIDED) >= OTHER_PARAMETERS;
+        compared.other_vehicle = self.differing_lifts(groups).filter(|_| are_several);
         compared
+    }
+
+    /// Of a balance that moved without a name keeps what a rotor that the motion names does not account for.
+    fn keep_beside(
+        &self,
+        changes: &mut Vec<Change>,
+        rotor: &RotorMoved,
+        (balance, groups): (&BalanceChange, &Groups),
+    ) {
+        let known = (rotor.rotor, rotor.moved.after);
+        let left = left_beside_rotor((self.balance, balance), groups, self.vehicle, known);
+        changes.retain(|change| change.what != Changed::Balance || left >= NAMED);
+        for change in changes.iter_mut().filter(|change| change.what == Changed::Balance) {
+            change.sigmas = change.sigmas.min(left.sqrt());
+            change.rivals.retain(|rival| *rival != What::Rotor(rotor.rotor));
+        }
     }
 
     /// Whether a parameter moved, where the scale that it goes with may have moved.
@@ -182,47 +196,6 @@ impl Judge<'_> {
             Some(groups) => has_none(groups),
             None => (1..count).any(|from| has_none(&Groups::split(count, from))),
         }
-    }
-
-    /// Full thrust over weight where it differs by more than one vehicle's does, also for the voltage where all flights have one, and no
-    /// parameter tells that it is one vehicle: none is compared, or one of them moved as well. Of the groups, or without groups at the place of
-    /// a row where it differs the most.
-    #[must_use]
-    pub fn lifts_apart(&self, groups: Option<&Groups>) -> Option<LiftsApart> {
-        let at = |groups: &Groups, from: Option<usize>| {
-            let (before, after) = self.lifts(groups).filter(|lifts| are_apart(*lifts))?;
-            let for_voltage = self.lifts_for_voltage(groups).is_none_or(are_apart);
-            let tells = |track: &Track| {
-                is_of_vehicle(track) && judge_parameter(&track.values, groups, &track.spread).is_some()
-            };
-            let moved = self.compared(groups).moved_by_motion() > 0;
-            let is_told = !for_voltage || !moved && self.tracks.iter().any(tells);
-            (!is_told).then_some(LiftsApart { before, after, from, moved })
-        };
-        let count = self.balance.flights.len();
-        let along = || (1..count).filter_map(|from| at(&Groups::split(count, from), Some(from)));
-        match groups {
-            Some(groups) => at(groups, None),
-            None => along().max_by(|a, b| a.ratio().total_cmp(&b.ratio())),
-        }
-    }
-
-    /// Mean full thrust over weight of both groups, where all flights have it.
-    fn lifts(&self, groups: &Groups) -> Option<(f64, f64)> {
-        self.means(groups, |flight| Some(flight.lift?.0))
-    }
-
-    /// The same over the square of the voltage, with which a battery's goes, where all flights have both.
-    fn lifts_for_voltage(&self, groups: &Groups) -> Option<(f64, f64)> {
-        self.means(groups, |flight| Some(flight.lift?.0 / flight.voltage_v?.powi(2)))
-    }
-
-    fn means(&self, groups: &Groups, of: impl Fn(&FlightBalance) -> Option<f64>) -> Option<(f64, f64)> {
-        let mean = |group: &[usize]| {
-            let each = group.iter().map(|&flight| of(&self.balance.flights[flight]));
-            Some(each.sum::<Option<f64>>()? / group.len() as f64)
-        };
-        mean(&groups.before).zip(mean(&groups.after))
     }
 
     /// Length of an arm and its unit: one arm where lengths are not known.
@@ -305,13 +278,8 @@ pub(super) fn flight_groups(groups: &Groups, order: &[usize]) -> Groups {
     Groups { before: of(&groups.before), after: of(&groups.after) }
 }
 
-/// Full thrust over weight of two groups that differs by more than that of one vehicle.
-fn are_apart((before, after): (f64, f64)) -> bool {
-    before.max(after) > OTHER_LIFT * before.min(after)
-}
-
 /// Whether a parameter is the vehicle's, and may have changed.
-fn is_of_vehicle(track: &Track) -> bool {
+pub(super) fn is_of_vehicle(track: &Track) -> bool {
     track.owner == Owner::Vehicle && !is_of_battery(track)
 }
 

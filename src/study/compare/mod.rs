@@ -4,6 +4,7 @@ mod along;
 mod back;
 mod by_motion;
 mod judge;
+mod lifts;
 mod motion;
 mod order;
 mod request;
@@ -17,7 +18,8 @@ pub use judge::Judge;
 pub(super) use motion::is_compared;
 pub use request::CompareRequest;
 pub use result::{
-    Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange, LeftOut, LiftsApart, UndecidedAlong,
+    Change, Changed, CompareStudy, Compared, ComparedFlight, LeastChange, LeftOut, LiftsApart, LiftsOf,
+    UndecidedAlong,
 };
 pub use run::compare;
 pub(super) use run::{UNKNOWN, power_w};

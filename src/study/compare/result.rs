@@ -63,21 +63,32 @@ pub struct UndecidedAlong {
 }
 
 /// Full thrust over weight that differs by more than that of one vehicle does.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct LiftsApart {
-    /// of the flights before, mean
+    /// of the flights before, mean, `-`
     pub before: f64,
-    /// of those after, mean
+    /// of those after, mean, `-`
     pub after: f64,
-    /// place of the first of these, where no groups were given
-    pub from: Option<usize>,
+    /// which flights these are
+    pub of: LiftsOf,
     /// a parameter moved by more than chance as well
     pub moved: bool,
 }
 
+/// The flights on both sides of a full thrust over weight that differs.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LiftsOf {
+    /// those before and those after, as they were given
+    Groups,
+    /// those of a row before this place, and those from it on
+    From(usize),
+    /// those of a row at these places, which are after, and all others, which are before: each of these differs from most others
+    Odd(Vec<usize>),
+}
+
 impl LiftsApart {
     /// The larger one over the other.
-    pub(super) fn ratio(self) -> f64 {
+    pub(super) fn ratio(&self) -> f64 {
         self.before.max(self.after) / self.before.min(self.after)
     }
 }
@@ -199,10 +210,12 @@ impl Compared {
         self.changes.iter().map(|change| self.strength(change)).fold(0.0, f64::max)
     }
 
-    /// Parameters of the motion that moved by more than chance, with a name or not decided.
-    pub(super) fn moved_by_motion(&self) -> usize {
+    /// Parameters of the motion that moved by so many standard deviations, with a name or not decided. Those that moved by less than
+    /// [`UNDECIDED`](crate::change::UNDECIDED) are not known here.
+    pub(super) fn moved_by_motion(&self, least_sigmas: f64) -> usize {
         let of_motion = |change: &&Change| matches!(change.what, Changed::Parameter(_));
-        self.changes.iter().filter(of_motion).count() + self.undecided.len()
+        let moved = self.changes.iter().filter(of_motion).chain(self.undecided.iter().map(|(of, _)| of));
+        moved.filter(|change| change.sigmas >= least_sigmas).count()
     }
 
     /// Standard deviations of a change from what unchanged flights show. Those that are told of a centre of mass allow for a load, by which it
