@@ -22,7 +22,7 @@ pub use format::{line_comment, markup, markup_comment, shell_word, toml_string};
 pub use json::{json_line, json_pretty};
 pub use list::{list, list_or};
 pub(crate) use number::rounded;
-pub use number::{chance, compact, interval, parameter_value, significant, spoken, with_error};
+pub use number::{chance, compact, interval, parameter_value, significant, spoken, to_step, with_error};
 pub use quantity::unbroken;
 pub use sentence::capital;
 pub use utc::utc;

@@ -140,9 +140,8 @@
     return function () { if (box.clientWidth && Math.abs(box.clientWidth - u.width) > 1) make(); };
   }
 
-  function colourOf(of, value) {
-    var last = of.ramp.length - 1;
-    return of.ramp[Math.min(last, Math.max(0, Math.floor(of.ramp.length * value / of.full)))];
+  function colourOf(ramp, value, along) {
+    return ramp[value.begins.filter(function (begin) { return along >= begin; }).length];
   }
 
   // whether a line from a to b runs through a rectangle
@@ -180,11 +179,12 @@
     of.values.forEach(function (value, index) {
       var button = document.createElement('button');
       button.type = 'button';
-      button.textContent = value[0];
+      button.textContent = value.name;
       button.setAttribute('aria-pressed', String(index === 0));
       button.addEventListener('click', function () {
         chosen = index;
         Array.prototype.forEach.call(choice.children, function (other, at) { other.setAttribute('aria-pressed', String(at === index)); });
+        explain();
         draw();
       });
       choice.appendChild(button);
@@ -196,14 +196,19 @@
     place.appendChild(canvas);
     var legend = document.createElement('p');
     legend.className = 'note legend3';
-    of.ramp.forEach(function (colour, index) {
-      var part = document.createElement('span'), mark = document.createElement('i');
-      mark.style.background = colour;
-      part.appendChild(mark);
-      part.appendChild(document.createTextNode('from ' + (+(of.full * index / of.ramp.length).toPrecision(2))));
-      legend.appendChild(part);
-    });
-    legend.appendChild(document.createTextNode(of.unit));
+    // each value has colours of its own
+    function explain() {
+      legend.textContent = '';
+      of.values[chosen].classes.forEach(function (words, index) {
+        var part = document.createElement('span'), mark = document.createElement('i');
+        mark.style.background = of.ramp[index];
+        part.appendChild(mark);
+        part.appendChild(document.createTextNode(words));
+        legend.appendChild(part);
+      });
+      legend.appendChild(document.createTextNode(of.unit + '; ' + of.values[chosen].words));
+    }
+    explain();
     place.appendChild(legend);
     place.appendChild(said);
 
@@ -251,7 +256,7 @@
       pen.lineCap = 'round';
       flat = of.position_m.map(put);
       for (var i = 0; i + 1 < flat.length; i++) {
-        pen.strokeStyle = colourOf(of, of.values[chosen][1][i]);
+        pen.strokeStyle = colourOf(of.ramp, of.values[chosen], of.values[chosen].along[i]);
         pen.beginPath();
         pen.moveTo(flat[i][0], flat[i][1]);
         pen.lineTo(flat[i + 1][0], flat[i + 1][1]);
@@ -290,7 +295,7 @@
     function tell() {
       said.textContent = marked == null ? 'Drag to turn, click on a place to see its time in all plots.' :
         'At ' + rough(of.time_s[marked]) + ' s: ' + of.axes.map(function (name, k) { return name + ' ' + rough(of.position_m[marked][k]) + ' m'; }).join(', ') +
-        '; ' + of.values.map(function (value) { return value[0] + ' ' + rough(value[1][marked]); }).join(', ') + ' ' + of.unit + '.';
+        '; ' + of.values.map(function (value) { return value.name + ' ' + rough(value.along[marked]); }).join(', ') + ' ' + of.unit + '.';
     }
     function nearest(wanted, distance) {
       var best = null, least = Infinity;
