@@ -263,19 +263,23 @@
         pen.stroke();
       }
       // words last, beside the axes and on a halo of the page's colour: no line runs through them
-      var written = [];
+      var written = [], flown = flat.slice(1).map(function (to, i) { return [flat[i], to]; });
+      function isClear(lines, x, y, long) {
+        return lines.every(function (line) { return !crosses(line[0], line[1], x - 3, y - 13, x + long + 3, y + 5); });
+      }
       function isFree(x, y, long) {
-        return y >= 12 && y <= tall - 4 && written.every(function (other) {
+        return y >= 12 && y <= tall - 4 && isClear(ends, x, y, long) && written.every(function (other) {
           return Math.abs(y - other[1]) >= 15 || x + long + 6 <= other[0] || other[0] + other[2] + 6 <= x;
-        }) && ends.every(function (axis) { return !crosses(axis[0], axis[1], x - 3, y - 13, x + long + 3, y + 5); });
+        });
       }
       ends.forEach(function (axis, k) {
         var a = axis[0], b = axis[1], words = of.axes[k] + ' ' + (+(high[k] - low[k]).toPrecision(2)) + ' m';
         var long = pen.measureText(words).width, x = k === 2 ? a[0] - long / 2 : b[0] + (b[0] < a[0] ? -long / 2 : 4), y = k === 2 ? a[1] + 14 : b[1] + 14;
         x = Math.min(Math.max(x, 4), wide - long - 4);
         y = Math.min(Math.max(y, 12), tall - 4);
-        // at an end there may be an axis, and of a flight that is long in one direction only the ends lie together
-        y += STEPS.filter(function (far) { return isFree(x, y + far, long); })[0] || 0;
+        // at an end there may be an axis or the path, and of a flight that is long in one direction only the ends lie together
+        var free = STEPS.filter(function (far) { return isFree(x, y + far, long); });
+        y += free.filter(function (far) { return isClear(flown, x, y + far, long); })[0] || free[0] || 0;
         written.push([x, y, long]);
         pen.lineWidth = 4;
         pen.lineJoin = 'round';
