@@ -1,7 +1,7 @@
 //! `report.html` of `compare`: each section is one function, and one call in [`comparison_html`].
 
 use super::drawing::{caption, drawing};
-use super::plots::plots;
+use super::plots::{CAPTION, plots};
 use super::words::{
     FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_since, name, open, returned, sentence, since_files,
     size, smallest_heading, value_of,
@@ -199,7 +199,7 @@ fn history(study: &CompareStudy) -> Markup {
             )))
         } }
         @if !changes.is_empty() { (table(caption, &heads, &changes)) }
-        @for plot in plots(study) { (figure(&plot, "Bands: 95 % intervals. Shaded: where it changed.")) }
+        @for plot in plots(study) { (figure(&plot, CAPTION)) }
     };
     section("History", &steps)
 }

@@ -12,6 +12,6 @@ mod words;
 pub use html::comparison_html;
 pub use json::ComparisonDocument;
 pub use markdown::comparison_markdown;
-pub(super) use plots::plots;
+pub(super) use plots::{CAPTION, plots};
 pub use text::comparison_text;
 pub(super) use words::{step_words, value_of};

@@ -75,7 +75,7 @@ fn vehicle(study: &ExplainStudy) -> Option<Markup> {
         meant.contains(&place).then(|| Mark {
             colour: MEANT,
             is_filled: true,
-            words: Some("this one".to_owned()),
+            words: vec!["this one".to_owned()],
         })
     };
     let caption = format!("From above, forward upwards. Filled: {}.", words.join("; "));
