@@ -1,6 +1,9 @@
 //! Views of the study of `compare`: text, JSON and `report.html` with the drawing of the vehicle.
 
+mod cells;
+mod columns;
 mod drawing;
+mod flight_name;
 mod html;
 mod json;
 mod markdown;
