@@ -7,8 +7,13 @@ use std::fmt::Write;
 
 /// A note as a quotation, with files by their names alone.
 pub(super) fn remark(page: &mut String, note: &Note, known: &[&str]) {
+    quoted(page, &sentence(note, known));
+}
+
+/// Words as a quotation.
+pub(super) fn quoted(page: &mut String, words: &str) {
     // writing to a String cannot fail
-    let _ = write!(page, "\n> {}\n", escaped(&sentence(note, known)));
+    let _ = write!(page, "\n> {}\n", escaped(words));
 }
 
 /// What a note says, with files by their names alone.

@@ -11,6 +11,9 @@ use crate::study::{Change, Changed, CompareStudy};
 /// has its row, and each quantity its column.
 const SIDE_BY_SIDE: usize = 2;
 
+/// Characters of a hash that tell one log from another.
+const HASH_CHARS: usize = 12;
+
 /// A change: what, unit, before, after, difference, standard deviations, and the flights that show it alone.
 pub(super) fn change_cells(study: &CompareStudy, change: &Change) -> [String; 7] {
     let of = |(value, std): (f64, f64)| {
@@ -128,6 +131,12 @@ impl ByFlight {
         let told = self.quantities.iter().zip(&self.said).filter(|(_, said)| !said.is_empty());
         told.map(|((name, _), said)| format!("{name}: {said}"))
     }
+}
+
+/// What tells the log of a flight from another one of its name.
+pub(super) fn flight_hash(study: &CompareStudy, place: usize) -> String {
+    let hash: String = study.flights[place].input.sha256.chars().take(HASH_CHARS).collect();
+    format!("{hash}...")
 }
 
 /// A flight by its number and its name.
