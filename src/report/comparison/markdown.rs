@@ -62,8 +62,8 @@ fn changed(page: &mut String, study: &CompareStudy) {
             let _ = write!(page, "\nNot decided: {}\n", escaped(&open(study, of)));
         }
     }
-    // of two flights it is the same again
-    if study.history.is_empty() || study.flights.len() < 3 {
+    // between two flights it is the same again
+    if study.history.is_empty() || study.compared.is_some() && study.flights.len() < 3 {
         return;
     }
     heading(page, "Along the flights, with standard errors and, in brackets, intervals of 95 %");

@@ -129,11 +129,11 @@ pub(super) fn along_lines(page: &mut String, study: &ExplainStudy) {
 fn carried(id: &str, flights: Option<&[usize]>, of: &str, name: impl Fn(&usize) -> String) -> String {
     let called = called(id);
     match flights {
-        None => format!("{called} is fitted to all flights together only"),
-        Some([]) => format!("{called} is shown by no flight alone: only by all of them together"),
+        None => format!("{called}: fitted to all flights together only"),
+        Some([]) => format!("{called}: shown by no flight alone, only by all of them together"),
         Some(flights) => {
             let names: Vec<String> = flights.iter().map(name).collect();
-            format!("{called} is shown alone by {of}{}", names.join(", "))
+            format!("{called}: shown alone by {of}{}", names.join(", "))
         }
     }
 }
@@ -198,4 +198,17 @@ fn row(along: &AlongFlights, track: &Track, untold: &[&str]) -> Vec<Cell> {
     let mut cells = vec![name(track.name.as_str()), text(track.unit), number(together(along, track, untold))];
     cells.extend((0..track.values.len()).map(|flight| number(value_of(track, along.alone(track, flight)))));
     cells
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flights_carry_a_name_and_not_an_identifier() {
+        let said = |flights: Option<&[usize]>| carried("motor_lag", flights, "flight ", |at| at.to_string());
+        assert_eq!(said(Some(&[1, 3])), "motor lag: shown alone by flight 1, 3");
+        assert_eq!(said(Some(&[])), "motor lag: shown by no flight alone, only by all of them together");
+        assert_eq!(said(None), "motor lag: fitted to all flights together only");
+    }
 }
