@@ -3,16 +3,14 @@
 //! Words become text of the page by their type: only markup of this module and of the charts is taken as it is.
 
 use crate::study::InputFile;
+use crate::text::unbroken;
 use maud::{Markup, PreEscaped, html};
 
 /// A line's end, for those who read the file.
 pub(super) const BREAK: PreEscaped<&str> = PreEscaped("\n");
 
-/// Units, of which the number before them does not stand on another line.
-const UNITS: [&str; 23] = [
-    "%", "N", "m", "mm", "cm", "m/s", "m/s^2", "s", "ms", "1/s", "Hz", "kg", "g", "kg/m", "rad", "rad/s",
-    "rad/s^2", "deg", "V", "A", "W", "sigma", "N/m",
-];
+/// What tells a part of [`unbroken`] words that states an error.
+const WITH_ERROR: &str = "+-\u{a0}";
 
 /// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +37,7 @@ pub(super) fn number(text: impl Into<String>) -> Cell {
 
 /// A section with its heading.
 pub(super) fn section(heading: &str, content: &Markup) -> Markup {
-    html! { section { h2 { (heading) } (BREAK) (content) } (BREAK) }
+    html! { section { h2 { (unbroken(heading)) } (BREAK) (content) } (BREAK) }
 }
 
 /// Sections that are folded until they are asked for, under one heading.
@@ -49,38 +47,7 @@ pub(super) fn folded(heading: &str, content: &Markup) -> Markup {
 
 /// Numbers that are folded until they are asked for, within a section. They are not printed.
 pub(super) fn folded_numbers(words: &str, content: &Markup) -> Markup {
-    html! { details.numbers { summary { (words) } (content) } (BREAK) }
-}
-
-/// Words in which a number, its error and its unit stand on one line.
-pub(super) fn unbroken(words: &str) -> String {
-    let mut out = String::with_capacity(words.len() + 16);
-    let mut before = None;
-    for word in words.split(' ') {
-        if let Some(before) = before {
-            out.push(if is_one(before, word) { '\u{a0}' } else { ' ' });
-        }
-        out.push_str(word);
-        before = Some(word);
-    }
-    out
-}
-
-/// Whether two neighbours are parts of one quantity.
-fn is_one(before: &str, word: &str) -> bool {
-    let bare = word.trim_end_matches(['.', ',', ';', ':', ')']);
-    match (before, bare) {
-        ("+-", error) => is_number(error),
-        ("N", "m") | ("kg", "m^2") => true,
-        (value, "+-") => is_number(value),
-        (value, unit) => is_number(value) && UNITS.contains(&unit),
-    }
-}
-
-fn is_number(word: &str) -> bool {
-    let digits = word.trim_start_matches(['(', '-', '+']);
-    let is_digit = |letter: char| letter.is_ascii_digit();
-    digits.starts_with(is_digit) && digits.ends_with(is_digit)
+    html! { details.numbers { summary { (unbroken(words)) } (content) } (BREAK) }
 }
 
 pub(super) fn paragraph(words: &str) -> Markup {
@@ -112,7 +79,7 @@ pub(super) fn table(caption: &str, heads: &[&str], rows: &[Vec<Cell>]) -> Markup
             p.cap { (unbroken(caption)) }
             div.wide.stack tabindex="0" role="region" aria-label=(caption) { table {
                 thead { tr { @for head in heads {
-                    @if let Some(head) = head.strip_suffix('|') { th.n { (head) } } @else { th { (head) } }
+                    @if let Some(head) = head.strip_suffix('|') { th.n { (unbroken(head)) } } @else { th { (unbroken(head)) } }
                 } } }
                 tbody { (BREAK) @for row in rows {
                     tr { @for (column, cell) in row.iter().enumerate() { (cell_markup(cell, head_of(column))) } } (BREAK)
@@ -125,9 +92,19 @@ pub(super) fn table(caption: &str, heads: &[&str], rows: &[Vec<Cell>]) -> Markup
 
 fn cell_markup(cell: &Cell, head: &str) -> Markup {
     match cell {
-        Cell::Text(words) => html! { td data-head=(head) { (unbroken(words)) } },
+        Cell::Text(words) => html! { td data-head=(head) { (whole(words)) } },
         Cell::Name(words) => html! { td.name data-head=(head) { (words) } },
         Cell::Number(words) => html! { td.n data-head=(head) { (unbroken(words)) } },
+    }
+}
+
+/// Words in which a number with its error is whole also where any other word may be broken.
+fn whole(words: &str) -> Markup {
+    html! {
+        @for (place, part) in unbroken(words).split(' ').enumerate() {
+            @if place > 0 { " " }
+            @if part.contains(WITH_ERROR) { span.one { (part) } } @else { (part) }
+        }
     }
 }
 
@@ -166,20 +143,14 @@ mod tests {
     }
 
     #[test]
-    fn a_number_stands_beside_its_error_and_its_unit() {
-        let shown = |words: &str| unbroken(words).replace('\u{a0}', "~");
-        assert_eq!(shown("drag (1.17 +- 0.02 across), by 97 %."), "drag (1.17~+-~0.02 across), by 97~%.");
-        assert_eq!(shown("0.040 +- 0.003 N m per rad/s"), "0.040~+-~0.003~N~m per rad/s");
-        assert_eq!(
-            shown("izz -0.0003 +- 0.0004 kg m^2; 14 % (51 to 56 %)"),
-            "izz -0.0003~+-~0.0004~kg~m^2; 14~% (51 to 56~%)"
-        );
-        // other words are broken as before
-        assert_eq!(
-            shown("motor 2 (rear left), 2 flights +- few  a"),
-            "motor 2 (rear left), 2 flights +- few  a"
-        );
+    fn no_number_parts_from_its_error_and_its_unit() {
         assert!(note("0.5 s").into_string().contains("0.5\u{a0}s"));
         assert!(table("c", &["h"], &[vec![name("imu_offset")]]).into_string().contains("class=\"name\""));
+        assert!(section("by 3 mm", &Markup::default()).into_string().contains("by 3\u{a0}mm"));
+        // where words may be broken anywhere, the number with its error may not
+        let cell = table("c", &["h"], &[vec![text("about 1.0 +- 0.2 N (0.6 to 1.4), <b>")]]).into_string();
+        let expected = "about <span class=\"one\">1.0\u{a0}+-\u{a0}0.2\u{a0}N</span> (0.6 to 1.4), &lt;b&gt;";
+        assert!(cell.contains(expected), "{cell}");
+        assert!(!table("c", &["h"], &[vec![text("0.2 N")]]).into_string().contains("<span"));
     }
 }

@@ -11,6 +11,7 @@ mod fleet;
 mod html;
 mod identification;
 mod inspection;
+mod markdown;
 mod model_parts;
 mod number;
 mod page;

@@ -3,8 +3,8 @@
 //! Its plots are drawings. The script of the page makes them into plots to zoom and to read values from; without it, and on
 //! paper, the drawings stay.
 
-use super::html::{BREAK, unbroken};
-use crate::text::clean_lines;
+use super::html::BREAK;
+use crate::text::{clean_lines, unbroken};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = concat!(include_str!("assets/uplot.min.css"), "\n", include_str!("assets/report.css"));

@@ -8,6 +8,8 @@ const SIDE: f64 = 320.0;
 const SPAN: f64 = 100.0;
 /// Radius of a rotor, of its box.
 const ROTOR: f64 = 34.0;
+/// From one line of words to the next, of its box.
+const LINE: f64 = 14.0;
 /// Colours that hold in light and dark: of what is meant, and of what it may be instead.
 pub(super) const MEANT: &str = "#d55e00";
 pub(super) const RIVAL: &str = "#e69f00";
@@ -18,8 +20,8 @@ pub(super) struct Mark {
     pub(super) colour: &'static str,
     /// whether its area has the colour, too
     pub(super) is_filled: bool,
-    /// words below it
-    pub(super) words: Option<String>,
+    /// lines of words below it
+    pub(super) words: Vec<String>,
 }
 
 /// The drawing; `label` says in words what it shows.
@@ -45,8 +47,8 @@ pub(super) fn vehicle_drawing(
                     fill-opacity="0.35" stroke=(colour) stroke-width=(if mark.is_some() { "4" } else { "2" }) {}
                 text x=(round(x)) y=(round(y - 2.0)) text-anchor="middle" font-weight="bold" { (place + 1) " " (sense(rotor.spin)) }
                 text x=(round(x)) y=(round(y + 12.0)) text-anchor="middle" { (rotor.place_words()) }
-                @if let Some(words) = mark.and_then(|mark| mark.words) {
-                    text x=(round(x)) y=(round(y + ROTOR + 14.0)) text-anchor="middle" font-weight="bold" { (words) }
+                @for (line, words) in mark.map_or_else(Vec::new, |mark| mark.words).iter().enumerate() {
+                    text x=(round(x)) y=(round(y + ROTOR + LINE * (line + 1) as f64)) text-anchor="middle" font-weight="bold" { (words) }
                 }
             }
             circle cx=(middle) cy=(middle) r="6" fill=(if centre_is_meant { MEANT } else { "currentColor" }) {}
@@ -83,11 +85,16 @@ mod tests {
         assert_eq!(edge((160.0, 160.0), (260.0, 160.0)), (226.0, 160.0));
         assert_eq!(edge((160.0, 160.0), (170.0, 160.0)), (160.0, 160.0));
         let mark = |place| {
-            (place == 0).then_some(Mark { colour: MEANT, is_filled: true, words: Some("80 %".into()) })
+            (place == 0).then_some(Mark {
+                colour: MEANT,
+                is_filled: true,
+                words: vec!["80 %".into(), "70 %".into()],
+            })
         };
         let drawn = vehicle_drawing(&[rotor("a"), rotor("b")], "all", mark, false).into_string();
         assert!(
             drawn.contains("80 %")
+                && drawn.contains("70 %")
                 && drawn.contains("1 cw")
                 && drawn.contains("2 cw")
                 && !drawn.contains("0 cw")

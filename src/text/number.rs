@@ -52,6 +52,12 @@ pub fn interval([low, high]: [f64; 2], std: f64) -> String {
     format!("{} to {}", end(low), end(high))
 }
 
+/// A value with so many digits that it differs from one which is `step` larger.
+#[must_use]
+pub fn to_step(value: f64, step: f64) -> String {
+    rounded(value, decimals(step))
+}
+
 /// At most four significant digits, without zeros at the end.
 #[must_use]
 pub fn compact(value: f64) -> String {
@@ -128,6 +134,13 @@ mod tests {
         assert_eq!(interval([0.77664, 0.83936], 0.016), "0.777 to 0.839");
         assert_eq!(interval([-0.021, 0.0301], 0.03), "-0.02 to 0.03");
         assert_eq!(interval([2.04e-7, 3.96e-7], 5e-8), "2.04e-7 to 3.96e-7");
+    }
+
+    #[test]
+    fn values_that_a_step_parts_are_told_apart() {
+        assert_eq!([30.07, 31.44].map(|value| to_step(value, 1.37)), ["30.1", "31.4"]);
+        assert_eq!([0.4, 0.8].map(|value| to_step(value, 0.4)), ["0.4", "0.8"]);
+        assert_eq!([100.0, 150.0].map(|value| to_step(value, 50.0)), ["100", "150"]);
     }
 
     #[test]

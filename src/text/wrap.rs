@@ -1,29 +1,42 @@
 //! Long sentences as lines of a terminal.
 
+use super::quantity::is_one;
 use std::fmt::Write;
 
 /// Before the second line of a sentence, and each after it.
 const INDENT: &str = "  ";
 
-/// Lines of at most so many columns, broken between words; those after the first are moved in.
+/// Lines of at most so many columns, broken between words; those after the first are moved in. A number stands on one line with its
+/// error and unit, unless these are longer than a line.
 #[must_use]
 pub fn wrapped(text: &str, columns: usize) -> Vec<String> {
     let columns = columns.max(20);
+    let words: Vec<&str> = text.split_whitespace().collect();
     let mut lines = Vec::new();
     let mut line = String::new();
-    for word in text.split_whitespace() {
-        let space = usize::from(!line.trim().is_empty());
-        if space > 0 && line.chars().count() + space + word.chars().count() > columns {
-            lines.push(std::mem::replace(&mut line, INDENT.to_owned()));
+    for quantity in words.chunk_by(|before, word| is_one(before, word)) {
+        let whole = quantity.join(" ");
+        if INDENT.len() + whole.chars().count() <= columns {
+            add(&mut lines, &mut line, &whole, columns);
+        } else {
+            quantity.iter().for_each(|word| add(&mut lines, &mut line, word, columns));
         }
-        let between = if line.trim().is_empty() { "" } else { " " };
-        // writing to a String cannot fail
-        let _ = write!(line, "{between}{word}");
     }
     if !line.trim().is_empty() {
         lines.push(line);
     }
     lines
+}
+
+/// Adds a word to a line, or to the next one where there is no room.
+fn add(lines: &mut Vec<String>, line: &mut String, word: &str, columns: usize) {
+    let space = usize::from(!line.trim().is_empty());
+    if space > 0 && line.chars().count() + space + word.chars().count() > columns {
+        lines.push(std::mem::replace(line, INDENT.to_owned()));
+    }
+    let between = if line.trim().is_empty() { "" } else { " " };
+    // writing to a String cannot fail
+    let _ = write!(line, "{between}{word}");
 }
 
 /// What begins a command that a person may copy.
@@ -58,7 +71,8 @@ fn beginning(text: &str, columns: usize) -> usize {
 }
 
 /// A line as it was written, in lines of at most so many columns: broken between words, those after the first moved in by two more than
-/// the line itself. A command after `$ ` still is one when it is copied. A word that is longer than a line stays whole.
+/// the line itself. A command after `$ ` still is one when it is copied. A word that is longer than a line stays whole, and so does a
+/// number with its error and unit that fits a line.
 #[must_use]
 pub fn to_width(line: &str, columns: usize) -> Vec<String> {
     let columns = columns.max(20);
@@ -73,15 +87,23 @@ pub fn to_width(line: &str, columns: usize) -> Vec<String> {
     let mut rest = text.to_owned();
     while columns_of(&rest) > columns {
         let first = rest.len() - rest.trim_start().len();
-        // the last space within the line, else the first one behind it
+        // the last space within the line that is in no quantity, else the last one, else the first one behind the line
         let fits = beginning(&rest, room + 1).max(first);
-        let within = rest[first..fits].rfind(' ').map(|at| first + at);
+        let spaces = || rest[first..fits].rmatch_indices(' ').map(|(at, _)| first + at);
+        let within = spaces().find(|at| !is_in_quantity(&rest, *at)).or_else(|| spaces().next());
         let Some(at) = within.or_else(|| rest[fits..].find(' ').map(|at| fits + at)) else { break };
         lines.push(format!("{}{end}", rest[..at].trim_end()));
         rest = format!("{indent}{}", rest[at..].trim_start());
     }
     lines.push(rest);
     lines
+}
+
+/// Whether the space at a place stands between a number, its error and its unit.
+fn is_in_quantity(text: &str, at: usize) -> bool {
+    let before = text[..at].rsplit(' ').next().unwrap_or_default();
+    let behind = text[at..].split(' ').nth(1).unwrap_or_default();
+    is_one(before, behind)
 }
 
 #[cfg(test)]
@@ -134,6 +156,23 @@ mod tests {
             assert!(lines.iter().all(|line| line.chars().count() <= columns), "{lines:#?}");
             let words: Vec<&str> = lines.iter().flat_map(|line| line.split_whitespace()).collect();
             assert_eq!(words, text.split_whitespace().collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn a_number_stands_on_one_line_with_its_error_and_unit() {
+        let text = "drag was left out: 0.412 +- 0.014 N per m/s, by 97 %, 0.040 +- 0.003 kg m^2";
+        for columns in 28..90 {
+            for lines in [wrapped(text, columns), to_width(text, columns)] {
+                assert!(lines.iter().all(|line| line.chars().count() <= columns), "{lines:#?}");
+                for whole in ["0.412 +- 0.014 N per m/s,", "97 %,", "0.040 +- 0.003 kg m^2"] {
+                    assert!(lines.iter().any(|line| line.contains(whole)), "{columns}: {lines:#?}");
+                }
+            }
+        }
+        // where it fits no line it is broken as words are
+        for lines in [wrapped(text, 20), to_width(text, 20)] {
+            assert!(lines.iter().all(|line| line.chars().count() <= 20), "{lines:#?}");
         }
     }
 }

@@ -90,7 +90,10 @@ fn a_rotor_that_became_weak_is_found_and_an_unchanged_vehicle_is_not_called_chan
     assert_eq!(stored, said);
     let summary = mavid(&["report", &place("out")]);
     let summary = String::from_utf8_lossy(&summary.stdout).into_owned();
-    assert!(summary.starts_with("```text\n") && summary.contains("(front left)"), "{summary}");
+    assert!(
+        summary.starts_with("**Motor 3 (front left)") && summary.contains("| what | before |"),
+        "{summary}"
+    );
     assert!(!summary.contains(&place("")), "no folder: {summary}");
 
     let same =

@@ -460,7 +460,7 @@ fn what_no_flight_tells_apart_is_said() {
         panic!("a flight was designed");
     };
     assert!(
-        pairs[0].to_string().starts_with("no trajectory separates inflow from linear_drag: "),
+        pairs[0].to_string().starts_with("no trajectory separates thrust that falls with climb from drag: "),
         "{pairs:?}"
     );
 }

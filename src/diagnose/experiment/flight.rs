@@ -1,5 +1,6 @@
 //! The next flight and its expected results.
 
+use crate::diagnose::sentence::called;
 use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::told_apart::apart_from;
 use crate::trajectory::FourierTrajectory;
@@ -34,9 +35,11 @@ impl NextFlight {
             match pair.other {
                 Some(other) => {
                     let better = pair.otherwise().map_or_else(String::new, |how| format!(" ({how})"));
-                    format!("{} from {other}: {distance}{better}", pair.named)
+                    format!("{} against {}: {distance}{better}", called(pair.named), called(other))
                 }
-                None => format!("{} is confused with no other effect; from zero: {distance}", pair.named),
+                None => {
+                    format!("{} is confused with no other effect; from zero: {distance}", called(pair.named))
+                }
             }
         });
         pairs.chain(self.inseparable.iter().map(ToString::to_string)).collect::<Vec<_>>().join("; ")
@@ -105,7 +108,13 @@ pub struct Inseparable {
 
 impl std::fmt::Display for Inseparable {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(out, "no trajectory separates {} from {}: {}", self.named, self.other, self.why)
+        write!(
+            out,
+            "no trajectory separates {} from {}: {}",
+            called(self.named),
+            called(self.other),
+            self.why
+        )
     }
 }
 
@@ -114,6 +123,31 @@ const BY_SPEEDS: &str = "rotor speed telemetry, or doublets of 5 Hz and more, se
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trajectory::FourierAxis;
+
+    /// A person reads names; identifiers are for files.
+    #[test]
+    fn sentences_have_the_names_of_effects_and_not_their_identifiers() {
+        let pair = |other| Pair { named: "motor_lag", other, now: 1.5, after: 1.2 };
+        let apart = Inseparable { named: "inflow", other: "thrust_curve", why: "fly a climb" };
+        let next = NextFlight {
+            trajectory: FourierTrajectory {
+                period_s: 10.0,
+                axes: std::array::from_fn(|_| FourierAxis { a: vec![0.1], b: vec![0.1], c: 0.0 }),
+            },
+            repeats: 2,
+            seconds: 54.0,
+            limits: Limits::default(),
+            limits_are_flown: false,
+            pairs: vec![pair(Some("transport_delay")), pair(None)],
+            inseparable: vec![apart],
+        };
+        let said = next.sentence();
+        assert!(!said.contains('_'), "{said}");
+        for id in ["motor_lag", "transport_delay", "inflow", "thrust_curve"] {
+            assert!(said.contains(called(id)), "{said}");
+        }
+    }
 
     #[test]
     fn only_what_counts_as_told_apart_is_said_to_be() {

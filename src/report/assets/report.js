@@ -140,9 +140,8 @@
     return function () { if (box.clientWidth && Math.abs(box.clientWidth - u.width) > 1) make(); };
   }
 
-  function colourOf(of, value) {
-    var last = of.ramp.length - 1;
-    return of.ramp[Math.min(last, Math.max(0, Math.floor(of.ramp.length * value / of.full)))];
+  function colourOf(ramp, value, along) {
+    return ramp[value.begins.filter(function (begin) { return along >= begin; }).length];
   }
 
   // whether a line from a to b runs through a rectangle
@@ -180,11 +179,12 @@
     of.values.forEach(function (value, index) {
       var button = document.createElement('button');
       button.type = 'button';
-      button.textContent = value[0];
+      button.textContent = value.name;
       button.setAttribute('aria-pressed', String(index === 0));
       button.addEventListener('click', function () {
         chosen = index;
         Array.prototype.forEach.call(choice.children, function (other, at) { other.setAttribute('aria-pressed', String(at === index)); });
+        explain();
         draw();
       });
       choice.appendChild(button);
@@ -196,14 +196,19 @@
     place.appendChild(canvas);
     var legend = document.createElement('p');
     legend.className = 'note legend3';
-    of.ramp.forEach(function (colour, index) {
-      var part = document.createElement('span'), mark = document.createElement('i');
-      mark.style.background = colour;
-      part.appendChild(mark);
-      part.appendChild(document.createTextNode('from ' + (+(of.full * index / of.ramp.length).toPrecision(2))));
-      legend.appendChild(part);
-    });
-    legend.appendChild(document.createTextNode(of.unit));
+    // each value has colours of its own
+    function explain() {
+      legend.textContent = '';
+      of.values[chosen].classes.forEach(function (words, index) {
+        var part = document.createElement('span'), mark = document.createElement('i');
+        mark.style.background = of.ramp[index];
+        part.appendChild(mark);
+        part.appendChild(document.createTextNode(words));
+        legend.appendChild(part);
+      });
+      legend.appendChild(document.createTextNode(of.unit + '; ' + of.values[chosen].words));
+    }
+    explain();
     place.appendChild(legend);
     place.appendChild(said);
 
@@ -251,26 +256,30 @@
       pen.lineCap = 'round';
       flat = of.position_m.map(put);
       for (var i = 0; i + 1 < flat.length; i++) {
-        pen.strokeStyle = colourOf(of, of.values[chosen][1][i]);
+        pen.strokeStyle = colourOf(of.ramp, of.values[chosen], of.values[chosen].along[i]);
         pen.beginPath();
         pen.moveTo(flat[i][0], flat[i][1]);
         pen.lineTo(flat[i + 1][0], flat[i + 1][1]);
         pen.stroke();
       }
       // words last, beside the axes and on a halo of the page's colour: no line runs through them
-      var written = [];
+      var written = [], flown = flat.slice(1).map(function (to, i) { return [flat[i], to]; });
+      function isClear(lines, x, y, long) {
+        return lines.every(function (line) { return !crosses(line[0], line[1], x - 3, y - 13, x + long + 3, y + 5); });
+      }
       function isFree(x, y, long) {
-        return y >= 12 && y <= tall - 4 && written.every(function (other) {
+        return y >= 12 && y <= tall - 4 && isClear(ends, x, y, long) && written.every(function (other) {
           return Math.abs(y - other[1]) >= 15 || x + long + 6 <= other[0] || other[0] + other[2] + 6 <= x;
-        }) && ends.every(function (axis) { return !crosses(axis[0], axis[1], x - 3, y - 13, x + long + 3, y + 5); });
+        });
       }
       ends.forEach(function (axis, k) {
         var a = axis[0], b = axis[1], words = of.axes[k] + ' ' + (+(high[k] - low[k]).toPrecision(2)) + ' m';
         var long = pen.measureText(words).width, x = k === 2 ? a[0] - long / 2 : b[0] + (b[0] < a[0] ? -long / 2 : 4), y = k === 2 ? a[1] + 14 : b[1] + 14;
         x = Math.min(Math.max(x, 4), wide - long - 4);
         y = Math.min(Math.max(y, 12), tall - 4);
-        // at an end there may be an axis, and of a flight that is long in one direction only the ends lie together
-        y += STEPS.filter(function (far) { return isFree(x, y + far, long); })[0] || 0;
+        // at an end there may be an axis or the path, and of a flight that is long in one direction only the ends lie together
+        var free = STEPS.filter(function (far) { return isFree(x, y + far, long); });
+        y += free.filter(function (far) { return isClear(flown, x, y + far, long); })[0] || free[0] || 0;
         written.push([x, y, long]);
         pen.lineWidth = 4;
         pen.lineJoin = 'round';
@@ -290,7 +299,7 @@
     function tell() {
       said.textContent = marked == null ? 'Drag to turn, click on a place to see its time in all plots.' :
         'At ' + rough(of.time_s[marked]) + ' s: ' + of.axes.map(function (name, k) { return name + ' ' + rough(of.position_m[marked][k]) + ' m'; }).join(', ') +
-        '; ' + of.values.map(function (value) { return value[0] + ' ' + rough(value[1][marked]); }).join(', ') + ' ' + of.unit + '.';
+        '; ' + of.values.map(function (value) { return value.name + ' ' + rough(value.along[marked]); }).join(', ') + ' ' + of.unit + '.';
     }
     function nearest(wanted, distance) {
       var best = null, least = Infinity;

@@ -15,5 +15,5 @@ pub use bars::Bars;
 pub use document::{inline, svg};
 pub use frame::POINTS;
 pub use panel::{Band, Line, Panel, Stroke};
-pub use path::Path3;
+pub use path::{Path3, PathValue};
 pub use strip::Strip;

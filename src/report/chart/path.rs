@@ -3,11 +3,17 @@
 use super::data::data;
 use super::frame::{WIDTH, framed, tenths};
 use crate::report::number::significant;
+use crate::text::to_step;
 use maud::{Markup, html};
 use serde::Serialize;
 
 /// Dots.
-const HEIGHT: f64 = 300.0;
+const HEIGHT: f64 = 316.0;
+/// Dots above and below the path, for words and the legend.
+const ABOVE: f64 = 58.0;
+const BELOW: f64 = 38.0;
+/// Dots between a colour of the legend and the next one.
+const APART: f64 = 90.0;
 /// The view of the drawing: turned about the vertical and tilted, rad.
 const TURNED: f64 = 0.7;
 const TILTED: f64 = 0.5;
@@ -27,16 +33,45 @@ pub struct Path3 {
     pub position_m: Vec<[f64; 3]>,
     /// names of the axes
     pub axes: [String; 3],
-    /// names of the values, each with one a point
-    pub values: Vec<(String, Vec<f64>)>,
+    /// what it may be coloured by
+    pub values: Vec<PathValue>,
     /// words for the unit of the values
     pub unit: String,
-    /// value that has the last colour
-    pub full: f64,
     /// plots with this number share its cursor
     pub cursor: usize,
     /// colours from little to much
     pub ramp: Vec<&'static str>,
+}
+
+/// A value along a path.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct PathValue {
+    name: String,
+    /// one a point
+    along: Vec<f64>,
+    /// where each colour but the first begins
+    begins: Vec<f64>,
+    /// words of the legend, one a colour
+    classes: Vec<String>,
+    /// what the colours are to be read with
+    words: String,
+}
+
+impl PathValue {
+    /// A value with its name, coloured in even steps between two ends. What is beyond an end has the colour of it.
+    #[must_use]
+    pub fn new((name, along): (&str, Vec<f64>), [low, high]: [f64; 2], words: String) -> Self {
+        let step = (high - low) / RAMP.len() as f64;
+        let begins: Vec<f64> = (1..RAMP.len()).map(|place| low + step * place as f64).collect();
+        let said: Vec<String> = begins.iter().map(|begin| to_step(*begin, step)).collect();
+        let below = said.first().map(|first| format!("below {first}"));
+        let classes = below.into_iter().chain(said.iter().map(|begin| format!("from {begin}"))).collect();
+        Self { name: name.to_owned(), along, begins, classes, words }
+    }
+
+    fn colour(&self, value: f64) -> &'static str {
+        RAMP[self.begins.iter().filter(|begin| value >= **begin).count()]
+    }
 }
 
 impl Path3 {
@@ -59,7 +94,10 @@ impl Path3 {
             values: self
                 .values
                 .iter()
-                .map(|(name, of)| (name.clone(), of.iter().step_by(every).map(short).collect()))
+                .map(|of| PathValue {
+                    along: of.along.iter().step_by(every).map(short).collect(),
+                    ..of.clone()
+                })
                 .collect(),
             ..self.clone()
         }
@@ -72,26 +110,28 @@ impl Path3 {
             flat.iter().fold(((f64::MAX, f64::MAX), (f64::MIN, f64::MIN)), |(low, high), at| {
                 ((low.0.min(at.0), low.1.min(at.1)), (high.0.max(at.0), high.1.max(at.1)))
             });
-        let room = (WIDTH - 60.0, HEIGHT - 80.0);
+        let room = (WIDTH - 60.0, HEIGHT - ABOVE - BELOW);
         let scale = (room.0 / (high.0 - low.0).max(1e-6)).min(room.1 / (high.1 - low.1).max(1e-6));
         let at = |(x, y): (f64, f64)| {
             let middle = (0.5 * (low.0 + high.0), 0.5 * (low.1 + high.1));
-            (WIDTH / 2.0 + scale * (x - middle.0), HEIGHT / 2.0 + 10.0 + scale * (y - middle.1))
+            (WIDTH / 2.0 + scale * (x - middle.0), ABOVE + room.1 / 2.0 + scale * (y - middle.1))
         };
-        let colours = thin.values.first().map_or(&[][..], |(_, values)| values);
         html! {
             text x="8" y="16" font-weight="bold" { (self.title) }
             text x="8" y="33" { (self.spans()) }
-            @for (pair, value) in flat.windows(2).zip(colours) {
-                @let ((x, y), (to_x, to_y)) = (at(pair[0]), at(pair[1]));
-                path d={ "M" (tenths(x)) " " (tenths(y)) "L" (tenths(to_x)) " " (tenths(to_y)) }
-                    stroke=(self.colour(*value)) stroke-width="2.2" stroke-linecap="round" {}
+            @if let Some(value) = thin.values.first() {
+                text x="8" y="49" { (value.name) ": " (value.words) }
+                @for (pair, of) in flat.windows(2).zip(&value.along) {
+                    @let ((x, y), (to_x, to_y)) = (at(pair[0]), at(pair[1]));
+                    path d={ "M" (tenths(x)) " " (tenths(y)) "L" (tenths(to_x)) " " (tenths(to_y)) }
+                        stroke=(value.colour(*of)) stroke-width="2.2" stroke-linecap="round" {}
+                }
+                @for (place, (colour, class)) in RAMP.iter().zip(&value.classes).enumerate() {
+                    rect x=(tenths(8.0 + APART * place as f64)) y=(HEIGHT - 22.0) width="14" height="10" fill=(colour) {}
+                    text x=(tenths(26.0 + APART * place as f64)) y=(HEIGHT - 13.0) { (class) }
+                }
+                text x=(tenths(8.0 + APART * RAMP.len() as f64)) y=(HEIGHT - 13.0) { (self.unit) }
             }
-            @for (place, colour) in RAMP.iter().enumerate() {
-                rect x=(tenths(8.0 + 90.0 * place as f64)) y=(HEIGHT - 22.0) width="14" height="10" fill=(colour) {}
-                text x=(tenths(26.0 + 90.0 * place as f64)) y=(HEIGHT - 13.0) { (self.class(place)) }
-            }
-            text x=(tenths(8.0 + 90.0 * RAMP.len() as f64)) y=(HEIGHT - 13.0) { (self.unit) }
         }
     }
 
@@ -105,16 +145,6 @@ impl Path3 {
         };
         format!("spans {}", [0, 1, 2].map(one).join(", "))
     }
-
-    fn colour(&self, value: f64) -> &'static str {
-        let share = (value / self.full.max(f64::MIN_POSITIVE)).max(0.0);
-        let place = (1..RAMP.len()).rev().find(|&place| share * RAMP.len() as f64 >= place as f64);
-        RAMP[place.unwrap_or(0)]
-    }
-
-    fn class(&self, place: usize) -> String {
-        format!("from {}", significant(self.full * place as f64 / RAMP.len() as f64, 2))
-    }
 }
 
 /// A point on the sheet, y downwards.
@@ -122,4 +152,27 @@ fn projected([north, west, up]: [f64; 3]) -> (f64, f64) {
     let right = -west * TURNED.cos() + north * TURNED.sin();
     let depth = north * TURNED.cos() + west * TURNED.sin();
     (right, -up * TILTED.cos() - depth * TILTED.sin())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_even_steps_between_the_ends_and_beyond_them_those_of_the_ends() {
+        let value = PathValue::new(("rigid body", vec![28.0, 100.0]), [28.0, 35.0], "words".to_owned());
+        assert_eq!(value.classes, ["below 29.4", "from 29.4", "from 30.8", "from 32.2", "from 33.6"]);
+        let colours = [0.0, 28.0, 30.0, 34.0, 1000.0].map(|of| value.colour(of));
+        assert_eq!(colours, [RAMP[0], RAMP[0], RAMP[1], RAMP[4], RAMP[4]]);
+        let path = Path3 {
+            time_s: vec![0.0, 1.0, 2.0],
+            position_m: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]],
+            values: vec![value],
+            unit: "times".to_owned(),
+            ..Path3::default()
+        };
+        let page = path.inline().into_string();
+        assert!(page.contains("rigid body: words") && page.contains("below 29.4"), "{page}");
+        assert_eq!(page.matches("stroke-width=\"2.2\"").count(), 2, "{page}");
+    }
 }

@@ -1,15 +1,17 @@
 //! `report.html` of `compare`: each section is one function, and one call in [`comparison_html`].
 
+use super::cells::{OWN_HEADS, balance_cells, change_cells, group, numbered, own_cells};
 use super::drawing::{caption, drawing};
-use super::plots::plots;
+use super::flight_name::with_names;
+use super::plots::{CAPTION, plots};
 use super::words::{
     FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_since, name, open, returned, sentence, since_files,
     size, smallest_heading, value_of,
 };
-use crate::change::{Step, interval_95};
+use crate::change::Step;
 use crate::diagnose::Owner;
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
-use crate::report::number::{interval, significant, with_error};
+use crate::report::number::with_error;
 use crate::report::page::page;
 use crate::study::{Change, Changed, CompareStudy, Compared};
 use crate::text::capital;
@@ -59,21 +61,11 @@ fn changed(study: &CompareStudy) -> Markup {
     }
 }
 
+/// What changed as words, so that they are broken where there is no room.
 fn row(study: &CompareStudy, change: &Change) -> Vec<Cell> {
-    let of = |(value, std): (f64, f64)| {
-        let ends = || format!(" ({})", interval(interval_95((value, std)), std));
-        let ends = if std > 0.0 { ends() } else { String::new() };
-        format!("{}{ends}", with_error(value, std))
-    };
-    let none = || ["-"; 3].map(str::to_owned);
-    let parts = change.moved.map_or_else(none, |moved| [of(moved.before), of(moved.after), of(moved.by)]);
-    let say: Vec<&str> =
-        change.carried_by.iter().map(|&flight| study.flights[flight].input.path.as_str()).collect();
-    let mut cells = vec![text(name(study, change.what)), text(change.unit)];
-    // words, so that they are broken where there is no room
-    cells.extend(parts.map(text));
-    cells.extend([number(significant(change.sigmas, 2)), text(say.join(", "))]);
-    cells
+    let [what, unit, before, after, by, sigmas, carried] = change_cells(study, change);
+    let words = [what, unit, before, after, by].map(text);
+    words.into_iter().chain([number(sigmas), text(carried)]).collect()
 }
 
 fn row_since(study: &CompareStudy, step: &Step<Compared>, change: &Change) -> Vec<Cell> {
@@ -89,45 +81,18 @@ fn unseen(study: &CompareStudy) -> Markup {
 }
 
 fn flights(study: &CompareStudy) -> Markup {
-    let rows = study.flights.iter().zip(&study.balance.flights).enumerate().map(|(place, (flight, of))| {
-        let part = |axis: usize| {
-            let (lean, std) = study.balance.lean(place, axis);
-            number(with_error(lean, std))
-        };
-        let group = study
-            .groups
-            .as_ref()
-            .map_or("", |groups| if groups.before.contains(&place) { "before" } else { "after" });
-        let own = |value: Option<String>| number(value.unwrap_or_else(|| "-".to_owned()));
-        vec![
-            text(flight.input.path.as_str()),
-            text(group),
-            part(0),
-            part(1),
-            part(2),
-            number(format!("{:+.3}, {:+.3}", of.felt[0], of.felt[1])),
-            own(of.lift.map(|(lift, std)| with_error(lift, std))),
-            own(of.voltage_v.map(|volts| format!("{volts:.1}"))),
-            own(flight.power_w.map(|power| format!("{power:.0}"))),
-        ]
-    });
-    let heads = [
-        "flight",
-        "",
-        "x, arms|",
-        "y, arms|",
-        "about z|",
-        "felt of the air|",
-        "full thrust over weight|",
-        "V|",
-        "W|",
-    ];
+    let row = |place: usize| {
+        let names = [text(numbered(study, place)), text(group(study, place))];
+        let numbers = balance_cells(study, place).into_iter().chain(own_cells(study, place));
+        names.into_iter().chain(numbers.map(number)).collect()
+    };
+    let heads = ["flight", "", "x, arms|", "y, arms|", "about z|"].map(str::to_owned);
+    let heads: Vec<String> = heads.into_iter().chain(OWN_HEADS.map(|head| format!("{head}|"))).collect();
     let words = "The balance in still air: where the commanded thrust acts, and what turns about the vertical, as shares of the thrust. \
-                 The last three columns are the flight's own: battery, load and air are no change of the vehicle.";
-    section(
-        "Flights",
-        &html! { (note(words)) (table("One flight a row", &heads, &rows.collect::<Vec<_>>())) },
-    )
+                 Full thrust over weight, voltage, power and what is felt of the air (its push over the weight) are the flight's own: \
+                 battery, load and air are no change of the vehicle. Whole paths stand under Provenance.";
+    let rows: Vec<Vec<Cell>> = (0..study.flights.len()).map(row).collect();
+    section("Flights", &html! { (note(words)) (table_along("One flight a row", &heads, &rows)) })
 }
 
 /// Heads of a table along the flights: those given, one a flight, and where it changed.
@@ -199,7 +164,7 @@ fn history(study: &CompareStudy) -> Markup {
             )))
         } }
         @if !changes.is_empty() { (table(caption, &heads, &changes)) }
-        @for plot in plots(study) { (figure(&plot, "Bands: 95 % intervals. Shaded: where it changed.")) }
+        @for plot in plots(study) { (figure(&plot, CAPTION)) }
     };
     section("History", &steps)
 }
@@ -207,7 +172,8 @@ fn history(study: &CompareStudy) -> Markup {
 fn remarks(study: &CompareStudy) -> Markup {
     html! {
         @for remark in &study.notes {
-            @if remark.is_warning() { (warning(&remark.sentence())) } @else { (note(&remark.sentence())) }
+            @let said = with_names(study, &remark.sentence());
+            @if remark.is_warning() { (warning(&said)) } @else { (note(&said)) }
         }
     }
 }

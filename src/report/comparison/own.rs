@@ -1,5 +1,6 @@
 //! What is the flights' own, and what speaks against one vehicle, in words.
 
+use super::flight_name::{flight_name, with_names};
 use crate::report::number::significant;
 use crate::study::{CompareStudy, LiftsApart, LiftsOf};
 
@@ -8,7 +9,7 @@ use crate::study::{CompareStudy, LiftsApart, LiftsOf};
 pub(super) fn scale(study: &CompareStudy) -> String {
     let is_said = study.compared.as_ref().is_some_and(|compared| compared.other_vehicle.is_some());
     let Some(moved) = study.scale.filter(|_| !is_said) else { return String::new() };
-    let path = |flight: usize| format!(" in {}", study.flights[flight].input.path);
+    let path = |flight: usize| format!(" in {}", flight_name(study, flight));
     let [first, last] = moved.flights.map_or_else(Default::default, |flights| flights.map(path));
     format!(
         " The thrust for a command over the weight went from {}{first} to {}{last}: a payload, another battery or air density. These are \
@@ -20,10 +21,9 @@ pub(super) fn scale(study: &CompareStudy) -> String {
 
 /// Why the flights may be those of two vehicles, in a sentence or two; `None`: nothing says so.
 pub(super) fn doubt(study: &CompareStudy) -> Option<String> {
-    let serials = study
-        .serials_apart
-        .as_ref()
-        .map(|note| format!("It is doubtful that this is one vehicle. {}.", note.sentence()));
+    let serials = study.serials_apart.as_ref().map(|note| {
+        format!("It is doubtful that this is one vehicle. {}.", with_names(study, &note.sentence()))
+    });
     let all: Vec<String> =
         study.lifts_apart.iter().map(|lifts| two_vehicles(study, lifts)).chain(serials).collect();
     (!all.is_empty()).then(|| all.join(" "))
@@ -35,6 +35,7 @@ const LISTED: usize = 4;
 /// That full thrust over weight makes two vehicles of the flights, which nothing else tells.
 fn two_vehicles(study: &CompareStudy, lifts: &LiftsApart) -> String {
     let [before, after] = [lifts.before, lifts.after].map(|lift| significant(lift, 3));
+<<<<<<< HEAD
     let path = |place: usize| study.flights[place].input.path.as_str();
     let of = match &lifts.of {
         LiftsOf::Groups => format!("{before} before and {after} after"),
@@ -50,6 +51,11 @@ fn two_vehicles(study: &CompareStudy, lifts: &LiftsApart) -> String {
                 flights.iter().map(of).collect::<Vec<_>>().join(", ")
             )
         }
+=======
+    let of = match lifts.from.map(|from| flight_name(study, from)) {
+        None => format!("{before} before and {after} after"),
+        Some(from) => format!("{before} before {from} and {after} from it on"),
+>>>>>>> m26a
     };
     let told = if lifts.moved {
         "a parameter of the motion moved by more than chance as well"

@@ -5,6 +5,12 @@ use crate::report::chart::{Band, Line, Panel, Stroke, inline};
 use crate::study::{CompareStudy, Track};
 use maud::Markup;
 
+/// What bands and shades are.
+pub(in crate::report) const CAPTION: &str =
+    "Bands: 95 % intervals. Shaded: the vehicle changed between these flights.";
+/// Free on both sides of a shade, in distances of two flights: that of a flight alone parts those of its two steps.
+const FREE: f64 = 0.15;
+
 /// One line along the flights, with its intervals.
 struct Along {
     label: String,
@@ -20,10 +26,14 @@ pub(in crate::report) fn plots(study: &CompareStudy) -> Vec<Markup> {
             values: track.iter().map(|value| Some(*value)).collect(),
         };
         let lines: Vec<Along> = study.rotors.iter().enumerate().map(of).collect();
-        charts.push(chart(study, ("Thrust for a command, over the mean rotor's", "1"), &lines));
+        charts.push(chart(
+            study,
+            ("Thrust for a command, over the mean rotor's", "share of the mean rotor's"),
+            &lines,
+        ));
     }
     charts.push(balance(study));
-    let is_shown = |track: &&Track| track.values.iter().flatten().count() > 1;
+    let is_shown = |track: &&Track| told(track).flatten().count() > 1;
     charts.extend(study.tracks.iter().filter(is_shown).map(|track| of_track(study, track)));
     charts
 }
@@ -47,11 +57,20 @@ fn balance(study: &CompareStudy) -> Markup {
     )
 }
 
+/// What each flight determines of a parameter.
+fn told(track: &Track) -> impl Iterator<Item = Option<(f64, f64)>> {
+    track.values.iter().map(|value| value.filter(|estimate| track.is_determined(*estimate)))
+}
+
 /// The chart of one parameter.
 fn of_track(study: &CompareStudy, track: &Track) -> Markup {
-    let told = |value: &Option<(f64, f64)>| value.filter(|estimate| track.is_determined(*estimate));
-    let line = Along { label: track.name.clone(), values: track.values.iter().map(told).collect() };
-    chart(study, (&track.name, track.unit), &[line])
+    let line = Along { label: track.name.clone(), values: told(track).collect() };
+    chart(study, (&track.name, axis_words(track.unit)), &[line])
+}
+
+/// A unit beside an axis: a number without one is said to be that.
+fn axis_words(unit: &str) -> &str {
+    if unit == "-" { "number without unit" } else { unit }
 }
 
 fn chart(study: &CompareStudy, (title, unit): (&str, &str), lines: &[Along]) -> Markup {
@@ -73,12 +92,10 @@ fn chart(study: &CompareStudy, (title, unit): (&str, &str), lines: &[Along]) -> 
             colour: Some(colour),
         });
     }
-    // from behind the last flight that shows what was before to ahead of the first that shows what is since
     let mut spans: Vec<[f64; 2]> = Vec::new();
     for step in &study.history {
         for change in &step.change.changes {
-            let (last, first) = study.dated(step, change.what);
-            let span = [last.map_or(first, |last| last + 1), first].map(|place| place as f64 + 0.5);
+            let span = shade(study.dated(step, change.what));
             if !spans.contains(&span) {
                 spans.push(span);
             }
@@ -95,4 +112,36 @@ fn chart(study: &CompareStudy, (title, unit): (&str, &str), lines: &[Along]) -> 
         cursor: None,
         log: (false, false),
     })
+}
+
+/// What is shaded of a step: between the last flight that shows what was before and the first one that shows what is since, from 1.
+fn shade((last, first): (Option<usize>, usize)) -> [f64; 2] {
+    let number = |place: usize| place as f64 + 1.0;
+    [last.map_or(number(first) - 1.0, number) + FREE, number(first) - FREE]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_is_shaded_between_the_flights_that_show_it() {
+        let is = |dated, [from, to]: [f64; 2]| {
+            let shaded = shade(dated);
+            (shaded[0] - from).abs() < 1e-9 && (shaded[1] - to).abs() < 1e-9
+        };
+        // flights 2 and 3 are neighbours: what is between them is seen
+        assert!(is((Some(1), 2), [2.15, 2.85]));
+        // flights 3 and 4 do not tell
+        assert!(is((Some(1), 4), [2.15, 4.85]));
+        assert!(is((None, 2), [2.15, 2.85]));
+        // a flight alone has a shade on each side
+        assert!(shade((Some(1), 2))[1] < shade((Some(2), 3))[0]);
+    }
+
+    #[test]
+    fn no_axis_has_a_sign_for_its_unit_that_says_nothing() {
+        assert_eq!(axis_words("kg m^2"), "kg m^2");
+        assert_eq!(axis_words("-"), "number without unit");
+    }
 }

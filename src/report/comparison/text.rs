@@ -1,12 +1,14 @@
 //! The page of `compare` for the terminal.
 
+use super::cells::{ByFlight, OWN_HEADS, balance_cells, group, own_cells};
+use super::columns::columns;
+use super::flight_name::{flight_names, with_names};
 use super::words::{
-    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, changed_since, name, open, returned, sentence, since_files,
-    size, smallest_heading, spaced, value_of,
+    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, name, open, returned, sentence, since_files, size,
+    smallest_heading, spaced,
 };
-use crate::diagnose::Owner;
 use crate::report::number::{significant, with_error};
-use crate::study::{Change, Changed, CompareStudy, Compared};
+use crate::study::{Change, CompareStudy, Compared};
 use std::fmt::Write;
 
 /// The page for the terminal.
@@ -21,8 +23,9 @@ pub fn comparison_text(study: &CompareStudy) -> String {
     rotors(&mut page, study);
     tracks(&mut page, study);
     history(&mut page, study);
+    let warnings = study.notes.iter().filter(|note| note.is_warning());
     let warnings: Vec<String> =
-        study.notes.iter().filter(|note| note.is_warning()).map(|note| format!("\n  {note}")).collect();
+        warnings.map(|note| format!("\n  {}", with_names(study, &note.to_string()))).collect();
     if !warnings.is_empty() {
         let _ = write!(page, "{}", warnings.concat());
     }
@@ -31,9 +34,7 @@ pub fn comparison_text(study: &CompareStudy) -> String {
 
 fn changes(page: &mut String, study: &CompareStudy, compared: &Compared) {
     if !compared.changes.is_empty() {
-        page.push_str(
-            "\n  changed                             before              after               difference\n",
-        );
+        page.push_str("\n  changed\n");
     }
     for change in &compared.changes {
         change_line(page, study, change);
@@ -56,94 +57,79 @@ fn smallest(page: &mut String, study: &CompareStudy) {
 
 fn change_line(page: &mut String, study: &CompareStudy, change: &Change) {
     let of = |(value, std)| with_error(value, std);
-    let [before, after, by] = match change.moved {
+    let _ = writeln!(page, "    {}", name(study, change.what));
+    let against = match change.moved {
         Some(moved) => {
-            [of(moved.before), of(moved.after), format!("{}{}, ", of(moved.by), spaced(change.unit))]
+            let unit = spaced(change.unit);
+            let _ =
+                writeln!(page, "      before {}{unit}, after {}{unit}", of(moved.before), of(moved.after));
+            let _ = write!(page, "      difference {}{unit}, ", of(moved.by));
+            ""
         }
         // three components moved, of which none is told alone
-        None => ["-".to_owned(), "-".to_owned(), String::new()],
+        None => {
+            page.push_str("      ");
+            " of what unchanged flights would show"
+        }
     };
-    let against = if change.moved.is_none() { " of what unchanged flights would show" } else { "" };
-    let _ = writeln!(
-        page,
-        "    {:<32}  {before:<18}  {after:<18}  {by}{} standard deviations{against}",
-        name(study, change.what),
-        significant(change.sigmas, 2)
-    );
-    let say: Vec<&str> =
-        change.carried_by.iter().map(|&flight| study.flights[flight].input.path.as_str()).collect();
-    let _ = writeln!(
-        page,
-        "      shown alone by: {}",
-        if say.is_empty() { "none".to_owned() } else { say.join(", ") }
-    );
+    let _ = writeln!(page, "{} standard deviations{against}", significant(change.sigmas, 2));
+    let say = flight_names(study, &change.carried_by);
+    let _ = writeln!(page, "      shown alone by: {}", if say.is_empty() { "none" } else { &say });
 }
 
+/// The flights by their numbers, with whole paths, and what each shows of itself.
 fn flights(page: &mut String, study: &CompareStudy) {
-    page.push_str(
-        "\n  balance in still air, share of the thrust: where it acts along x and y (arms), torque about z; felt: the air's push over the weight\n",
-    );
-    for (place, (flight, of)) in study.flights.iter().zip(&study.balance.flights).enumerate() {
-        let part = |axis: usize| {
-            let (lean, std) = study.balance.lean(place, axis);
-            with_error(lean, std)
-        };
-        let lift = of.lift.map_or_else(|| "-".to_owned(), |(lift, std)| with_error(lift, std));
-        let volts = of.voltage_v.map_or_else(|| "-".to_owned(), |volts| format!("{volts:.1} V"));
-        let power = flight.power_w.map_or_else(|| "-".to_owned(), |power| format!("{power:.0} W"));
-        let _ = writeln!(
-            page,
-            "    {:<28} x {:<17} y {:<17} z {:<17} felt {:+.3} {:+.3}; the flight's own: full thrust over weight {lift}, {volts}, {power}",
-            flight.input.path,
-            part(0),
-            part(1),
-            part(2),
-            of.felt[0],
-            of.felt[1],
-        );
+    page.push_str("\n  flights\n");
+    for (place, flight) in study.flights.iter().enumerate() {
+        let group = group(study, place);
+        let group = if group.is_empty() { String::new() } else { format!("{group:<6}  ") };
+        let _ = writeln!(page, "    {:>3}  {group}{}", place + 1, flight.input.path);
     }
-    for flight in &study.flights {
+    for (place, flight) in study.flights.iter().enumerate() {
         if let Some(why) = flight.balance_only.as_ref().filter(|_| study.is_known) {
-            let _ = writeln!(page, "    {}: its balance alone was compared: {why}", flight.input.path);
+            let _ = writeln!(page, "    flight {}: its balance alone was compared: {why}", place + 1);
         }
     }
+    page.push_str(
+        "\n  balance in still air, share of the thrust: where it acts along x and y (arms), torque about z\n",
+    );
+    each_flight(page, study, &["x", "y", "about z"], |place| balance_cells(study, place).to_vec());
+    page.push_str(
+        "\n  each flight's own: full thrust over weight, voltage and power, and what is felt of the air: its push over the weight\n",
+    );
+    each_flight(page, study, &OWN_HEADS, |place| own_cells(study, place).to_vec());
 }
 
-/// What a track says in words behind its values.
-fn told(study: &CompareStudy, what: Changed) -> String {
-    let since = changed_since(study, what);
-    if since.is_empty() { since } else { format!("; {since}") }
+/// A table with one flight a row.
+fn each_flight(
+    page: &mut String,
+    study: &CompareStudy,
+    heads: &[&str],
+    cells: impl Fn(usize) -> Vec<String>,
+) {
+    let head = std::iter::once("flight").chain(heads.iter().copied()).map(str::to_owned).collect();
+    let row = |place: usize| std::iter::once((place + 1).to_string()).chain(cells(place)).collect();
+    let table: Vec<Vec<String>> = std::iter::once(head).chain((0..study.flights.len()).map(row)).collect();
+    columns(page, &table);
+}
+
+fn along(page: &mut String, heading: &str, of: Option<&ByFlight>) {
+    let Some(of) = of else { return };
+    let _ = writeln!(page, "\n  {heading}");
+    columns(page, &of.table());
+    for remark in of.remarks() {
+        let _ = writeln!(page, "    {remark}");
+    }
 }
 
 fn rotors(page: &mut String, study: &CompareStudy) {
-    if study.rotors.is_empty() {
-        return;
-    }
-    let _ = writeln!(page, "\n  thrust of each rotor for a command along the flights, {OF_MEAN_ROTOR}");
-    for (place, track) in study.rotors.iter().enumerate() {
-        let values: Vec<String> = track.iter().map(|(value, std)| with_error(*value, *std)).collect();
-        let what = Changed::Rotor(place);
-        let _ = writeln!(page, "    {:<24} {}{}", name(study, what), values.join(", "), told(study, what));
-    }
+    let heading = format!("thrust of each rotor for a command along the flights, {OF_MEAN_ROTOR}");
+    along(page, &heading, ByFlight::rotors(study).as_ref());
 }
 
 fn tracks(page: &mut String, study: &CompareStudy) {
-    if study.tracks.is_empty() {
-        return;
-    }
-    let _ = writeln!(page, "\n  parameters along the flights, in their order; {FLIGHTS_OWN_ERRORS}");
-    for (place, track) in study.tracks.iter().enumerate() {
-        let values = track.values.iter().map(|value| value_of(track, *value));
-        let own = if track.owner == Owner::Flight { " (the flight's own)" } else { "" };
-        let _ = writeln!(
-            page,
-            "    {:<24} {}{}{own}{}",
-            track.name,
-            values.collect::<Vec<_>>().join(", "),
-            spaced(track.unit),
-            told(study, Changed::Parameter(place))
-        );
-    }
+    let heading = format!("parameters along the flights; {FLIGHTS_OWN_ERRORS}");
+    along(page, &heading, ByFlight::parameters(study).as_ref());
 }
 
 fn history(page: &mut String, study: &CompareStudy) {

@@ -1,5 +1,6 @@
 //! A comparison in words.
 
+use super::flight_name::flight_name;
 use super::own::{doubt, scale};
 use crate::change::{NAMED_SIGMAS, Step, Undecided, What};
 use crate::report::number::{significant, with_error};
@@ -41,7 +42,7 @@ fn since((last, first): (Option<usize>, usize), name: &dyn Fn(usize) -> String) 
 
 /// The same of one change of a step, with the names of the files.
 pub(super) fn since_files(study: &CompareStudy, step: &Step<Compared>, what: Changed) -> String {
-    since(study.dated(step, what), &|place| study.flights[place].input.path.clone())
+    since(study.dated(step, what), &|place| flight_name(study, place).to_owned())
 }
 
 /// The changes of a step as a clause, those with the same flights together.
@@ -100,7 +101,7 @@ fn what_changed(study: &CompareStudy) -> String {
             )
         }
         _ => {
-            let path = |place: usize| study.flights[place].input.path.clone();
+            let path = |place: usize| flight_name(study, place).to_owned();
             let steps = study
                 .history
                 .iter()
@@ -139,7 +140,7 @@ fn said(study: &CompareStudy, what: Changed) -> String {
 
 /// Which earlier flights the vehicle is as again, as a clause; empty where it is as none of them.
 pub(super) fn returned(study: &CompareStudy, step: &Step<Compared>) -> String {
-    let path = |place: &usize| study.flights[*place].input.path.as_str();
+    let path = |place: &usize| flight_name(study, *place);
     match step.as_before.as_slice() {
         [] => String::new(),
         [one] => format!("; in this it is again as in {}", path(one)),
@@ -217,7 +218,7 @@ fn open_along(study: &CompareStudy) -> String {
     let all: Vec<String> = along.moved.iter().map(|change| by_how_much(study, change)).collect();
     format!(
         " Not decided: from {} on {}; {} make a change at one of the places between {}. More flights on both sides of it decide.",
-        study.flights[along.from].input.path,
+        flight_name(study, along.from),
         all.join("; "),
         significant(along.least_sigmas, 2),
         flights(study.flights.len())

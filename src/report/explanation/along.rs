@@ -1,9 +1,10 @@
 //! Several flights: what they have in common, what is each one's own, and which of them carry a name.
 
-use crate::diagnose::{Named, NamedParameter, Owner, brief};
+use crate::diagnose::{Named, NamedParameter, Owner, brief, called};
 use crate::report::comparison::value_of;
 use crate::report::html::{Cell, name, note, number, section, table, text};
 use crate::study::{AlongFlights, ExplainStudy, Track};
+use crate::text::capital;
 use maud::{Markup, html};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -126,12 +127,13 @@ pub(super) fn along_lines(page: &mut String, study: &ExplainStudy) {
 
 /// Which flights show a name alone.
 fn carried(id: &str, flights: Option<&[usize]>, of: &str, name: impl Fn(&usize) -> String) -> String {
+    let called = called(id);
     match flights {
-        None => format!("{id} is fitted to all flights together only"),
-        Some([]) => format!("{id} is shown by no flight alone: only by all of them together"),
+        None => format!("{called}: fitted to all flights together only"),
+        Some([]) => format!("{called}: shown by no flight alone, only by all of them together"),
         Some(flights) => {
             let names: Vec<String> = flights.iter().map(name).collect();
-            format!("{id} is shown alone by {of}{}", names.join(", "))
+            format!("{called}: shown alone by {of}{}", names.join(", "))
         }
     }
 }
@@ -151,7 +153,7 @@ pub(super) fn along_section(study: &ExplainStudy) -> Markup {
     }
     let number = |flight: &usize| (flight + 1).to_string();
     let line = |(id, flights): &(&str, Option<Vec<usize>>)| {
-        format!("{}.", carried(id, flights.as_deref(), "flight ", number))
+        format!("{}.", capital(&carried(id, flights.as_deref(), "flight ", number)))
     };
     let alone = along.of_one_flight.iter().map(|(flight, named)| {
         format!(
@@ -196,4 +198,17 @@ fn row(along: &AlongFlights, track: &Track, untold: &[&str]) -> Vec<Cell> {
     let mut cells = vec![name(track.name.as_str()), text(track.unit), number(together(along, track, untold))];
     cells.extend((0..track.values.len()).map(|flight| number(value_of(track, along.alone(track, flight)))));
     cells
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flights_carry_a_name_and_not_an_identifier() {
+        let said = |flights: Option<&[usize]>| carried("motor_lag", flights, "flight ", |at| at.to_string());
+        assert_eq!(said(Some(&[1, 3])), "motor lag: shown alone by flight 1, 3");
+        assert_eq!(said(Some(&[])), "motor lag: shown by no flight alone, only by all of them together");
+        assert_eq!(said(None), "motor lag: fitted to all flights together only");
+    }
 }

@@ -1,6 +1,7 @@
 //! The answer in one sentence.
 
 use super::limits::{unseen_of_usual_size, would_show};
+use super::own_wind::own_wind;
 use super::whereabouts::whereabouts;
 use crate::diagnose::holdout::HoldoutFit;
 use crate::diagnose::{Along, Named, Verdict, brief, called, clause};
@@ -57,10 +58,14 @@ fn found(study: &ExplainStudy) -> String {
             "No name is certain: this flight shows {}, but not surely enough, so the model stays the rigid body.",
             list(unsure_names(study))
         ),
-        Verdict::NothingMissing => match of_one_flight(study).trim_start_matches("; ") {
-            "" => nothing(study),
-            alone => beside_what_is_alone(&nothing(study), alone),
-        },
+        Verdict::NothingMissing => {
+            let nothing = match of_one_flight(study).trim_start_matches("; ") {
+                "" => nothing(study),
+                alone => beside_what_is_alone(&nothing(study), alone),
+            };
+            let wind = own_wind(study).map(|wind| format!(" The air moved: there was {wind}."));
+            format!("{nothing}{}", wind.unwrap_or_default())
+        }
         Verdict::Explained => {
             format!("{}{}.{}{}", left_out(study), gain(study), not_told_apart(study), unsure(study))
         }
@@ -113,12 +118,14 @@ fn unsure_names(study: &ExplainStudy) -> &[String] {
     study.short.as_ref().map_or(&[], |short| &short.unsure)
 }
 
-/// The named effects: one effect in full, several with their sizes, the rest without.
+/// The named effects: one effect in full, several with their sizes, the rest without; and the wind, which is each flight's own.
 fn left_out(study: &ExplainStudy) -> String {
     let vehicle = study.vehicle();
     let of_one_flight = of_one_flight(study);
     if let [one] = study.effects.as_slice() {
-        return format!("{}{}{of_one_flight}", clause(one, vehicle), in_flights(study, one));
+        let wind = own_wind(study).map(|wind| format!("; beside it there was {wind}"));
+        let wind = wind.unwrap_or_default();
+        return format!("{}{}{wind}{of_one_flight}", clause(one, vehicle), in_flights(study, one));
     }
     let sized = if study.effects.len() <= SIZED { SIZED } else { SIZED - 1 };
     let (large, small) = study.effects.split_at(sized.min(study.effects.len()));
@@ -128,7 +135,7 @@ fn left_out(study: &ExplainStudy) -> String {
             .map(|effect| format!("{}{}", brief(effect, vehicle, with_size), in_flights(study, effect)))
             .collect()
     };
-    let large = words(large, true);
+    let large: Vec<String> = words(large, true).into_iter().chain(own_wind(study)).collect();
     match words(small, false).as_slice() {
         [] => format!("Several effects were left out: {}{of_one_flight}", list(&large)),
         small => {
@@ -190,10 +197,9 @@ fn gain(study: &ExplainStudy) -> String {
     if let Some(by) = study.other_vehicle() {
         return format!("; {} ({by}), so nothing is shown on it", whose(study));
     }
-    let (Some(pair), with) = (study.holdout.as_ref(), if study.effects.len() > 1 { "them" } else { "it" })
-    else {
-        return String::new();
-    };
+    let Some(pair) = study.holdout.as_ref() else { return String::new() };
+    let are_several = study.effects.len() > 1 || own_wind(study).is_some();
+    let with = if are_several { "them" } else { "it" };
     let shown = study.shown_on.words();
     if pair.most().is_none() {
         return format!("; on {shown} nothing could be predicted");

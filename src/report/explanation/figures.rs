@@ -2,9 +2,11 @@
 
 use crate::diagnose::locate::{Bin, Followed as State, Portrait};
 use crate::diagnose::{CHANNEL_NAMES, Line as HarmonicLine, called};
-use crate::report::chart::{Band, Bars, Line, POINTS, Panel, Path3, Strip, Stroke};
+use crate::report::chart::{Band, Bars, Line, POINTS, Panel, Path3, PathValue, Strip, Stroke};
+use crate::report::number::significant;
 use crate::study::{
-    AxisResidual, ExplainStudy, FlownPath, Followed, Harmonics, Heat, LeftAlongTime, RecordedAndSimulated,
+    AxisResidual, ExplainStudy, FlownPath, Followed, Harmonics, Heat, LeftAlongTime, PathResidual,
+    RecordedAndSimulated,
 };
 use crate::vehicle::{AXIS_NAMES, Vehicle};
 
@@ -114,14 +116,20 @@ fn state_in_words(state: State, vehicle: &Vehicle) -> String {
 
 /// The flown path, coloured by the residual of all axes.
 pub(super) fn path(of: &FlownPath, after: &str) -> Path3 {
+    let value = |name: &str, of: &PathResidual| {
+        let [low, high] = of.most;
+        let even = if of.is_even() { "about the same along the whole path: " } else { "" };
+        let [low, high] = [low, high].map(|end| significant(end, 2));
+        let words = format!("{even}nine tenths of the path lie between {low} and {high}");
+        PathValue::new((name, of.along.clone()), of.colours, words)
+    };
     Path3 {
         title: "flown path, coloured by the residual of all axes".to_owned(),
         time_s: of.time_s.clone(),
         position_m: of.position_m.clone(),
         axes: ["north", "west", "up"].map(str::to_owned),
-        values: vec![(ALONE.to_owned(), of.before.clone()), (after.to_owned(), of.after.clone())],
+        values: vec![value(ALONE, &of.before), value(after, &of.after)],
         unit: "times the residual after".to_owned(),
-        full: of.full,
         ..Path3::default()
     }
 }

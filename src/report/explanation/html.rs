@@ -252,7 +252,7 @@ fn evidence(study: &ExplainStudy) -> Markup {
 fn next_flight(study: &ExplainStudy) -> Markup {
     let Some(next) = &study.next_flight else { return Markup::default() };
     let content = match next {
-        Ok(next) => paragraph(&format!("{}.", next.sentence())),
+        Ok(next) => paragraph(&format!("{}.", capital(&next.sentence()))),
         Err(why) => note(&format!("None was designed: {why}.")),
     };
     section("The next flight", &content)

@@ -5,6 +5,7 @@ use super::answer::answer;
 use super::effect_json::{EffectValue, TraceValue, effect_values, trace};
 use super::fit_json::{FitValues, fit_values};
 use super::turning_json::TurningValue;
+use crate::diagnose::experiment::Inseparable;
 use crate::diagnose::{Along, CHANNEL_NAMES};
 use crate::note::Note;
 use crate::report::thrust_source::thrust_name;
@@ -261,7 +262,7 @@ fn next_value(study: &ExplainStudy) -> Option<NextValue> {
         Ok(next) => NextValue {
             reason: None,
             seconds: Some(next.seconds),
-            inseparable: next.inseparable.iter().map(ToString::to_string).collect(),
+            inseparable: next.inseparable.iter().map(inseparable).collect(),
             pairs: next
                 .pairs
                 .iter()
@@ -274,6 +275,11 @@ fn next_value(study: &ExplainStudy) -> Option<NextValue> {
                 .collect(),
         },
     })
+}
+
+/// With the identifiers of the effects, as the pairs have them.
+fn inseparable(of: &Inseparable) -> String {
+    format!("no trajectory separates {} from {}: {}", of.named, of.other, of.why)
 }
 
 fn data_quality(study: &ExplainStudy) -> DataQuality {

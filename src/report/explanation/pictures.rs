@@ -14,8 +14,10 @@ const DRAWN: usize = 3;
 const RECORDED: &str = "Weighted with the weak form's kernel of 0.4 s.";
 const SHADED: &str = "Shaded: the error of the rigid body alone is larger than noise.";
 const PORTRAIT: &str = "Dots: recorded, less everything else of the model, mean in bins with 95 % bands of a bootstrap over the \
-                        flight's periods. Line: what this effect does in the model found. Without the effect the dots would lie \
-                        at zero.";
+                        flight's periods. Line: what this effect does in the model found.";
+/// What a picture of a state would show of a vehicle without what it shows.
+const SCATTERED: &str = "the dots would scatter about zero from one side of the picture to the other, and nearly all of \
+                         their bands would contain zero.";
 
 /// The picture that shows the answer, with the vehicle beside it.
 pub(super) fn proof(study: &ExplainStudy, numbers: &Figures) -> Markup {
@@ -50,11 +52,13 @@ fn recorded_caption(spans_s: &[[f64; 2]]) -> String {
 }
 
 fn portrait_caption(study: &ExplainStudy, of: &Portrait) -> String {
-    let Followed::TorqueRate(_) = of.state else { return PORTRAIT.to_owned() };
+    let Followed::TorqueRate(_) = of.state else {
+        return format!("{PORTRAIT} If the vehicle did not have this effect, {SCATTERED}");
+    };
     let parts = study.latency().parts;
     let ms = |time_s: f64| significant(1e3 * time_s, 3);
     format!(
-        "Rotors that follow late give the torque that was commanded before. So what the commands give is beyond what the motion needs by the latency times the rate of change of the torque: the slope of the line, {} ms (delay {} ms, lag {} ms). Dots: recorded, less everything else of the model, mean in bins with 95 % bands of a bootstrap over the flight's periods. Without a latency the dots would lie at zero.",
+        "Rotors that follow late give the torque that was commanded before. So what the commands give is beyond what the motion needs by the latency times the rate of change of the torque: the slope of the line, {} ms (delay {} ms, lag {} ms). Dots: recorded, less everything else of the model, mean in bins with 95 % bands of a bootstrap over the flight's periods. If each rotor followed its command at once, {SCATTERED}",
         ms(parts.total_s()),
         ms(parts.delay_s),
         ms(parts.lag_s)
@@ -71,7 +75,7 @@ fn vehicle(study: &ExplainStudy) -> Option<Markup> {
         meant.contains(&place).then(|| Mark {
             colour: MEANT,
             is_filled: true,
-            words: Some("this one".to_owned()),
+            words: vec!["this one".to_owned()],
         })
     };
     let caption = format!("From above, forward upwards. Filled: {}.", words.join("; "));

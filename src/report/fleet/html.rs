@@ -3,7 +3,7 @@
 use super::words::{alarms, answer, change_sentence, differs, logs};
 use crate::diagnose::Owner;
 use crate::fleet::{FleetReport, ReportedVehicle};
-use crate::report::comparison::plots;
+use crate::report::comparison::{CAPTION, plots};
 use crate::report::html::{self, Cell, figure, note, number, paragraph, section, table, text, warning};
 use crate::report::number::with_error;
 use crate::report::page::page;
@@ -33,7 +33,7 @@ fn changed(report: &FleetReport) -> Markup {
     let each = html! {
         @for vehicle in report.changed() {
             (paragraph(&change_sentence(vehicle)))
-            @for plot in plots(&vehicle.history.study) { (figure(&plot, "Bands: 95 % intervals. Shaded: where it changed.")) }
+            @for plot in plots(&vehicle.history.study) { (figure(&plot, CAPTION)) }
             (remarks(vehicle))
         }
         (note(&alarms(report)))

@@ -9,7 +9,7 @@ use crate::diagnose::holdout::{
     on_holdout, on_identification, on_left_out, split_last_periods,
 };
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{Empirical, Named, brief};
+use crate::diagnose::{Empirical, Named, brief, called};
 use crate::note::{About, Note};
 use crate::signals::{Signals, clock_offset};
 use crate::study::flights::Prepared;
@@ -207,7 +207,7 @@ impl ExplainStudy {
         let models = of_others(self, &flights.signals);
         for ((place, flight), explanation) in flights.held_out().into_iter().enumerate().zip(&models) {
             match shown_only_by(self, place, &flight.signals.own) {
-                Some(id) => alone.push(format!("{id} is shown by {} alone", flight.name)),
+                Some(id) => alone.push(format!("{} is shown by {} alone", called(id), flight.name)),
                 None => {
                     predicted.push(flight);
                     each.push(Explained { explanation, ..self.explained() });

@@ -35,7 +35,7 @@ pub use figures::{AxisResidual, Figures, Followed, Harmonics, Heat, LeftAlongTim
 pub use located::{AxisShare, Field, Located, StateShare};
 pub use next_flight::stored_trajectory;
 pub(super) use not_determined::{BY_CONTROL, KEPT};
-pub use path::FlownPath;
+pub use path::{FlownPath, PathResidual};
 pub use predicted::{Predicted, QUANTITIES};
 pub use readers::for_readers;
 pub use refuted::Refuted;
