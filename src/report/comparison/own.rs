@@ -35,8 +35,7 @@ const LISTED: usize = 4;
 /// That full thrust over weight makes two vehicles of the flights, which nothing else tells.
 fn two_vehicles(study: &CompareStudy, lifts: &LiftsApart) -> String {
     let [before, after] = [lifts.before, lifts.after].map(|lift| significant(lift, 3));
-<<<<<<< HEAD
-    let path = |place: usize| study.flights[place].input.path.as_str();
+    let path = |place: usize| flight_name(study, place);
     let of = match &lifts.of {
         LiftsOf::Groups => format!("{before} before and {after} after"),
         LiftsOf::From(from) => format!("{before} before {} and {after} from it on", path(*from)),
@@ -51,11 +50,6 @@ fn two_vehicles(study: &CompareStudy, lifts: &LiftsApart) -> String {
                 flights.iter().map(of).collect::<Vec<_>>().join(", ")
             )
         }
-=======
-    let of = match lifts.from.map(|from| flight_name(study, from)) {
-        None => format!("{before} before and {after} after"),
-        Some(from) => format!("{before} before {from} and {after} from it on"),
->>>>>>> m26a
     };
     let told = if lifts.moved {
         "a parameter of the motion moved by more than chance as well"
