@@ -10,6 +10,7 @@ mod hold_out;
 mod left_out;
 mod located;
 mod meant;
+mod nameless;
 mod next_flight;
 mod not_determined;
 mod path;

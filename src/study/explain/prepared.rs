@@ -146,7 +146,7 @@ impl Task<'_> {
                 return Ok((study, notes));
             }
             let unshown = study.unshown(&traces_of(&flights.signals, self.asked.vehicle, &settings));
-            let worthless = study.worthless().filter(|of| !settings.refused.contains(&of.id));
+            let worthless = study.nameless().filter(|(id, ..)| !settings.refused.contains(id));
             let is_unshown = unshown.is_some();
             let (id, note) = match (unshown, worthless) {
                 (Some(of), _) => {
@@ -154,10 +154,9 @@ impl Task<'_> {
                     unsure.push((of.id, of.name));
                     more
                 }
-                (None, Some(of)) => {
-                    let more = (of.id, of.note());
-                    withdrawn.push((of.id, of.name));
-                    more
+                (None, Some((id, name, note))) => {
+                    withdrawn.push((id, name));
+                    (id, note)
                 }
                 (None, None) => {
                     // one that came back as a part of what stays has its name

@@ -1,0 +1,49 @@
+//! Names that flights would give and that get none.
+
+use super::result::ExplainStudy;
+use crate::diagnose::signatures::signature_of;
+use crate::diagnose::{Named, brief};
+use crate::note::{About, Note};
+
+/// Quantities that a force moves, in the order of those that are predicted: position and velocity.
+const BY_FORCE: usize = 2;
+
+/// A load that the flights would name, and with which their own motion is not predicted better.
+#[derive(Debug, Clone, PartialEq)]
+struct Idle {
+    /// the effect
+    id: &'static str,
+    /// in brief, with its size
+    name: String,
+}
+
+impl Idle {
+    fn note(&self) -> Note {
+        let text = format!(
+            "the flights explained alone would give a name to {}; with it, neither their position nor their velocity over 0.5 s is predicted \
+             better than by the rigid body, so it gets none",
+            self.name
+        );
+        Note::warning(About::Estimate, text)
+    }
+}
+
+impl ExplainStudy {
+    /// An effect that the flights explained would name and that gets no name, with its name in brief and why: it does nothing for the motion of
+    /// these flights, or that of others is predicted better without it.
+    pub(super) fn nameless(&self) -> Option<(&'static str, String, Note)> {
+        let idle = || self.idle().map(|of| (of.id, of.name.clone(), of.note()));
+        idle().or_else(|| self.worthless().map(|of| (of.id, of.name.clone(), of.note())))
+    }
+
+    /// A named load on a cord, which acts by a force alone, where the model with it predicts neither position nor velocity of the very flights
+    /// that it was fitted to better than the rigid body: it stands for something else, as for the noise of an estimator.
+    fn idle(&self) -> Option<Idle> {
+        let hangs = |named: &&Named| signature_of(named.id).is_some_and(|of| of.role.hangs_below);
+        let named = self.explanation.named.iter().find(hangs)?;
+        let by_force = &self.identify.as_ref()?.half_second()[..BY_FORCE];
+        let is_better = by_force.iter().flatten().any(|of| of.after.value < of.before.value);
+        let is_told = by_force.iter().any(Option::is_some);
+        (is_told && !is_better).then(|| Idle { id: named.id, name: brief(named, &self.given.vehicle, true) })
+    }
+}
