@@ -46,6 +46,6 @@ mod words;
 
 pub use dispatch::run;
 pub use error::CommandError;
-pub use outcome::Outcome;
+pub use outcome::{NOT_ALL, Outcome};
 pub use standard_error::install;
 pub use usage::usage;

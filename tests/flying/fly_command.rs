@@ -107,8 +107,8 @@ fn without_a_vehicle_it_ends_when_it_is_told_to() {
     let id = child.id().to_string();
     assert!(Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
     let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-    assert!(stderr(&output).contains("SIGTERM"), "{}", stderr(&output));
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert!(stderr(&output).contains("not flown: ended by SIGTERM"), "{}", stderr(&output));
     assert!(std::fs::read_to_string(out.join("events.jsonl")).unwrap().contains("SIGTERM"));
     assert_eq!(earlier.map(|path| path.exists()), [false, false, false, true]);
 }

@@ -40,7 +40,11 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
             landed_view = Landed::open(stderr, args.out.join(LOG), (text::path(&args.out), lines(&record)));
         }
         let watches: &dyn Progress = landed_view.as_ref().map_or(&Silent, |view| view);
-        Analysis::of(flown, &file_of(args), record.system, (watches, &mut |note| notes.push(note)))?
+        work.analyses();
+        let made =
+            Analysis::of(flown, &file_of(args), record.system, (watches, &mut |note| notes.push(note)));
+        work.ends_itself();
+        made?
     };
     if let (Some(shown), Some(analysis)) = (landed_view, &analysis) {
         view = shown.answered(analysis.answer(), asks_for_the_word(args));
@@ -85,7 +89,12 @@ pub fn outcome(
     let outcome = &record.outcome;
     if outcome.ending == Ending::NotFlown {
         let why = outcome.cause.as_ref().map_or("no reason given".to_owned(), ToString::to_string);
-        return Err(CommandError::Failure(format!("not flown: {why}")));
+        let why = format!("not flown: {why}");
+        return Err(if outcome.is_interrupted() {
+            CommandError::Ended(why)
+        } else {
+            CommandError::Failure(why)
+        });
     }
     let whole = outcome.is_whole()
         && outcome.losses.is_empty()
