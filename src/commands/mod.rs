@@ -39,6 +39,7 @@ mod run;
 mod simulate;
 mod sitl;
 mod standard_error;
+mod typed_early;
 mod usage;
 mod validate;
 mod vehicle;
