@@ -146,6 +146,30 @@ fn an_interrupt_ends_a_run_with_the_exit_status_of_what_is_not_done() {
     assert!(said.contains("ended by Ctrl-C"), "{said}");
 }
 
+/// A pipe is read once, and what came is there from then on.
+#[cfg(unix)]
+#[test]
+fn a_vehicle_may_come_through_a_pipe() {
+    let out = folder("pipe");
+    std::fs::create_dir_all(&out).unwrap();
+    // where the run ends
+    std::fs::write(out.join("plan.toml"), "no plan\n").unwrap();
+    let pipe = out.join("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let vehicle = std::fs::read(format!("{}/configs/x500.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let writer = {
+        let (pipe, vehicle) = (pipe.clone(), vehicle.clone());
+        std::thread::spawn(move || std::fs::write(pipe, vehicle).unwrap())
+    };
+    let output = run(&out, &["--sitl", "--yes", "--room", "4,4,3", "--vehicle", &pipe.display().to_string()]);
+    writer.join().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("plan.toml: expected a trajectory file"), "{}", stderr(&output));
+    for name in ["given_vehicle.toml", "vehicle.toml"] {
+        assert_eq!(std::fs::read(out.join(name)).unwrap(), vehicle, "{name}");
+    }
+}
+
 #[test]
 fn a_real_room_is_never_assumed() {
     let out = folder("no_room");

@@ -31,6 +31,7 @@ mod output;
 mod plan;
 mod progress;
 mod prove;
+mod read_once;
 mod record;
 mod redact;
 mod replay;

@@ -10,7 +10,7 @@ use super::document::Document;
 use super::landed::Landed;
 use super::one_flight::{FlightRun, LOG, Manner, one_flight};
 use super::ride::{asks_for_the_word, is_drawn};
-use super::vehicle::file_of;
+use super::vehicle::{file_of, kept};
 use super::watch::View;
 use super::words::lines;
 use crate::cli::FlyArgs;
@@ -27,6 +27,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &FlyArgs) -> Result<Outcome
 }
 
 fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> Result<Outcome, CommandError> {
+    let args = &kept(args)?;
     let FlightRun { record, onboard, mut said, view } = one_flight((stderr, work), args, Manner::default())?;
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
     let mut notes = Vec::new();
