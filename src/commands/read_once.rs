@@ -30,6 +30,7 @@ pub fn keep(from: &Path, to: &Path) -> Result<(), CommandError> {
 
 #[cfg(all(test, unix))]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
 
     #[test]

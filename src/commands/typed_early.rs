@@ -16,6 +16,7 @@ fn throw_away_of(input: impl std::os::fd::AsFd) {
 
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
     use rustix::event::{PollFd, PollFlags, Timespec, poll};
     use rustix::fs::{Mode, OFlags};
