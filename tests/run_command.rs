@@ -3,8 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test ends where it fails")]
 
 use std::cell::RefCell;
+#[cfg(unix)]
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
 use mavid::link::LinkOptions;
@@ -24,7 +26,7 @@ fn run(out: &Path, arguments: &[&str]) -> Output {
         .arg("--out")
         .arg(out)
         .args(arguments)
-        .stdin(std::process::Stdio::null())
+        .stdin(Stdio::null())
         .output()
         .unwrap()
 }
@@ -116,6 +118,56 @@ fn a_doubt_ends_a_run_without_a_person_and_says_what_to_do() {
     assert!(said.contains("the vehicle is doubtful") && said.contains("State mass and size anew"), "{said}");
     assert!(said.contains("$ mavid vehicle init --from tcpout:127.0.0.1:"), "{said}");
     assert!(!out.join("vehicle.toml").exists() && out.join("vehicle.toml.doubtful").exists());
+}
+
+/// While it plans, or in the flight after that: wherever the signal comes, it is told, and the exit status says that not all is done.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_a_run_with_the_exit_status_of_what_is_not_done() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_mavid"))
+        .args(["run", "--sitl", "--yes", "--room", "4,4,3", "--out"])
+        .arg(folder("interrupted"))
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = String::new();
+    for line in BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok) {
+        // it begins to plan
+        if line.contains("Room and trajectory") {
+            let id = child.id().to_string();
+            assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+        }
+        said.push_str(&line);
+        said.push('\n');
+    }
+    assert_eq!(child.wait().unwrap().code(), Some(3), "{said}");
+    assert!(said.contains("ended by Ctrl-C"), "{said}");
+}
+
+/// A pipe is read once, and what came is there from then on.
+#[cfg(unix)]
+#[test]
+fn a_vehicle_may_come_through_a_pipe() {
+    let out = folder("pipe");
+    std::fs::create_dir_all(&out).unwrap();
+    // where the run ends
+    std::fs::write(out.join("plan.toml"), "no plan\n").unwrap();
+    let pipe = out.join("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let vehicle = std::fs::read(format!("{}/configs/x500.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let writer = {
+        let (pipe, vehicle) = (pipe.clone(), vehicle.clone());
+        std::thread::spawn(move || std::fs::write(pipe, vehicle).unwrap())
+    };
+    let output = run(&out, &["--sitl", "--yes", "--room", "4,4,3", "--vehicle", &pipe.display().to_string()]);
+    writer.join().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("plan.toml: expected a trajectory file"), "{}", stderr(&output));
+    for name in ["given_vehicle.toml", "vehicle.toml"] {
+        assert_eq!(std::fs::read(out.join(name)).unwrap(), vehicle, "{name}");
+    }
 }
 
 #[test]

@@ -44,7 +44,7 @@ pub use px4::PX4;
 pub use px4_states::px4_mode_of_state;
 pub use release::Release;
 pub use setpoints::{LastSetpoint, SetpointRules, Takeoff};
-pub use simulated::is_simulated;
+pub use simulated::{TELLS_SIMULATED, is_simulated, of_simulator};
 pub use stack::Stack;
 pub use vehicle_kind::VehicleKind;
 pub use vehicle_type::{is_multirotor, multirotor_type};

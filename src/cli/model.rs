@@ -55,6 +55,10 @@ pub struct LoadArgs {
     /// leave out what the vehicle does not have; without it nothing is set then
     #[arg(long, conflicts_with = "undo")]
     pub known_only: bool,
+    /// the vehicle is a simulator: take also a file with a simulator's own parameters (SIH_*, SIM_*). Without it that is refused, unless
+    /// the vehicle's parameters say that it is a simulator
+    #[arg(long, conflicts_with = "undo")]
+    pub simulator: bool,
 }
 
 /// Arguments of `mavid vehicle init`.

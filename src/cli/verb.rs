@@ -38,7 +38,7 @@ pub struct Cli {
     pub verb: Verb,
 }
 
-const AFTER_HELP: &str = "Examples:\n  mavid demo\n  mavid explain flight.ulg --mass 2.0\n  mavid run --connect udpin:0.0.0.0:14540 --mass 2.0 --room 4,4,3\n\nExit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss, 4 done and something changed (compare, fleet report).";
+const AFTER_HELP: &str = "Examples:\n  mavid demo\n  mavid explain flight.ulg --mass 2.0\n  mavid run --connect udpin:0.0.0.0:14540 --mass 2.0 --room 4,4,3\n\nExit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss or ended by a signal, 4 done and something changed (compare, fleet report).";
 
 /// The verbs.
 #[derive(Debug, Subcommand)]

@@ -15,7 +15,7 @@ pub enum CommandError {
     /// the program or the machine failed
     #[error("{0}")]
     Failure(String),
-    /// a signal ended it
+    /// a signal, or the end of standard input at a question, ended it before it was done
     #[error("{0}")]
     Ended(String),
     /// it failed and said so; the exit status

@@ -39,7 +39,7 @@ pub fn man(json: bool, args: &ManArgs) -> Result<Outcome, CommandError> {
 }
 
 fn write_pages(command: &clap::Command, folder: &Path, pages: &mut Vec<String>) -> Result<(), CommandError> {
-    let page = Man::new(command.clone());
+    let page = Man::new(command.clone().override_usage(synopsis(command)));
     let name = page.get_filename();
     let mut text = Vec::new();
     page.render(&mut text).map_err(|error| CommandError::Failure(format!("cannot write {name}: {error}")))?;
@@ -47,4 +47,48 @@ fn write_pages(command: &clap::Command, folder: &Path, pages: &mut Vec<String>) 
     pages.push(name);
     let verbs = command.get_subcommands().filter(|verb| !verb.is_hide_set() && verb.get_name() != "help");
     verbs.into_iter().try_for_each(|verb| write_pages(verb, folder, pages))
+}
+
+/// What stands for all options in a usage.
+const OPTIONS: &str = "[OPTIONS]";
+
+/// How a command is called, a form a line: its usage, with every option and its value in the place of [`OPTIONS`].
+fn synopsis(command: &clap::Command) -> String {
+    let usage = command.clone().render_usage().to_string();
+    let usage = usage.trim_start_matches("Usage:").trim();
+    let is_meant = |option: &&clap::Arg| {
+        // what is required stands in the usage itself
+        !option.is_positional() && !option.is_hide_set() && !usage.contains(&option.to_string())
+    };
+    let options = command.get_arguments().filter(is_meant).map(|option| format!("[{option}]"));
+    usage.replace(OPTIONS, &options.collect::<Vec<_>>().join(" "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every option of the command and of those below it stands in their synopses, with its value.
+    fn is_whole(command: &clap::Command) {
+        let said = synopsis(command);
+        assert!(!said.contains(OPTIONS) && said.starts_with("mavid"), "{said}");
+        let options =
+            command.get_arguments().filter(|option| !option.is_hide_set() && !option.is_positional());
+        options.for_each(|option| assert!(said.contains(&option.to_string()), "{option}: {said}"));
+        command.get_subcommands().filter(|verb| verb.get_name() != "help").for_each(is_whole);
+    }
+
+    #[test]
+    fn a_synopsis_names_the_value_of_each_option() {
+        let mut command = Cli::command();
+        command.build();
+        is_whole(&command);
+        let of = |name: &str| synopsis(command.find_subcommand(name).unwrap());
+        let explain = of("explain");
+        assert!(explain.contains("<--vehicle <FILE>|--mass <KG>> <LOG>..."), "{explain}");
+        assert!(explain.contains("[--out <DIR>]") && explain.contains("[--transient <S>]"), "{explain}");
+        // what is required is named once
+        assert_eq!(explain.matches("--mass <KG>").count(), 1, "{explain}");
+        assert_eq!(of("fleet").lines().count(), 2, "{}", of("fleet"));
+    }
 }

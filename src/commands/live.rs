@@ -16,7 +16,7 @@ use ratatui::crossterm::terminal::{self, LeaveAlternateScreen};
 use tokio::sync::watch;
 
 use super::last_word::{PATIENCE, last_word, within};
-use super::{CommandError, Outcome, network, output};
+use super::{CommandError, NOT_ALL, Outcome, network, output};
 
 /// From the signal, or from the end of what must be waited for, to that of the program.
 const GRACE: Duration = Duration::from_secs(5);
@@ -36,6 +36,8 @@ enum Phase {
     Fetching,
     /// it ends by itself, soon
     Ending,
+    /// it works out what a flight says that is recorded; it ends by itself where that is soon
+    Analysing,
     /// it asks a person, or works out what can be worked out again
     Between,
 }
@@ -75,6 +77,11 @@ impl Work {
     /// The download is over; whether a signal ended it. From now on it ends itself.
     pub fn fetched(&self, by_signal: bool) {
         self.0.send_replace(VerbState { phase: Phase::Ending, fetch_ended: by_signal });
+    }
+
+    /// It works out what a recorded flight says: a signal ends it, unless it is done soon after.
+    pub fn analyses(&self) {
+        self.enters(Phase::Analysing);
     }
 
     /// It hears of signals, or has ended what had to be; by an end soon after one nothing is lost but words and what can
@@ -134,26 +141,47 @@ pub fn run(
             signals.hear(name, *phase.borrow());
         }
         let Some(name) = &signals.asked else { continue };
-        let text = match phase.borrow().phase {
-            Phase::Before => format!("mavid: ended by {name} before it began"),
-            Phase::Between => {
-                format!("mavid: ended by {name}; run the same command again to continue")
+        let phase = phase.borrow().phase;
+        let is_over = match phase {
+            Phase::Before | Phase::Between => true,
+            Phase::Flying => false,
+            Phase::Fetching | Phase::Ending | Phase::Analysing => {
+                since.get_or_insert_with(Instant::now).elapsed() >= GRACE
             }
-            Phase::Flying => continue,
-            Phase::Fetching | Phase::Ending if since.get_or_insert_with(Instant::now).elapsed() < GRACE => {
-                continue;
-            }
-            Phase::Fetching | Phase::Ending => format!(
-                "mavid: ended {} s after {name}, before all output was written: standard output, standard error or a \
-                 disk accepts no data, or the flight was being analysed; what was recorded is in its file",
+        };
+        if is_over {
+            let (text, status) = last_words(phase, name);
+            last_word(move || {
+                leave_view();
+                output::error(&text);
+            });
+            return Err(CommandError::Reported(status));
+        }
+    }
+}
+
+/// What is said of a verb that the program ends by this signal in this phase, and the exit status.
+fn last_words(phase: Phase, name: &str) -> (String, u8) {
+    match phase {
+        Phase::Before => (format!("mavid: ended by {name} before it began"), NOT_ALL),
+        Phase::Between => {
+            (format!("mavid: ended by {name}; run the same command again to continue"), NOT_ALL)
+        }
+        Phase::Analysing => (
+            format!(
+                "mavid: ended by {name} while the flight was analysed; its recording is in its file, and mavid explain analyses it"
+            ),
+            NOT_ALL,
+        ),
+        // what it still had to say is lost
+        Phase::Flying | Phase::Fetching | Phase::Ending => (
+            format!(
+                "mavid: ended {} s after {name}, before all output was written: standard output, standard error or a disk accepts \
+                 no data; what was recorded is in its file",
                 GRACE.as_secs()
             ),
-        };
-        last_word(move || {
-            leave_view();
-            output::error(&text);
-        });
-        return Err(CommandError::Reported(FAILED));
+            FAILED,
+        ),
     }
 }
 
@@ -222,6 +250,21 @@ mod tests {
             heard.hear((*name).to_owned(), VerbState { phase: *phase, fetch_ended: *fetch_ended });
         }
         heard.asked
+    }
+
+    #[test]
+    fn what_a_signal_ends_is_not_all_done_and_what_cannot_be_told_is_a_failure() {
+        for phase in [Phase::Before, Phase::Between, Phase::Analysing] {
+            let (said, status) = last_words(phase, INTERRUPT);
+            assert!(said.starts_with("mavid: ended by Ctrl-C") && status == NOT_ALL, "{said}: {status}");
+        }
+        let (said, status) = last_words(Phase::Ending, "SIGTERM");
+        assert!(
+            said.contains("5 s after SIGTERM, before all output was written") && status == FAILED,
+            "{said}"
+        );
+        let ended = CommandError::Ended("ended by Ctrl-C".to_owned());
+        assert_eq!((ended.status(), CommandError::Failure(String::new()).status()), (NOT_ALL, FAILED));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use crate::commands::agreement::SET;
 use crate::commands::fly::is_attended;
+use mavid::autopilot::of_simulator;
 use mavid::fetch::Noted;
 use mavid::onboard::{
     self, ChangedSince, Loaded, Loading, ParameterComparison, ParameterFileError, PutBack, Session,
@@ -77,6 +78,7 @@ async fn load(
     let shown = Spinner::of(stderr, format!("the vehicle is asked for {}", counted(file.len())));
     let offer = session.offer().await?;
     let notes = notes_of_loaded(&session.known_as(&offer))?;
+    refuse_simulators(args, session, file).await?;
     let loading = onboard::compare(session, file).await?;
     drop(shown);
     refuse_unknown(args, session, &loading)?;
@@ -165,7 +167,30 @@ fn set_page(loaded: &Loaded, place: &str, undo: &str) -> String {
     lines.join("\n")
 }
 
-/// All or nothing, unless told otherwise: a file for another autopilot or a simulator is refused.
+/// What a simulator is made to be does not get onto an aircraft, unless that is said.
+async fn refuse_simulators(
+    args: &LoadArgs,
+    session: &mut Session,
+    file: &[(String, f64)],
+) -> Result<(), CommandError> {
+    let own = of_simulator(file);
+    if own.is_empty() || args.simulator || onboard::is_simulator(session).await? {
+        return Ok(());
+    }
+    let name = args.file.as_deref().map(text::path).unwrap_or_default();
+    Err(CommandError::Input(for_simulator((&name, &own), session.stack.id)))
+}
+
+/// Why a file with these parameters of a simulator's own is refused by a vehicle of this autopilot.
+fn for_simulator((name, own): (&str, &[&str]), autopilot: &str) -> String {
+    format!(
+        "{name}: expected parameters of an aircraft, got those of a simulator ({}), and the vehicle does not say that it is one: nothing \
+         is changed. For the aircraft: mavid export MODEL --to {autopilot}-params. If the vehicle is that simulator: --simulator",
+        text::listed(own.iter())
+    )
+}
+
+/// All or nothing, unless told otherwise: a file for another autopilot is refused.
 fn refuse_unknown(args: &LoadArgs, session: &Session, loading: &Loading) -> Result<(), CommandError> {
     let unknown: Vec<&str> = loading
         .parameters
@@ -272,6 +297,19 @@ mod tests {
         let words = ["mavid", "vehicle", "load", "--connect", "udpin:0.0.0.0:14550", "--undo", "--yes"];
         assert!(crate::cli::Cli::try_parse_from(words).is_ok());
         assert!(crate::cli::Cli::try_parse_from(&words[..5]).is_err());
+    }
+
+    #[test]
+    fn a_file_for_a_simulator_says_what_it_is_and_how_it_is_loaded_all_the_same() {
+        let said = for_simulator(("sih.params", &["SIH_MASS", "SIH_IXX"]), "px4");
+        assert!(said.starts_with(
+            "sih.params: expected parameters of an aircraft, got those of a simulator (SIH_MASS, SIH_IXX)"
+        ));
+        assert!(said.contains("nothing is changed") && said.contains("--to px4-params"), "{said}");
+        assert!(said.ends_with("If the vehicle is that simulator: --simulator"), "{said}");
+        let words =
+            ["mavid", "vehicle", "load", "--connect", "udpin:0.0.0.0:14550", "sih.params", "--simulator"];
+        assert!(crate::cli::Cli::try_parse_from(words).is_ok());
     }
 
     #[test]

@@ -11,9 +11,9 @@ use mavid::note::Note;
 use mavid::text;
 use serde::Serialize;
 
-use super::CommandError;
 use super::columns::{of_terminal, size_of_terminal};
 use super::standard_error::MESSAGE;
+use super::{CommandError, NOT_ALL};
 
 /// A result for people; ends the line. On a terminal lines that are longer than it is wide are broken between words.
 pub fn text(text: &str) -> Result<(), CommandError> {
@@ -137,7 +137,8 @@ impl CommandError {
     pub fn status(&self) -> u8 {
         match self {
             Self::Input(_) | Self::Inputs(_) => 2,
-            Self::Failure(_) | Self::Ended(_) => 1,
+            Self::Failure(_) => 1,
+            Self::Ended(_) => NOT_ALL,
             Self::Reported(status) => *status,
         }
     }

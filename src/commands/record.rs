@@ -24,8 +24,8 @@ use crate::cli::RecordArgs;
 
 /// Longest recording, where the user gives no duration.
 const YEAR: Duration = Duration::from_secs(365 * 86_400);
-/// How long the last frames may take to leave.
-const FLUSH: Duration = Duration::from_secs(1);
+/// How long the end of the link may take: it goes on for 1 s with what is still to be sent. One that stands still is not waited for.
+const CLOSING: Duration = Duration::from_secs(2);
 /// Messages that identification uses and the rates asked for, Hz. A vehicle gives what it can.
 const MESSAGES: &[(MessageId, u16)] = &[
     (MessageId::of::<dialect::ATTITUDE_QUATERNION_DATA>(), 100),
@@ -112,18 +112,18 @@ async fn record(
     let start = Instant::now();
     let mut capture = Capture { reader, writer, stderr, asked: Vec::new(), recorder };
     let ended = capture.until(start, args).await;
-    // what was asked for last is sent, recorded and counted, or the link is gone
-    let _ = tokio::time::timeout(FLUSH, capture.writer.flush()).await;
-    let stats = capture.reader.stats();
+    let lasted_s = start.elapsed().as_secs_f64();
+    let Capture { reader, writer, stderr, recorder, .. } = capture;
+    let stats = closed(reader, writer).await;
     // whether or not the link held, what came is brought onto the disk
-    let status = capture.recorder.end().await.map_err(|error| CommandError::Failure(error.to_string()))?;
+    let status = recorder.end().await.map_err(|error| CommandError::Failure(error.to_string()))?;
     if status.is_whole() && stats.received_frames == 0 && is_empty(&args.out) {
         // the same command begins again; a file that cannot be removed is an empty one
         let _ = std::fs::remove_file(&args.out);
     }
-    let document = document(args, start.elapsed().as_secs_f64(), &status, &stats);
+    let document = document(args, lasted_s, &status, &stats);
     let told = if json { output::json(&document) } else { output::text(&text(&document)) };
-    capture.stderr.flush();
+    stderr.flush();
     ended?;
     told?;
     if let Some(failure) = &status.failure {
@@ -131,6 +131,14 @@ async fn record(
     }
     let whole = status.is_whole() && stats.received_frames > 0;
     Ok(if whole { Outcome::Done } else { Outcome::DoneWithLoss })
+}
+
+/// Ends the link when what was asked for last is sent, and gives what passed it. The recording, ended after it, has these frames and no
+/// others.
+async fn closed(reader: LinkReader, writer: LinkWriter) -> LinkStats {
+    let so_far = reader.stats();
+    drop(reader);
+    tokio::time::timeout(CLOSING, writer.close()).await.unwrap_or(so_far)
 }
 
 fn is_empty(path: &std::path::Path) -> bool {

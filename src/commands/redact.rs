@@ -1,5 +1,6 @@
 //! `mavid redact LOG --out FILE`: a log to share, without positions, serial numbers and keys.
 
+use mavid::log::expect_file;
 use mavid::redact::redact;
 use mavid::text;
 use serde::Serialize;
@@ -23,7 +24,11 @@ pub fn run(json: bool, args: &RedactArgs) -> Result<Outcome, CommandError> {
     output::refuse_overwriting(&[&args.log], &[&args.out])?;
     output::refuse_replacing(&args.out, args.force)?;
     let name = text::path(&args.log);
-    let log = std::fs::read(&args.log).map_err(|error| CommandError::Input(format!("{name}: {error}")))?;
+    let log = std::fs::read(&args.log).map_err(|error| {
+        let why =
+            expect_file(&args.log).err().map_or_else(|| error.to_string(), |no_file| no_file.to_string());
+        CommandError::Input(format!("{name}: {why}"))
+    })?;
     let redacted = redact(&log).map_err(|error| CommandError::Input(format!("{name}: {error}")))?;
     output::bytes(&args.out, &redacted.bytes)?;
     let tally = redacted.tally;

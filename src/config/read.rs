@@ -20,9 +20,19 @@ const REASON_CHARS: usize = 400;
 /// The text of a configuration file of this kind.
 pub(super) fn read_text(path: &Path, kind: Kind) -> Result<String, ConfigError> {
     let failed = |source| ConfigError::Read { path: path.to_owned(), source };
+    let other = |came: &str| {
+        let origin = text::path(path);
+        Err(ConfigError::OtherKind { origin, expected: kind.expected(), came: came.to_owned() })
+    };
+    if path.is_dir() {
+        return other("a folder");
+    }
     let mut bytes = Vec::new();
     // one more than it may have tells that there are more
     File::open(path).and_then(|file| file.take(BYTES_MAX + 1).read_to_end(&mut bytes)).map_err(failed)?;
+    if bytes.is_empty() {
+        return other("an empty file");
+    }
     let is_large = bytes.len() as u64 > BYTES_MAX;
     if is_large || std::str::from_utf8(&bytes).is_err() {
         let format = format_of(path).ok().filter(|format| !format.takes_columns);
@@ -135,6 +145,21 @@ mod tests {
             let said = load_vehicle(&fixtures.join(log)).unwrap_err().to_string();
             assert!(said.contains(&format!("got a recording, {format}: give it among the logs")), "{said}");
         }
+    }
+
+    #[test]
+    fn a_folder_and_an_empty_file_are_told_to_be_that() {
+        let folder = std::env::temp_dir().join(format!("mavid-config-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let empty = folder.join("empty.toml");
+        std::fs::write(&empty, "").unwrap();
+        for (path, came) in [(&folder, "a folder"), (&empty, "an empty file")] {
+            let said = load_vehicle(path).unwrap_err().to_string();
+            let expected =
+                format!("{}: expected a vehicle or model file in TOML, got {came}", text::path(path));
+            assert_eq!(said, expected);
+        }
+        std::fs::remove_dir_all(folder).unwrap();
     }
 
     #[test]

@@ -114,6 +114,10 @@ fn take(given: &str, all: &mut Vec<Source>) -> Result<(), SourceError> {
         all.push(source(path));
         return Ok(());
     }
+    if path.exists() {
+        let came = "a pipe or a device, which can be read only once";
+        return Err(refused(given, "a file, a folder or a pattern", came.to_owned()));
+    }
     if let Some((scheme, _)) = given.split_once("://") {
         let came = format!("an address of `{}`, which this program does not read", text::clean(scheme));
         return Err(refused(given, "a file, a folder or a pattern", came));
@@ -241,6 +245,8 @@ mod tests {
         for (given, said) in [
             (at("no.tlog"), "got nothing of that name"),
             (at("*.ulg"), "no file that ends in"),
+            #[cfg(unix)]
+            ("/dev/null".to_owned(), "got a pipe or a device"),
             ("ftp://host/logs".to_owned(), "an address of `ftp`"),
             #[cfg(not(feature = "fleet"))]
             ("s3://bucket/logs".to_owned(), "--features fleet"),

@@ -151,6 +151,12 @@ impl Outcome {
     pub fn is_whole(&self) -> bool {
         self.cause.is_none() && self.ending == Ending::Landed
     }
+
+    /// Whether the program was told to end: by a signal, or by Ctrl-C as a key.
+    #[must_use]
+    pub fn is_interrupted(&self) -> bool {
+        matches!(self.cause, Some(Cause::Signal(_)))
+    }
 }
 
 /// Severity of a note.

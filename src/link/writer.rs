@@ -96,11 +96,12 @@ impl LinkWriter {
     }
 
     /// Gives up this writer and waits until the link's task is over, which it is when every other writer and the reader are
-    /// gone. What was received until then is recorded.
-    pub async fn close(self) {
+    /// gone. What was received until then is recorded and counted: this is what passed the link, and nothing comes after it.
+    pub async fn close(self) -> LinkStats {
         let shared = self.shared.clone();
         drop(self);
         shared.ended.notified().await;
+        shared.stats().clone()
     }
 
     /// Waits until all that was given before is sent, or dropped by the loss of the link.

@@ -10,6 +10,9 @@ use crate::text;
 /// So many bytes tell a format. A telemetry log may begin with almost as many damaged ones.
 const HEAD_BYTES: u64 = (1 << 20) + (1 << 12);
 
+/// Letters of a pattern for names of files.
+const PATTERN: [char; 3] = ['*', '?', '['];
+
 /// Bytes that can be read from their start more than once: a path (`&Path`, `&str`), or bytes in memory with the name
 /// that messages call them by.
 #[derive(Debug, Clone, Copy)]
@@ -66,8 +69,20 @@ impl<'a> Input<'a> {
         Ok(head)
     }
 
-    /// It is a folder, in which there may be logs but which is none.
-    pub(super) fn is_folder(&self) -> bool {
-        matches!(self, Self::File(path) if path.is_dir())
+    /// What the path leads to, where that cannot be read as a log, and what to do about it. A log is read more than once.
+    pub(super) fn no_file(&self) -> Option<(&'static str, &'static str)> {
+        let Self::File(path) = self else { return None };
+        match path.metadata() {
+            Ok(found) if found.is_dir() => Some(("a folder", "give one of the logs in it")),
+            Ok(found) if found.is_file() => None,
+            Ok(_) => {
+                Some(("a pipe or a device, which can be read only once", "save it as a file, and give that"))
+            }
+            // a shell hands on as it is what it finds no file for
+            Err(_) if text::path(path).contains(PATTERN) => {
+                Some(("a pattern that no file matches", "check the folder and the ending"))
+            }
+            Err(_) => None,
+        }
     }
 }

@@ -37,7 +37,9 @@ pub use format::{Certainty, Format, Place, ReadWhole, Sink};
 pub use input::Input;
 pub use loss::{Loss, Oddity, Position, RowRejection};
 pub use onboard::{OnboardReport, Topic};
-pub use open::{FORMATS, Opened, OpenedFlights, format_of, is_named_like_a_log, open, open_flights, stream};
+pub use open::{
+    FORMATS, Opened, OpenedFlights, expect_file, format_of, is_named_like_a_log, open, open_flights, stream,
+};
 pub use options::OpenOptions;
 pub use report::{Details, ReadReport};
 pub use tlog::{Resync, TlogReader, TlogReport};

@@ -156,15 +156,22 @@ fn emit_losses(report: &ReadReport) {
     }
 }
 
+/// Refuses a path that leads to no file: to a folder, or to what can be read only once; and a pattern. That there is nothing at all is
+/// told by who opens it.
+///
+/// # Errors
+/// It leads to such a thing.
+pub fn expect_file<'a>(log: impl Into<Input<'a>>) -> Result<(), LogError> {
+    log.into().no_file().map_or(Ok(()), |(came, advice)| Err(unknown(came, advice)))
+}
+
 /// The format that a log's first bytes are of.
 ///
 /// # Errors
 /// The file cannot be read, or is of no known format.
 pub fn format_of<'a>(log: impl Into<Input<'a>>) -> Result<&'static Format, LogError> {
     let input = log.into();
-    if input.is_folder() {
-        return Err(unknown("a folder", "give one of the logs in it"));
-    }
+    expect_file(input)?;
     let head = input.head()?;
     // one that stores what it holds as it is would pass for it
     if let Some(archive) = archive(&head) {

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use super::setting::{read, rest, set};
 use super::{OnboardError, Session};
+use crate::autopilot::{TELLS_SIMULATED, is_simulated};
 use crate::fetch::{Known, Noted, Notes};
 
 /// Within this an autopilot has looked at parameters that were set: PX4's modules and ArduPilot's libraries read them several
@@ -58,6 +59,15 @@ pub async fn compare(session: &mut Session, file: &[(String, f64)]) -> Result<Lo
         });
     }
     Ok(Loading { known, parameters })
+}
+
+/// Whether the vehicle's own parameters say that it is a simulator. Nothing else is sent but heartbeats.
+///
+/// # Errors
+/// Those of [`Session::talk`].
+pub async fn is_simulator(session: &mut Session) -> Result<bool, OnboardError> {
+    let known = read(session, &TELLS_SIMULATED).await?;
+    Ok(is_simulated(|name| known.value(name)))
 }
 
 /// What a vehicle made of the parameters that were set.

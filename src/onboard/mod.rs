@@ -7,7 +7,7 @@
 //! ```text
 //! Session::open -> offer -> list -> fetch        the logs
 //!                        -> look -> change       the parameters of logging
-//!                        -> compare -> load      the parameters of a file
+//!                        -> compare -> load      the parameters of a file (is_simulator: of a simulator's)
 //!                        -> order_restart        for what counts only then
 //!                        -> put_back             what an earlier run changed of either
 //! ```
@@ -24,7 +24,7 @@ mod setting;
 
 pub use download::{Download, Listed, Progress, begun, fetch, list};
 pub use error::OnboardError;
-pub use loading::{Loaded, Loading, ParameterComparison, compare, load};
+pub use loading::{Loaded, Loading, ParameterComparison, compare, is_simulator, load};
 pub use logging::{ChangedSince, LoggingState, PutBack, change, look, needs_restart, put_back};
 pub use parameter_file::{ParameterFileError, read_parameter_file};
 pub use parameters::read_as_needed;

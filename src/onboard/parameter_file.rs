@@ -42,10 +42,13 @@ pub enum ParameterFileError {
 pub fn read_parameter_file(path: &Path) -> Result<Vec<(String, f64)>, ParameterFileError> {
     let shown = text::path(path);
     let failed = |source| ParameterFileError::File { path: shown.clone(), source };
-    let mut bytes = Vec::new();
-    File::open(path).and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes)).map_err(failed)?;
     let form =
         |got: String| ParameterFileError::Form { path: shown.clone(), expected: "a file of parameters", got };
+    if path.is_dir() {
+        return Err(form("a folder".to_owned()));
+    }
+    let mut bytes = Vec::new();
+    File::open(path).and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes)).map_err(failed)?;
     if bytes.len() as u64 > MOST_BYTES {
         return Err(form(format!("more than {MOST_BYTES} bytes")));
     }
@@ -157,5 +160,7 @@ mod tests {
         assert!(prose.ends_with("got another kind of file: its line 3 is not of this form"), "{prose}");
         assert!(said("[vehicle] 1\n").contains("another kind of file"));
         assert!(said("# nothing\n").contains("at least one line"));
+        let folder = read_parameter_file(&std::env::temp_dir()).unwrap_err().to_string();
+        assert!(folder.ends_with("expected a file of parameters, got a folder"), "{folder}");
     }
 }

@@ -13,7 +13,7 @@ use super::counts::{HeldBack, ReplayCounts};
 use super::error::ReplayError;
 use super::telemetry::is_telemetry;
 use crate::link::{HostStamp, LinkError, LinkEvent, LinkFeed, LinkReader, LinkWriter, Received};
-use crate::log::{LogError, Loss, TlogReader};
+use crate::log::{LogError, Loss, TlogReader, expect_file};
 use crate::text;
 use crate::wire::{ComponentId, CrcSeeds, Frame, Payload, SystemId};
 
@@ -55,6 +55,7 @@ impl Replay {
             speed,
             losses: Vec::new(),
         };
+        expect_file(path).map_err(|source| replay.error(source))?;
         let mut reader = replay.reader()?;
         let mut pauses = Pauses::default();
         while let Some(record) = reader.next_record().map_err(|source| replay.error(source))? {

@@ -108,6 +108,9 @@ fn a_vehicle_that_does_not_say_what_it_is_is_not_armed_without_the_order() {
 #[test]
 fn the_word_for_arming_is_waited_for_as_long_as_it_takes() {
     let mut flying = Flying::new(vehicle_settings(PX4), |sortie| sortie.settings.await_word = true);
+    // nobody has asked for it
+    assert!(!flying.flight.status(flying.now).awaits_word, "{}", flying.story());
+    flying.event(Event::Key(Key::Arm));
     flying.wait(200.0);
     assert!(flying.flight.status(flying.now).awaits_word, "{}", flying.story());
     assert_eq!((flying.phase(), flying.commands_since(ARM, Duration::ZERO)), ("check", 0));

@@ -107,8 +107,36 @@ fn without_a_vehicle_it_ends_when_it_is_told_to() {
     let id = child.id().to_string();
     assert!(Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
     let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-    assert!(stderr(&output).contains("SIGTERM"), "{}", stderr(&output));
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert!(stderr(&output).contains("not flown: ended by SIGTERM"), "{}", stderr(&output));
     assert!(std::fs::read_to_string(out.join("events.jsonl")).unwrap().contains("SIGTERM"));
     assert_eq!(earlier.map(|path| path.exists()), [false, false, false, true]);
+}
+
+/// What comes through a pipe can be read once: all that needs it reads the copy in the folder of the flight.
+#[cfg(unix)]
+#[test]
+fn a_vehicle_and_a_trajectory_may_come_through_pipes() {
+    let out = folder("fly_pipes");
+    let place = folder("pipes");
+    std::fs::create_dir_all(&place).unwrap();
+    let pipe = |name: &str, file: &str| {
+        let (pipe, content) = (place.join(name), std::fs::read(config(file)).unwrap());
+        assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let (end, whole) = (pipe.clone(), content.clone());
+        (pipe.display().to_string(), content, std::thread::spawn(move || std::fs::write(end, whole).unwrap()))
+    };
+    let (vehicle, wanted_vehicle, writes_vehicle) = pipe("vehicle", "qball2.toml");
+    let (trajectory, wanted_trajectory, writes_trajectory) = pipe("trajectory", "trajectories/table2.toml");
+    let output = Command::new(env!("CARGO_BIN_EXE_mavid"))
+        .args(["fly", "--plain", "--connect", "serial:/nonexistent/tty:57600"])
+        .args(["--trajectory", &trajectory, "--vehicle", &vehicle, "--out", &out.display().to_string()])
+        .output()
+        .unwrap();
+    // all of it was read by then
+    assert!(stderr(&output).contains("cannot open"), "{}", stderr(&output));
+    writes_vehicle.join().unwrap();
+    writes_trajectory.join().unwrap();
+    assert_eq!(std::fs::read(out.join("vehicle.toml")).unwrap(), wanted_vehicle);
+    assert_eq!(std::fs::read(out.join("trajectory.toml")).unwrap(), wanted_trajectory);
 }

@@ -149,6 +149,27 @@ async fn an_ended_recording_holds_what_it_says() {
     std::fs::remove_file(&path).unwrap();
 }
 
+/// Whatever is under way when the link is closed: what it has counted is what the recording has, or has dropped.
+#[tokio::test]
+async fn a_closed_link_has_counted_what_is_recorded() {
+    for is_full in [false, true] {
+        let (_, tickets) = mpsc::channel();
+        let disk = Disk { bytes: Arc::default(), tickets, full: Arc::new(AtomicBool::new(is_full)) };
+        let recorder = Recorder::to_store(disk, 1 << 20).unwrap();
+        let ((mut reader, writer), (_other, sender)) = pair(&recorder, None).await;
+        for sequence in 0..250 {
+            sender.send(&v2(header(1, sequence), &heartbeat())).unwrap();
+        }
+        while !matches!(receive(&mut reader).await, Received::Frame(_)) {}
+        drop(reader);
+        let stats = writer.close().await;
+        let status = recorder.end().await.unwrap();
+        assert!(stats.received_frames > 0);
+        assert_eq!(status.frames + status.dropped, stats.received_frames);
+        assert_eq!((status.frames == 0, status.dropped == 0), (is_full, !is_full));
+    }
+}
+
 #[tokio::test]
 async fn a_slow_disk_costs_frames_but_never_time() {
     let (bytes, (ticket, tickets)) = (Arc::new(Mutex::new(Vec::new())), mpsc::channel());

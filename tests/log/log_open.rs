@@ -123,8 +123,17 @@ fn a_file_of_no_known_format_is_named_with_what_to_do() {
         let expected = "expected a telemetry log (.tlog), ";
         assert!(told.starts_with(expected) && told.contains(came) && told.contains(advice), "{told}");
     }
-    let told = log::open(env!("CARGO_MANIFEST_DIR"), &OpenOptions::default()).unwrap_err().to_string();
-    assert!(told.contains("got a folder"), "{told}");
+    let told = |path: &str| log::open(path, &OpenOptions::default()).unwrap_err().to_string();
+    for (path, came) in [
+        (env!("CARGO_MANIFEST_DIR"), "got a folder: give one of the logs in it"),
+        ("no/such/*.ulg", "got a pattern that no file matches: check the folder and the ending"),
+        #[cfg(unix)]
+        ("/dev/null", "got a pipe or a device, which can be read only once: save it as a file"),
+    ] {
+        let told = told(path);
+        assert!(told.starts_with("expected a telemetry log (.tlog), ") && told.contains(came), "{told}");
+    }
+    assert!(told("no/such.ulg").starts_with("cannot open no/such.ulg"), "{}", told("no/such.ulg"));
 }
 
 #[test]

@@ -48,7 +48,7 @@ fn a_drag_that_is_hardly_known_is_not_written_and_not_called_none() {
                      correlation = [[1.0, 0.0], [0.0, 1.0]]\n";
         let written = with_drag(&format!("{mass}{apart}{drag}"), [0.4, 0.4, 0.4], autopilot);
         let momentum = written.parameters.iter().find(|parameter| parameter.name == name).unwrap();
-        let relative = (momentum.std.unwrap() / momentum.value).powi(2) - 0.01 * 0.01;
+        let relative = (momentum.std.unwrap() / momentum.value).powi(2);
         assert!((relative - (0.22_f64 / 0.4).powi(2) / 2.0).abs() < 1e-9, "{relative}");
     }
     let identified = toml::from_str(mass).unwrap();
@@ -77,6 +77,32 @@ fn a_drag_whose_error_reaches_the_documented_limit_is_the_limit() {
     let far = of(0.02);
     assert!(!has(&far, "EKF2_MCOEF") && !has(&far, "EKF2_DRAG_CTRL"), "{:?}", far.parameters);
     assert!(told(&far, "EKF2_MCOEF would be 1.050 1/s, more than the 1"), "{:?}", far.left_out);
+}
+
+/// A bent thrust curve moves thrust, mass and drag by one factor, and the drag over the mass not at all: the limit does not stand in
+/// the place of a value that is certainly beyond it.
+#[test]
+fn the_scale_of_the_thrust_is_no_error_of_the_drag_over_the_mass() {
+    let of = |per_kg: f64| {
+        let (mass_kg, scale) = (vehicle().body.mass_kg, 0.27_f64);
+        let drag = per_kg * mass_kg;
+        let axis = format!("{{ value = {drag}, std = {} }}", scale.hypot(0.03) * drag);
+        let identified = format!(
+            "mass = {{ value = {mass_kg}, std = {} }}\n[effects.linear_drag]\ndx = {axis}\ndy = {axis}\n\
+             [effects.thrust_curve]\ncurvature = {{ value = -0.2, std = 0.01 }}\n",
+            scale * mass_kg
+        );
+        let effects = [effect("linear_drag", &[drag, drag, 0.4]), effect("thrust_curve", &[-0.2])];
+        let identified = toml::from_str(&identified).unwrap();
+        aircraft_parameters(&vehicle(), &effects, Some(&identified), (Autopilot::Px4, None)).unwrap()
+    };
+    let slight = of(0.4);
+    let momentum = slight.parameters.iter().find(|parameter| parameter.name == "EKF2_MCOEF").unwrap();
+    assert!((momentum.value - 0.4).abs() < 1e-12, "{momentum:?}");
+    assert!((momentum.std.unwrap() - 0.03 * 0.4).abs() < 1e-9, "{momentum:?}");
+    let strong = of(1.4);
+    assert!(!has(&strong, "EKF2_MCOEF"), "{:?}", strong.parameters);
+    assert!(told(&strong, "EKF2_MCOEF would be 1.400 1/s, more than the 1"), "{:?}", strong.left_out);
 }
 
 #[test]

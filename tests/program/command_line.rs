@@ -108,7 +108,7 @@ fn help_and_version_succeed() {
     }
     assert_eq!(help.status.code(), Some(0));
     assert!(
-        stdout(&help).contains("Exit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss, 4 done and something changed (compare, fleet report).")
+        stdout(&help).contains("Exit status: 0 done, 1 failure, 2 bad usage or input, 3 done with loss or ended by a signal, 4 done and something changed (compare, fleet report).")
     );
     let version = mavid(&["--version"]);
     assert_eq!(stdout(&version), format!("mavid {}\n", env!("CARGO_PKG_VERSION")));

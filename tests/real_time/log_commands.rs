@@ -337,6 +337,17 @@ pub fn parameters_of_a_file_are_set_read_back_and_undone() {
     let (status, _, said) = load(&[&foreign, "--yes"]);
     assert_eq!(status, Some(2));
     assert!(said.contains("does not have MOT_THST_EXPO: nothing is changed"), "{said}");
+    // what a simulator is made to be is no aircraft's, whether the vehicle has such parameters or not
+    let simulators = file("sih.params", "param set SIH_MASS 1.5\nparam set THR_MDL_FAC 0.7\n");
+    let (status, _, said) = load(&[&simulators, "--yes", "--known-only"]);
+    assert_eq!(status, Some(2), "{said}");
+    assert!(
+        said.contains("got those of a simulator (SIH_MASS)") && said.contains("nothing is changed"),
+        "{said}"
+    );
+    let (status, _, said) = load(&[&simulators, "--yes", "--simulator"]);
+    assert_eq!(status, Some(2), "{said}");
+    assert!(said.contains("does not have SIH_MASS: nothing is changed"), "{said}");
     let (status, known, _) = load(&[&foreign, "--yes", "--known-only"]);
     assert_eq!((status, &known["set"]), (Some(0), &true.into()));
     let (status, undone, said) = load(&["--undo", "--yes"]);

@@ -126,7 +126,7 @@ pub fn after_a_connection_that_failed_the_same_command_begins_again() {
         // the recording of the try before is there until this one begins
         until("no heartbeat", || said() > before && held(&tlog) > 0);
         running.terminate();
-        assert_eq!(running.ended("it does not end"), 1);
+        assert_eq!(running.ended("it does not end"), 3);
         assert!(held(&tlog) > 0);
     }
     // one frame of a vehicle, and nobody takes it away

@@ -7,7 +7,8 @@ use mavid::study::effects_file;
 
 use crate::cli::{DemoArgs, RunArgs, ShapeArgs};
 use crate::commands::live::{self, Work};
-use crate::commands::run::{CONCEALED, Recipe, is_read_once, kept, story};
+use crate::commands::read_once::is_read_once;
+use crate::commands::run::{CONCEALED, Recipe, kept, story};
 use crate::commands::sitl::DEFAULT_VEHICLE;
 use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, leftover, output};

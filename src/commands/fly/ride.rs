@@ -12,7 +12,7 @@ use mavid::units::rad_from_deg;
 use mavid::vehicle::{Limits, Vehicle};
 use mavid::wire::{ComponentId, SystemId};
 
-use super::vehicle::{copy, vehicle_of};
+use super::vehicle::{TRAJECTORY, copy, vehicle_of};
 use crate::cli::{CheckName, FlyArgs, OriginName};
 use crate::commands::{CommandError, leftover, network, output};
 
@@ -36,7 +36,7 @@ pub fn ride(args: &FlyArgs) -> Result<Ride, CommandError> {
         args.signing_key_file.as_deref().map(Signing::open).transpose().map_err(|error| input(&error))?;
     output::signing_warnings(signing.as_ref());
     leftover::make_way(&args.out, SystemId(args.station_id))?;
-    copy(&args.trajectory, &args.out.join("trajectory.toml"))?;
+    copy(&args.trajectory, &args.out.join(TRAJECTORY))?;
     let vehicle = flown.put(args)?;
     let parking = fly::Parking::default();
     Ok(Ride { sortie, vehicle, address, signing, dir: args.out.clone(), parking })

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use mavid::fly::view::{ARM_WORD, KeyCommand};
 use tokio::sync::mpsc::UnboundedSender;
 
-use crate::commands::output;
+use crate::commands::{output, typed_early};
 
 /// The keys of a flight told in lines.
 pub const KEYS: &str =
@@ -35,7 +35,7 @@ impl PageShown {
     pub fn set(&self) {
         let mut shown = self.locked();
         if !*shown {
-            input::throw_away();
+            typed_early::throw_away();
             *shown = true;
         }
     }
@@ -138,7 +138,6 @@ mod input {
     use super::PageShown;
     use rustix::event::{PollFd, PollFlags, Timespec, poll};
     use rustix::io::{read as read_some, retry_on_intr};
-    use rustix::termios::{QueueSelector, tcflush};
     use std::io;
 
     const NO_WAIT: Timespec = Timespec { tv_sec: 0, tv_nsec: 0 };
@@ -174,11 +173,6 @@ mod input {
             return Ok(Some((count, *shown)));
         }
     }
-
-    /// Takes from a terminal what was typed and is not read. Input that is no terminal has nothing of the kind.
-    pub(super) fn throw_away() {
-        let _ = tcflush(io::stdin(), QueueSelector::IFlush);
-    }
 }
 
 /// Standard input, read as it comes.
@@ -196,8 +190,6 @@ mod input {
         let count = io::stdin().lock().read(bytes)?;
         Ok(Some((count, *shown.locked())))
     }
-
-    pub(super) fn throw_away() {}
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ use mavid::wire::SystemId;
 
 use crate::cli::FlyArgs;
 use crate::commands::log::{link_of, parameters_of_vehicle};
+use crate::commands::read_once::{is_read_once, keep};
 use crate::commands::{CommandError, leftover, output};
 
 /// The vehicle, and its file until it lies in the folder of the flight.
@@ -31,6 +32,27 @@ pub(super) fn file_of(args: &FlyArgs) -> PathBuf {
 }
 
 const NAME: &str = "vehicle.toml";
+/// Name of the trajectory in the folder of a flight.
+pub(super) const TRAJECTORY: &str = "trajectory.toml";
+
+/// The arguments with the copies in the folder of the flight in the place of what can be read once only.
+///
+/// # Errors
+/// Nothing comes of it, or the folder holds a flight.
+pub(super) fn kept(args: &FlyArgs) -> Result<FlyArgs, CommandError> {
+    let mut kept = args.clone();
+    if let Some(file) = args.vehicle.as_ref().filter(|file| is_read_once(file)) {
+        leftover::make_way(&args.out, SystemId(args.station_id))?;
+        kept.vehicle = Some(args.out.join(NAME));
+        keep(file, &args.out.join(NAME))?;
+    }
+    if is_read_once(&args.trajectory) {
+        leftover::make_way(&args.out, SystemId(args.station_id))?;
+        kept.trajectory = args.out.join(TRAJECTORY);
+        keep(&args.trajectory, &kept.trajectory)?;
+    }
+    Ok(kept)
+}
 
 /// The vehicle of the file, or, with a mass in its place, one of the parameters that the vehicle has. For these it is spoken
 /// to; nothing on it is changed.

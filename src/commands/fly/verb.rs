@@ -10,7 +10,7 @@ use super::document::Document;
 use super::landed::Landed;
 use super::one_flight::{FlightRun, LOG, Manner, one_flight};
 use super::ride::{asks_for_the_word, is_drawn};
-use super::vehicle::file_of;
+use super::vehicle::{file_of, kept};
 use super::watch::View;
 use super::words::lines;
 use crate::cli::FlyArgs;
@@ -27,6 +27,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &FlyArgs) -> Result<Outcome
 }
 
 fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> Result<Outcome, CommandError> {
+    let args = &kept(args)?;
     let FlightRun { record, onboard, mut said, view } = one_flight((stderr, work), args, Manner::default())?;
     let landed = matches!(record.outcome.ending, Ending::Landed | Ending::Fell);
     let mut notes = Vec::new();
@@ -40,7 +41,11 @@ fn fly((json, stderr): (bool, &StandardError), args: &FlyArgs, work: &Work) -> R
             landed_view = Landed::open(stderr, args.out.join(LOG), (text::path(&args.out), lines(&record)));
         }
         let watches: &dyn Progress = landed_view.as_ref().map_or(&Silent, |view| view);
-        Analysis::of(flown, &file_of(args), record.system, (watches, &mut |note| notes.push(note)))?
+        work.analyses();
+        let made =
+            Analysis::of(flown, &file_of(args), record.system, (watches, &mut |note| notes.push(note)));
+        work.ends_itself();
+        made?
     };
     if let (Some(shown), Some(analysis)) = (landed_view, &analysis) {
         view = shown.answered(analysis.answer(), asks_for_the_word(args));
@@ -85,7 +90,12 @@ pub fn outcome(
     let outcome = &record.outcome;
     if outcome.ending == Ending::NotFlown {
         let why = outcome.cause.as_ref().map_or("no reason given".to_owned(), ToString::to_string);
-        return Err(CommandError::Failure(format!("not flown: {why}")));
+        let why = format!("not flown: {why}");
+        return Err(if outcome.is_interrupted() {
+            CommandError::Ended(why)
+        } else {
+            CommandError::Failure(why)
+        });
     }
     let whole = outcome.is_whole()
         && outcome.losses.is_empty()

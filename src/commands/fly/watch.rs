@@ -133,18 +133,13 @@ fn draw(
         return tell((true, how.has_page), pictures, pressed);
     };
     let mut keys = Keys::default();
+    // what was typed before there was a view is for nothing in it
+    take_keys(pressed, Keys::press_early);
     loop {
-        while event::poll(Duration::ZERO).unwrap_or(false) {
-            if let Ok(event::Event::Key(key)) = event::read()
-                && let Some(command) = keys.press(key)
-            {
-                // a flight that is over takes no keys
-                let _ = pressed.send(command);
-            }
-        }
+        take_keys(pressed, |key| keys.press(key));
         match pictures.recv_timeout(LOOK) {
             Ok(mut model) => {
-                keys.ask(model.awaits_word);
+                let is_asked_now = keys.ask(model.awaits_word);
                 if let (true, Some(page), Ok((columns, rows))) =
                     (model.awaits_word, &model.page, terminal::size())
                 {
@@ -158,9 +153,27 @@ fn draw(
                     drop((screen, away));
                     return tell((true, how.has_page), pictures, pressed);
                 }
+                if is_asked_now {
+                    take_keys(pressed, Keys::press_early);
+                }
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return,
+        }
+    }
+}
+
+/// Takes the keys that were pressed until now.
+fn take_keys(
+    pressed: &UnboundedSender<KeyCommand>,
+    mut press: impl FnMut(event::KeyEvent) -> Option<KeyCommand>,
+) {
+    while event::poll(Duration::ZERO).unwrap_or(false) {
+        if let Ok(event::Event::Key(key)) = event::read()
+            && let Some(command) = press(key)
+        {
+            // a flight that is over takes no keys
+            let _ = pressed.send(command);
         }
     }
 }

@@ -13,7 +13,7 @@ use super::link::open;
 use super::restart::restart;
 use super::{hint, state};
 use crate::cli::{LogPrepareArgs, VehicleLinkArgs};
-use crate::commands::{CommandError, Outcome, output};
+use crate::commands::{CommandError, Outcome, output, typed_early};
 
 /// The document.
 #[derive(Debug, Default, Serialize)]
@@ -241,6 +241,7 @@ pub fn agreed(word: &str, what: &str) -> Result<bool, CommandError> {
     if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
         return Ok(false);
     }
+    typed_early::throw_away();
     output::message(&format!("type {word} or y and return to {what}, or return alone to leave it"));
     let mut line = String::new();
     let read = io::stdin().lock().read_line(&mut line);

@@ -6,7 +6,7 @@ use std::io::{self, BufRead};
 use mavid::text;
 
 use crate::commands::fly::is_attended;
-use crate::commands::{CommandError, output};
+use crate::commands::{CommandError, output, typed_early};
 
 /// So often a wrong answer is asked for again.
 const TRIES: u32 = 3;
@@ -82,8 +82,9 @@ fn yes_or_no(answer: &str) -> Result<bool, String> {
     }
 }
 
-/// One line of standard input, trimmed.
+/// One line of standard input, trimmed: at a terminal one that was typed after the question was asked.
 fn answer(question: &str) -> Result<String, CommandError> {
+    typed_early::throw_away();
     output::message(question);
     let mut line = String::new();
     let read = io::stdin().lock().read_line(&mut line);

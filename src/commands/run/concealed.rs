@@ -1,6 +1,5 @@
 //! What the embedded vehicle conceals, and how what was found compares with it.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use mavid::config::read_effect_tables;
@@ -12,15 +11,11 @@ use mavid::vehicle::Vehicle;
 use serde::Serialize;
 use toml::{Table, Value};
 
+use crate::commands::read_once::is_read_once;
 use crate::commands::{CommandError, output};
 
 /// The file of what is concealed, in the folder of a run; neither the flight nor the explanation reads it.
 pub const CONCEALED: &str = "concealed.toml";
-
-/// What comes through a pipe: it can be read once.
-pub fn is_read_once(file: &Path) -> bool {
-    fs::metadata(file).is_ok_and(|of| !of.is_file() && !of.is_dir())
-}
 
 /// The file itself, or its content kept in the folder where it can be read once only.
 pub fn kept(file: &Path, folder: &Path) -> Result<PathBuf, CommandError> {
@@ -106,6 +101,8 @@ fn rotor(row: &Compared, value: f64, vehicle: &Vehicle) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[cfg(unix)]
+    use std::fs;
 
     #[test]
     fn what_is_a_file_stays_where_it_is() {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use mavid::fly::{Ending, Record};
+use mavid::fly::{Ending, Outcome, Record};
 use mavid::text;
 
 use super::context::Context;
@@ -72,18 +72,32 @@ pub fn fly(context: &Context<'_>, target: &Target, step: &Step) -> Result<Flight
     bar.iter().for_each(Progress::end);
     let FlightRun { record, onboard, .. } = flown?;
     context.work.waits();
-    let why = || record.outcome.cause.as_ref().map_or_else(String::new, |cause| format!(": {cause}"));
-    match &record.outcome.ending {
-        Ending::Landed | Ending::Fell => {
+    match unfinished(&record.outcome, (target.is_twin, &args.out), args.arm) {
+        Some(why) => Err(why),
+        None => {
             let recorded = Recorded { radio: args.out.join(mavid::fly::TLOG), onboard };
             Ok(Flight { record, recorded })
         }
+    }
+}
+
+/// Why there is no flight to explain; `None` where it came down. `arms` as it was said.
+fn unfinished(outcome: &Outcome, (is_twin, out): (bool, &Path), arms: bool) -> Option<CommandError> {
+    let why = || outcome.cause.as_ref().map_or_else(String::new, |cause| format!(": {cause}"));
+    match &outcome.ending {
+        Ending::Landed | Ending::Fell => None,
+        Ending::NotFlown if outcome.is_interrupted() => {
+            Some(CommandError::Ended(format!("not flown{}; run the same command again to continue", why())))
+        }
         Ending::NotFlown => {
-            let arm = if args.arm { "" } else { "; everything was checked: --arm beside --yes flies" };
-            Err(CommandError::Failure(format!("not flown{}{arm}", why())))
+            let arm = if arms { "" } else { "; everything was checked: --arm beside --yes flies" };
+            Some(CommandError::Failure(format!("not flown{}{arm}", why())))
         }
         Ending::InTheAir(mode) => {
-            Err(CommandError::Failure(in_the_air((target.is_twin, &args.out), mode, &why())))
+            let said = in_the_air((is_twin, out), mode, &why());
+            // a twin that nobody ended failed; a vehicle has its pilot or its own hold
+            let has_failed = is_twin && !outcome.is_interrupted();
+            Some(if has_failed { CommandError::Failure(said) } else { CommandError::Ended(said) })
         }
     }
 }
@@ -102,6 +116,32 @@ fn in_the_air((is_twin, out): (bool, &Path), mode: impl std::fmt::Display, why: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mavid::fly::{Cause, FlightStatistics};
+
+    /// The exit status of a run whose flight ended so, and what is said; none of one that is explained.
+    fn status(cause: Option<Cause>, ending: Ending, is_twin: bool) -> Option<(u8, String)> {
+        let outcome = Outcome { cause, ending, flown: FlightStatistics::default(), losses: Vec::new() };
+        let why = unfinished(&outcome, (is_twin, Path::new("run/flight1")), true)?;
+        Some((why.status(), why.to_string()))
+    }
+
+    #[test]
+    fn a_run_that_was_ended_has_the_exit_status_of_a_flight_that_was() {
+        let signal = || Some(Cause::Signal("Ctrl-C".to_owned()));
+        let (of_ground, said) = status(signal(), Ending::NotFlown, false).unwrap();
+        assert_eq!(
+            (of_ground, said.as_str()),
+            (3, "not flown: ended by Ctrl-C; run the same command again to continue")
+        );
+        for cause in [signal(), Some(Cause::Override("the pilot".to_owned()))] {
+            assert_eq!(status(cause, Ending::InTheAir("hold".to_owned()), false).unwrap().0, 3);
+        }
+        assert_eq!(status(signal(), Ending::InTheAir("hold".to_owned()), true).unwrap().0, 3);
+        let refused = Some(Cause::Refused("the battery is low".to_owned()));
+        assert_eq!(status(refused, Ending::NotFlown, false).unwrap().0, 1);
+        assert_eq!(status(Some(Cause::Reboot), Ending::InTheAir("hold".to_owned()), true).unwrap().0, 1);
+        assert_eq!(status(signal(), Ending::Landed, false), None);
+    }
 
     #[test]
     fn a_recording_is_named_once() {

@@ -41,6 +41,6 @@ mod target;
 mod vehicle;
 mod verb;
 
-pub use concealed::{CONCEALED, is_read_once, kept};
+pub use concealed::{CONCEALED, kept};
 pub use context::Recipe;
 pub use verb::{run, story};

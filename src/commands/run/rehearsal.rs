@@ -47,7 +47,7 @@ pub fn rehearse(context: &Context<'_>, vehicle: &Vehicle, trajectory: &Path) -> 
     twin.embedded.into_iter().for_each(Embedded::stop);
     let flight = flown.map_err(|error| {
         let kept = format!("its recording is in {}", text::path(&out));
-        CommandError::Failure(format!("the rehearsal on the embedded twin failed: {error}; {kept}"))
+        failed(error, &kept)
     })?;
     let flown = &flight.record.outcome.flown;
     output::message(&format!(
@@ -63,9 +63,10 @@ pub fn rehearse(context: &Context<'_>, vehicle: &Vehicle, trajectory: &Path) -> 
     output::message(&reserve(context, vehicle, trajectory, flown.tracking_max_m)?);
     if !flight.record.outcome.is_whole() {
         let cause = flight.record.outcome.cause.as_ref().map_or_else(String::new, ToString::to_string);
-        return Err(CommandError::Failure(format!(
-            "the rehearsal on the embedded twin was ended early: {cause}; the vehicle is not flown"
-        )));
+        let why =
+            format!("the rehearsal on the embedded twin was ended early: {cause}; the vehicle is not flown");
+        let is_interrupted = flight.record.outcome.is_interrupted();
+        return Err(if is_interrupted { CommandError::Ended(why) } else { CommandError::Failure(why) });
     }
     let study = explained::alone(context, &flight.recorded.radio, &out)?;
     let would = format!(
@@ -74,6 +75,16 @@ pub fn rehearse(context: &Context<'_>, vehicle: &Vehicle, trajectory: &Path) -> 
     );
     text::wrapped(&would, columns()).iter().for_each(|line| output::message(line));
     Ok(())
+}
+
+/// Why there was no rehearsal: somebody ended it, or the twin cannot fly.
+fn failed(error: CommandError, kept: &str) -> CommandError {
+    match error {
+        CommandError::Ended(why) => {
+            CommandError::Ended(format!("the rehearsal on the embedded twin: {why}; {kept}"))
+        }
+        error => CommandError::Failure(format!("the rehearsal on the embedded twin failed: {error}; {kept}")),
+    }
 }
 
 /// What is left of the room when the vehicle was so far off its trajectory: to the next wall, and to ceiling and floor, m.

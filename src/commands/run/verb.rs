@@ -11,7 +11,7 @@ use mavid::study::{ExplainStudy, check_given};
 use mavid::vehicle::Vehicle;
 
 use super::ask::Ask;
-use super::concealed::{acting, compare, is_read_once, kept, table};
+use super::concealed::{acting, compare, kept, table};
 use super::context::{Context, Recipe};
 use super::embedded::Embedded;
 use super::explained::{Explained, answer, explained};
@@ -24,12 +24,15 @@ use super::{finish, flying, planned, rehearsal, room, taken_up, vehicle};
 use crate::cli::RunArgs;
 use crate::commands::fly::{TRACKING_MOST_M, within};
 use crate::commands::live::{self, Work};
+use crate::commands::read_once::{is_read_once, keep};
 use crate::commands::sitl::DEFAULT_VEHICLE;
 use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, explain, fly, output};
 
 /// The folder where none is given.
 const FOLDER: &str = "mavid-run";
+/// The file of `--vehicle` in the folder of a run, where it came through a pipe.
+const GIVEN: &str = "given_vehicle.toml";
 
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &RunArgs) -> Result<Outcome, CommandError> {
@@ -47,8 +50,7 @@ pub fn story(
     work: &Work,
 ) -> Result<Outcome, CommandError> {
     let since = Instant::now();
-    let kept = with_kept_effects(args)?;
-    let args = kept.as_ref().unwrap_or(args);
+    let args = &with_kept(args)?;
     checked(args)?;
     let ask = Ask::new(args.yes)?;
     let folder = folder_of(args)?;
@@ -86,11 +88,18 @@ fn folder_of(args: &RunArgs) -> Result<Folder, CommandError> {
     Folder::at(args.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER)))
 }
 
-/// The arguments with the effects in the folder; none where their file can be read more than once.
-fn with_kept_effects(args: &RunArgs) -> Result<Option<RunArgs>, CommandError> {
-    let Some(file) = args.effects.as_ref().filter(|file| is_read_once(file)) else { return Ok(None) };
-    let effects = kept(file, folder_of(args)?.path())?;
-    Ok(Some(RunArgs { effects: Some(effects), ..args.clone() }))
+/// The arguments with files of the folder in the place of what can be read once only.
+fn with_kept(args: &RunArgs) -> Result<RunArgs, CommandError> {
+    let mut kept_args = args.clone();
+    if let Some(file) = args.effects.as_ref().filter(|file| is_read_once(file)) {
+        kept_args.effects = Some(kept(file, folder_of(args)?.path())?);
+    }
+    if let Some(file) = args.vehicle.as_ref().filter(|file| is_read_once(file)) {
+        let given = folder_of(args)?.of(GIVEN);
+        keep(file, &given)?;
+        kept_args.vehicle = Some(given);
+    }
+    Ok(kept_args)
 }
 
 /// What can be told before anybody is spoken to.

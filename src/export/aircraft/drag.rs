@@ -5,6 +5,8 @@
 //! EK3_DRAG_BCOEF_X/Y (kg/m^2), and a coefficient of 0 switches its part off. The speed s is the whole airspeed in PX4, which
 //! takes between both axes an elliptic mean of B, and `|v_i|` in ArduPilot. With the model's linear drag d and quadratic drag c,
 //! `M = d / m` and `B = rho_0 m / (2 c)` in air of the density rho_0.
+//!
+//! A flight shows force per mass. The scale of the thrust is in the errors of d, of c and of m, and it is not in those of their ratios.
 
 use super::determined::Determined;
 use super::parameter::{AircraftParameter, within};
@@ -101,7 +103,21 @@ fn hardly_known(drag: &str, value: f64, std: f64, unit: &str) -> Coefficient {
     Coefficient::Unsure(format!("{drag} is known to {value} +- {std} {unit} only; fly again"))
 }
 
-/// Drag along x and y of the body, N/(m/s), each with its standard error.
+/// Standard error of a drag over the mass, relative to it, by the scale of the thrust: zero where both do not hold it. A flight tells
+/// `d / m`, and a bent thrust curve moves the mass and with it d. It is then nearly all of the error of the mass.
+fn scale_std(determined: &Determined<'_>) -> f64 {
+    let mass = determined.std("thrust_curve", "curvature").and(determined.own("mass"));
+    mass.map_or(0.0, |(value, std)| std / value)
+}
+
+/// Standard error of a drag without what it has in common with that of the mass (`scale_std`, relative); all of it where it is not
+/// larger than that, because it then does not hold it.
+fn over_mass(drag: f64, std: f64, scale_std: f64) -> f64 {
+    let rest = std * std - (scale_std * drag).powi(2);
+    if rest > 0.0 { rest.sqrt() } else { std }
+}
+
+/// Drag along x and y of the body, N/(m/s), each with its standard error at one mass.
 struct Across {
     x: (f64, f64),
     y: (f64, f64),
@@ -110,6 +126,15 @@ struct Across {
 }
 
 impl Across {
+    /// From drags along x and y with their standard errors, of which `correlation` (-1 to 1) is; `scale_std` is that of the mass which
+    /// both hold.
+    fn at_one_mass([x, y]: [(f64, f64); 2], correlation: f64, scale_std: f64) -> Self {
+        let free = |(drag, std): (f64, f64)| (drag, over_mass(drag, std, scale_std));
+        let at_one_mass = Self { x: free(x), y: free(y), correlation };
+        let together = correlation * x.1 * y.1 / (at_one_mass.x.1 * at_one_mass.y.1);
+        Self { correlation: together.clamp(-1.0, 1.0), ..at_one_mass }
+    }
+
     /// Whether one coefficient cannot stand for both axes.
     fn differs(&self) -> bool {
         (self.x.0 - self.y.0).abs() > TOLD * self.x.1.hypot(self.y.1)
@@ -135,9 +160,12 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
     let (Some(std_x), Some(std_y)) = (std("dx"), std("dy")) else { return without_error("the drag") };
     // without a word of it, as if the errors along x and y were all the same
     let correlation = determined.correlation("linear_drag", ["dx", "dy"]).unwrap_or(1.0);
-    let across = Across { x: (dx, std_x), y: (dy, std_y), correlation };
+    let scale_std = scale_std(determined);
+    let across = Across::at_one_mass([(dx, std_x), (dy, std_y)], correlation, scale_std);
     let (mean, mean_std) = across.mean();
-    let (mass_kg, mass_std) = mass(source, determined);
+    // as the report has it
+    let of_mean = with_error(mean, mean_std.hypot(scale_std * mean));
+    let mass_kg = source.vehicle.body.mass_kg;
     let (air_ratio, air) = air(source);
     let value = mean / mass_kg / air_ratio.sqrt();
     if mean < HELPS * mean_std {
@@ -149,11 +177,11 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
             significant(value, 2)
         ));
     }
-    let [x, y] = [across.x, across.y].map(|(drag, std)| with_error(drag, std));
+    let [x, y] = [(dx, std_x), (dy, std_y)].map(|(drag, std)| with_error(drag, std));
     if across.differs() {
         source.note(format!("{name} is the same along x and y: from the mean of {x} and {y} N per m/s"));
     }
-    let std = value * (mean_std / mean).hypot(mass_std);
+    let std = value * mean_std / mean;
     let Some((held, limited)) = within((value, std), (0.0, MOST_MOMENTUM)) else {
         source.note(format!(
             "{name} would be {value:.3} 1/s, more than the {MOST_MOMENTUM} that the autopilot documents"
@@ -168,9 +196,8 @@ fn momentum(source: &mut Source<'_>, determined: &Determined<'_>, name: &str) ->
         ""
     };
     let why = format!(
-        "{limited}drag at hover of {} N per m/s ({x} along x and {y} along y of the body{z}) over the mass of {mass_kg:.4} kg, {air}; wind was \
-         estimated with it where there was one",
-        with_error(mean, mean_std)
+        "{limited}drag at hover of {of_mean} N per m/s ({x} along x and {y} along y of the body{z}) over the mass of {mass_kg:.4} kg, {air}; \
+         wind was estimated with it where there was one"
     );
     Coefficient::Found(AircraftParameter::number(name, (held, std), "1/s", why))
 }
@@ -187,13 +214,14 @@ fn bluff(
         return Coefficient::Absent;
     }
     let said = format!("the drag with the square of the airspeed along {}", ["x", "y"][along]);
-    let (mass_kg, mass_std) = mass(source, determined);
+    let mass_kg = source.vehicle.body.mass_kg;
     let drag = source.take("quadratic_drag", axis);
     let Some(std) = determined.std("quadratic_drag", axis) else { return without_error(&said) };
     let (air_ratio, air) = air(source);
     let value = 0.5 * AIR_DENSITY_KG_M3 * air_ratio * mass_kg / drag;
-    if drag < HELPS * std {
-        return hardly_known(&said, drag, std, "N/(m/s)^2");
+    let drag_std = over_mass(drag, std, scale_std(determined));
+    if drag < HELPS * drag_std {
+        return hardly_known(&said, drag, drag_std, "N/(m/s)^2");
     }
     if value > names.most_ballistic {
         return Coefficient::Unsure(format!(
@@ -209,12 +237,7 @@ fn bluff(
     }
     let why =
         format!("drag of {} N per (m/s)^2 at the mass of {mass_kg:.4} kg, {air}", with_error(drag, std));
-    Coefficient::Found(AircraftParameter::number(
-        name,
-        (value, value * (std / drag).hypot(mass_std)),
-        "kg/m^2",
-        why,
-    ))
+    Coefficient::Found(AircraftParameter::number(name, (value, value * drag_std / drag), "kg/m^2", why))
 }
 
 /// Density of the air of the flight over that at sea level, and what is said of it.
@@ -240,12 +263,6 @@ fn tell_form(source: &mut Source<'_>, table: &Table) {
     }
 }
 
-/// kg, and its relative standard error; none where it was given.
-fn mass(source: &Source<'_>, determined: &Determined<'_>) -> (f64, f64) {
-    let mass_kg = source.vehicle.body.mass_kg;
-    (mass_kg, determined.own("mass").map_or(0.0, |(value, std)| std / value))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -262,5 +279,18 @@ mod tests {
         let apart = Across { x: (0.3, 0.01), y: (0.9, 0.03), correlation: 1.0 };
         assert!(apart.differs() && (apart.mean().0 - 0.6).abs() < 1e-12);
         assert!((apart.mean().1 - 0.02).abs() < 1e-12);
+    }
+
+    /// The scale of the thrust moves drag and mass alike.
+    #[test]
+    fn the_error_of_the_thrusts_scale_is_none_of_a_drag_over_the_mass() {
+        // 27 % by the scale and 3 % along each axis, which are independent
+        let (scale, own) = (0.27_f64, 0.03_f64);
+        let whole = scale.hypot(own);
+        let across = Across::at_one_mass([(0.5, 0.5 * whole), (0.5, 0.5 * whole)], 0.0, scale);
+        assert!((across.x.1 - 0.5 * own).abs() < 1e-12 && (across.y.1 - 0.5 * own).abs() < 1e-12);
+        assert!((across.mean().1 - 0.5 * own / 2.0_f64.sqrt()).abs() < 1e-12);
+        // a drag that is known better than the scale does not hold its error, and nothing is taken from a mass that was given
+        assert_eq!([over_mass(0.5, 0.01, 0.27), over_mass(0.5, 0.01, 0.0)], [0.01, 0.01]);
     }
 }

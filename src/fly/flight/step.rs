@@ -25,7 +25,8 @@ impl Flight {
         match event {
             Event::Frame(frame) => self.hear(now, frame),
             Event::Tick => {}
-            Event::Key(Key::Arm) => self.word_given = true,
+            // one that nobody waited for was no answer
+            Event::Key(Key::Arm) => self.word_given |= self.awaits_word(),
             Event::Key(key) => self.key(now, key),
             Event::Cleared(verdict) => {
                 self.clearance = Some(verdict.map(|lift| {

@@ -140,8 +140,9 @@ async fn fly(ride: Ride, console: Console, subscription: Subscription) -> Result
     let stream = stream.finish();
     // the link may be gone by now
     let _ = tokio::time::timeout(FLUSH, writer.flush()).await;
-    let link = writer.stats();
-    let _ = tokio::time::timeout(FLUSH, writer.close()).await;
+    let so_far = writer.stats();
+    // what the recording, ended after it, has
+    let link = tokio::time::timeout(FLUSH, writer.close()).await.unwrap_or(so_far);
     let recorder = recorder.end().await?;
     let stream = stream.on_link(&link);
     let StreamFigures { sent, late, overtaken, refused } = stream;

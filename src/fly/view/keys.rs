@@ -60,11 +60,14 @@ pub struct Keys {
 const LEAF: usize = 10;
 
 impl Keys {
-    /// Sets whether the word for arming is awaited.
-    pub fn ask(&mut self, asks: bool) {
+    /// Sets whether the word for arming is awaited. Whether it is from now on: what was typed before the question is on the screen is
+    /// for [`Self::press_early`].
+    pub fn ask(&mut self, asks: bool) -> bool {
+        let is_new = asks && !self.asks;
         if asks != self.asks {
             (self.asks, self.word, self.refused) = (asks, None, None);
         }
+        is_new
     }
 
     /// Sets the number of lines of the page before the flight, and the number that is visible at once.
@@ -84,13 +87,20 @@ impl Keys {
         self.read |= self.from == self.last;
     }
 
+    /// Takes one key event that came before the question was on the screen: it answers nothing, and Ctrl-C ends the flight all the same.
+    #[must_use]
+    pub fn press_early(event: KeyEvent) -> Option<KeyCommand> {
+        let ends = event.modifiers.contains(KeyModifiers::CONTROL) && event.code == KeyCode::Char('c');
+        (ends && event.kind != KeyEventKind::Release).then_some(KeyCommand::Quit)
+    }
+
     /// Takes one key event.
     pub fn press(&mut self, event: KeyEvent) -> Option<KeyCommand> {
         if event.kind == KeyEventKind::Release {
             return None;
         }
         if event.modifiers.contains(KeyModifiers::CONTROL) {
-            return matches!(event.code, KeyCode::Char('c')).then_some(KeyCommand::Quit);
+            return Self::press_early(event);
         }
         if self.asks && self.read && event.code == KeyCode::Enter {
             return self.enter_word();
@@ -187,7 +197,7 @@ mod tests {
     fn only_the_whole_word_arms_and_only_where_it_is_asked_for() {
         let mut keys = Keys::default();
         assert_eq!(press(&mut keys, "arm\n"), [KeyCommand::Return]);
-        keys.ask(true);
+        assert!(keys.ask(true));
         keys.page(50, 23);
         assert_eq!(press(&mut keys, "arm\n"), [], "most of the page was not seen");
         assert_eq!((press(&mut keys, "  "), keys.from()), (vec![], 20));
@@ -199,7 +209,7 @@ mod tests {
         }
         assert_eq!((press(&mut keys, "a"), keys.refused()), (vec![], None));
         assert_eq!(press(&mut keys, "rm\n"), [KeyCommand::Arm]);
-        keys.ask(false);
+        assert!(!keys.ask(false));
         assert_eq!(press(&mut keys, "h"), [KeyCommand::Hold]);
         assert_eq!(KeyCommand::of_line(" arm\n"), Some(KeyCommand::Arm));
     }
@@ -210,12 +220,27 @@ mod tests {
         press(&mut keys, ":k");
         let event = KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL);
         assert_eq!(keys.press(event), Some(KeyCommand::Quit));
+        assert_eq!(Keys::press_early(event), Some(KeyCommand::Quit));
+    }
+
+    #[test]
+    fn what_is_typed_before_the_question_is_on_the_screen_answers_nothing() {
+        let mut keys = Keys::default();
+        assert!(keys.ask(true) && !keys.ask(true));
+        keys.page(20, 23);
+        let early = |letter| Keys::press_early(KeyEvent::from(letter));
+        let word = ['a', 'r', 'm', 'h', 'l'].map(KeyCode::Char).into_iter().chain([KeyCode::Enter]);
+        assert!(word.into_iter().all(|letter| early(letter).is_none()));
+        assert_eq!((press(&mut keys, "m\n"), keys.refused()), (vec![], Some("m")), "nothing of it is left");
+        assert_eq!(press(&mut keys, "arm\n"), [KeyCommand::Arm]);
+        // asked anew
+        assert!(!keys.ask(false) && keys.ask(true));
     }
 
     #[test]
     fn a_page_that_is_not_seen_whole_takes_no_letters_and_is_turned_all_the_same() {
         let mut keys = Keys::default();
-        keys.ask(true);
+        assert!(keys.ask(true));
         keys.page(63, 23);
         assert!(press(&mut keys, "xarm\n").is_empty() && keys.typed().is_none());
         assert!(press(&mut keys, "    ").is_empty());
