@@ -43,18 +43,15 @@ pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings
     let mut base = calm.base.clone();
     base.effects = started(&best, &base.size);
     let fitted = fit(&traces, base, Newton::Free).ok().filter(|windy| windy.misfit() < calm.misfit())?;
-    let shown = Shown::by(&fitted);
-    tracing::debug!(?shown, "wind of a flight, by a drag alone");
-    let wind_m_s = shown.wind_m_s()?;
-    if wind_m_s.norm() > FAR * spread_m_s(&traces[0]) {
-        return told_alone(signals, vehicle, settings);
-    }
-    // the autopilot's velocity wanders by as much as the wind may be wrong
+    let by_motion = Shown::by(&fitted);
+    // the autopilot's velocity wanders: a drag comes out too small by that, and the wind too large
     let mut found = Search::of(fitted, finding_of(&calm));
-    let by_path = reconstruct(std::slice::from_ref(signals), &traces, (Forms::Chosen, &mut found), None);
-    let by_path = by_path.unwrap_or(false).then(|| Shown::by(&found.after));
-    tracing::debug!(?by_path, "wind of a flight, by its path");
-    Some(by_path.and_then(|shown| shown.wind_m_s()).unwrap_or(wind_m_s))
+    let is_path = reconstruct(std::slice::from_ref(signals), &traces, (Forms::Chosen, &mut found), None);
+    let by_path = is_path.unwrap_or(false).then(|| Shown::by(&found.after));
+    tracing::debug!(?by_motion, ?by_path, "wind of a flight");
+    let wind_m_s = by_path.unwrap_or(by_motion).wind_m_s()?;
+    let is_near = wind_m_s.norm() < FAR * spread_m_s(&traces[0]);
+    if is_near { Some(wind_m_s) } else { told_alone(signals, vehicle, settings) }
 }
 
 /// A wind and the drag that it acts through, as a fit shows them.

@@ -29,11 +29,11 @@ impl Idle {
 }
 
 impl ExplainStudy {
-    /// An effect that the flights explained would name and that gets no name, with its name in brief and why: it does nothing for the motion of
-    /// these flights, or that of others is predicted better without it.
-    pub(super) fn nameless(&self) -> Option<(&'static str, String, Note)> {
-        let idle = || self.idle().map(|of| (of.id, of.name.clone(), of.note()));
-        idle().or_else(|| self.worthless().map(|of| (of.id, of.name.clone(), of.note())))
+    /// An effect that the flights explained would name and that gets no name, and why: it does nothing for the motion of these flights, or that
+    /// of others is predicted better without it. Its name in brief goes with it where other flights decide.
+    pub(super) fn nameless(&self) -> Option<(&'static str, Option<String>, Note)> {
+        let idle = self.idle().map(|of| (of.id, None, of.note()));
+        idle.or_else(|| self.worthless().map(|of| (of.id, Some(of.name.clone()), of.note())))
     }
 
     /// A named load on a cord, which acts by a force alone, where the model with it predicts neither position nor velocity of the very flights

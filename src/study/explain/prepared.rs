@@ -155,7 +155,7 @@ impl Task<'_> {
                     more
                 }
                 (None, Some((id, name, note))) => {
-                    withdrawn.push((id, name));
+                    withdrawn.extend(name.map(|name| (id, name)));
                     (id, note)
                 }
                 (None, None) => {
