@@ -37,7 +37,9 @@ fn share_about_z(flights: &[Signals], vehicle: &Vehicle) -> Option<(f64, f64)> {
     let is_determined =
         |index: usize| matches!(finding(&estimated, &nominal, index), Finding::Determined { .. });
     let across_is_determined = is_determined(1) && is_determined(4);
-    weak.rows.iter_mut().for_each(WeakRows::free_gyroscopic_torque);
+    if !weak.frees_gyroscopic {
+        weak.rows.iter_mut().for_each(WeakRows::free_gyroscopic_torque);
+    }
     let WeakEstimate { theta, covariance, .. } = solve_weak(&weak.rows, &nominal.theta)?;
     let (across, about) = (theta[1] + theta[4], theta[6]);
     let relative_about = covariance[(6, 6)].max(0.0).sqrt() / about;

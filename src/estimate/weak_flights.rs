@@ -5,11 +5,11 @@ use super::plausible::{FlightApart, flights_apart};
 use super::result::Estimated;
 use super::theta::Theta;
 use super::weak::{Latency, WeakEstimate, latency, solve_weak};
-use super::window::by_wider_window;
+use super::window::{Wider, by_wider_window};
 use crate::physics::ActuationLatency;
 use crate::regression::{WeakMotion, WeakRows, weak_rows};
 use crate::signals::{Signals, WeakKernel};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Guessed, Vehicle};
 
 /// The flights as rows of the weak form.
 pub(super) struct WeakFlights {
@@ -19,6 +19,8 @@ pub(super) struct WeakFlights {
     pub(super) rows: Vec<WeakRows>,
     pub(super) accelerometer_bias: Vec<Option<f64>>,
     gravity_m_s2: f64,
+    /// the moments that the gyroscopic torques show are not on the scale of a guess
+    pub(super) frees_gyroscopic: bool,
 }
 
 impl WeakFlights {
@@ -31,7 +33,16 @@ impl WeakFlights {
             signals.iter().zip(&kernels).map(|(s, k)| WeakMotion::measured(s, k, gravity_m_s2)).collect();
         let accelerometer_bias =
             motions.iter().map(|m| m.vertical.as_ref().and_then(|v| v.accelerometer_bias)).collect();
-        let mut all = Self { signals, kernels, motions, rows: Vec::new(), accelerometer_bias, gravity_m_s2 };
+        let guesses = vehicle.guessed(Guessed::TorqueRatio) > 0.0 || vehicle.guessed(Guessed::Arms) > 0.0;
+        let mut all = Self {
+            signals,
+            kernels,
+            motions,
+            rows: Vec::new(),
+            accelerometer_bias,
+            gravity_m_s2,
+            frees_gyroscopic: guesses,
+        };
         all.refresh();
         all
     }
@@ -44,6 +55,9 @@ impl WeakFlights {
             .zip(&self.kernels)
             .map(|((signals, motion), kernel)| weak_rows(signals, motion, kernel))
             .collect();
+        if self.frees_gyroscopic {
+            self.rows.iter_mut().for_each(WeakRows::free_gyroscopic_torque);
+        }
     }
 
     /// Estimates the latency with the original commands and corrects the commands for it, so that every method uses the
@@ -82,8 +96,8 @@ impl WeakFlights {
         // the wider window costs as much again
         let assessed = |(signals, found): (&Signals, &Option<WeakEstimate>)| {
             let found = found.as_ref()?;
-            let window = (half_width_s, self.gravity_m_s2);
-            let wider = by_wider_window(std::slice::from_ref(signals), (found, nominal), window);
+            let wider =
+                by_wider_window(std::slice::from_ref(signals), (found, nominal), self.wider(half_width_s));
             Some(Estimated::of(found).with_wider_window(wider))
         };
         flights_apart(&self.signals.iter().zip(&found).map(assessed).collect::<Vec<_>>())
@@ -96,7 +110,11 @@ impl WeakFlights {
         nominal: &Theta,
         half_width_s: f64,
     ) -> [f64; 3] {
-        let window = (half_width_s, self.gravity_m_s2);
-        by_wider_window(&self.signals, (narrow, nominal), window)
+        by_wider_window(&self.signals, (narrow, nominal), self.wider(half_width_s))
+    }
+
+    fn wider(&self, half_width_s: f64) -> Wider {
+        let Self { gravity_m_s2, frees_gyroscopic, .. } = *self;
+        Wider { half_width_s, gravity_m_s2, frees_gyroscopic }
     }
 }

@@ -9,19 +9,33 @@ use super::weak::{WeakEstimate, solve_weak};
 use crate::regression::{WeakMotion, WeakRows, weak_rows};
 use crate::signals::{Signals, WeakKernel};
 
-/// Ixx, Iyy, Izz by a window of twice `half_width_s`, as shares of those of `narrow`, from the same signals; NaN where either
+/// How rows of a wider window are made.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wider {
+    /// s, of the usual window
+    pub(super) half_width_s: f64,
+    pub(super) gravity_m_s2: f64,
+    /// the gyroscopic torques have coefficients of their own
+    pub(super) frees_gyroscopic: bool,
+}
+
+/// Ixx, Iyy, Izz by a window of twice the half width, as shares of those of `narrow`, from the same signals; NaN where either
 /// has none, also if no stretch of flight is long enough for that window.
 pub(super) fn by_wider_window(
     flights: &[Signals],
     (narrow, nominal): (&WeakEstimate, &Theta),
-    (half_width_s, gravity_m_s2): (f64, f64),
+    of: Wider,
 ) -> [f64; 3] {
     let rows: Vec<WeakRows> = flights
         .iter()
         .map(|signals| {
-            let kernel = WeakKernel::new(2.0 * half_width_s, signals.grid.step_s);
-            let motion = WeakMotion::measured(signals, &kernel, gravity_m_s2);
-            weak_rows(signals, &motion, &kernel)
+            let kernel = WeakKernel::new(2.0 * of.half_width_s, signals.grid.step_s);
+            let motion = WeakMotion::measured(signals, &kernel, of.gravity_m_s2);
+            let mut rows = weak_rows(signals, &motion, &kernel);
+            if of.frees_gyroscopic {
+                rows.free_gyroscopic_torque();
+            }
+            rows
         })
         .collect();
     let wide = solve_weak(&rows, nominal);
