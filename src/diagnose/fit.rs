@@ -3,6 +3,7 @@
 use super::base::{Base, follows_force};
 use super::channels::{AXES, CHANNELS, Nuisance, NuisanceColumn};
 use super::evidence::Weighted;
+use super::priors::Alike;
 use super::rows::Rows;
 use super::trace::Trace;
 use crate::estimate::{Estimated, INERTIA_ENTRIES, THETA, ThetaCovariance, theta_of};
@@ -139,11 +140,12 @@ impl Fitted {
         }
     }
 
-    /// Negative log-density of the priors at the nuisances' coefficients, up to a constant.
+    /// Negative log-density of the priors at the nuisances' coefficients, up to a constant, times the rows that are `alike`.
     #[must_use]
-    pub fn against_priors(&self) -> f64 {
+    pub(super) fn against_priors(&self, alike: Alike) -> f64 {
         let of = |(column, value): (&NuisanceColumn, &f64)| {
-            column.prior_std.map_or(0.0, |std| 0.5 * ((value - column.prior_mean) / std).powi(2))
+            let against = column.prior_std.map(|std| 0.5 * ((value - column.prior_mean) / std).powi(2));
+            alike.of(column.nuisance) * against.unwrap_or_default()
         };
         self.rows.nuisances.iter().zip(self.coefficients.iter()).map(of).sum()
     }

@@ -1,6 +1,7 @@
 //! The cost of a model: its residual, its number of columns, and the distance of its nuisance parameters from their priors.
 
 use super::fit::Fitted;
+use super::priors::Alike;
 use super::tested::Tested;
 
 /// Energy that a column must explain to justify a parameter, in squared standard deviations of independent rows. Set
@@ -11,18 +12,18 @@ const COLUMN_PRICE: f64 = 12.0;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Price {
     /// rows that count as one independent row
-    alike: f64,
+    alike: Alike,
 }
 
 impl Price {
     /// By the correlation of the residual that a model leaves.
     pub(super) fn of(fitted: &Fitted) -> Self {
-        Self { alike: fitted.weighted.long_run_deviation().powi(2) }
+        Self { alike: fitted.weighted.alike() }
     }
 
     /// Of these columns, in squared sigmas of the rows.
     pub(super) fn of_columns(self, count: usize) -> f64 {
-        COLUMN_PRICE * self.alike * count as f64
+        COLUMN_PRICE * self.alike.all * count as f64
     }
 
     /// Energy that a candidate explains, less the price of its columns.
@@ -33,7 +34,7 @@ impl Price {
     /// Twice the negative log-density of the rows and of the nuisances' priors, and the columns' price, in squared sigmas of the
     /// rows, up to a constant. Rows are too many by the factor by which they are alike, so the priors are multiplied by it.
     pub(super) fn cost(self, fitted: &Fitted) -> f64 {
-        2.0 * (fitted.misfit() + self.alike * fitted.against_priors())
+        2.0 * (fitted.misfit() + fitted.against_priors(self.alike))
             + self.of_columns(fitted.rows.effects.len())
     }
 }
@@ -59,7 +60,7 @@ mod tests {
             .enumerate()
             .find_map(|(index, column)| Some((index, column.prior_std?)))
             .unwrap();
-        let price = Price { alike: 3.0 };
+        let price = Price { alike: Alike { all: 3.0, torques: 3.0 } };
         let at = |coefficient: f64| {
             let mut moved = fitted.clone();
             moved.coefficients[index] = coefficient;

@@ -19,6 +19,16 @@ pub(super) struct Alike {
 impl Alike {
     /// Of rows whose noise is white.
     pub(super) const OF_WHITE_NOISE: Self = Self { all: OF_KERNEL, torques: OF_KERNEL };
+    /// Of rows that are independent.
+    pub(super) const ONE: Self = Self { all: 1.0, torques: 1.0 };
+
+    /// Of the rows that tell a nuisance.
+    pub(super) fn of(self, nuisance: Nuisance) -> f64 {
+        match nuisance {
+            Nuisance::Inertia(_) | Nuisance::GuessedMomentAboutZ => self.torques,
+            _ => self.all,
+        }
+    }
 }
 
 /// One entry a column of the rows: nuisances first, then the base's effects, which have no prior.
@@ -41,8 +51,8 @@ impl Priors {
         for (index, column) in nuisances.iter().enumerate() {
             let Some(std) = column.prior_std else { continue };
             let counts = match column.nuisance {
-                Nuisance::VelocityError => alike.all * readings(column),
-                Nuisance::Inertia(_) => alike.torques,
+                Nuisance::VelocityError => alike.of(column.nuisance) * readings(column),
+                Nuisance::Inertia(_) | Nuisance::GuessedMomentAboutZ => alike.of(column.nuisance),
                 _ => 1.0,
             };
             priors.precision[index] = counts * std.powi(-2);

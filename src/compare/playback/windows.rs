@@ -10,6 +10,7 @@ use crate::signals::{Grid, Signals, ThrustSource};
 use crate::simulate::{Plant, PlantMemory, Push};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
+use std::cell::Cell;
 
 /// The windows of [`playback_windows`](super::playback_windows), predicted by the state at the start of each: nothing changes. The baseline that published benchmarks call
 /// naive.
@@ -114,6 +115,8 @@ pub(super) struct Played<'a> {
     substeps: u32,
     /// instants
     warm_up: usize,
+    /// instant of the last window, and the vehicle there with its effects' own states; of states that are not rotors'
+    carried: Cell<Option<(usize, PlantMemory)>>,
 }
 
 impl<'a> Played<'a> {
@@ -128,7 +131,8 @@ impl<'a> Played<'a> {
         let step_s = signals.grid.step_s;
         let substeps = (1..100).find(|n| step_s / f64::from(*n) <= settings.step_s + 1e-12).unwrap_or(100);
         let warm_up = steps(settings.warm_up_s, &signals.grid);
-        Ok(Self { model, push, states, commands, step_s, substeps, warm_up })
+        let carried = Cell::new(None);
+        Ok(Self { model, push, states, commands, step_s, substeps, warm_up, carried })
     }
 
     /// The vehicle as it was measured at an instant, with rotors that have long followed their commands.
@@ -147,11 +151,16 @@ impl<'a> Played<'a> {
         Plant::resume(self.model, self.push, memory)
     }
 
-    /// The vehicle as it was measured at an instant, with own states of the effects that followed the recording until then.
+    /// The vehicle as it was measured at an instant, with own states of the effects that followed the recording until then: those of rotors, which
+    /// forget in a moment, over the warm-up; others, as the swing of a load, since the beginning of what can be used.
     pub fn warm(&self, start: usize) -> Result<Plant<'_>, CompareError> {
         let of_rotors = self.model.own_states_are_of_rotors();
-        let mut plant = self.plant(start - self.warm_up)?;
-        for index in start - self.warm_up..start {
+        let (from, mut plant) = if of_rotors {
+            (start - self.warm_up, self.plant(start - self.warm_up)?)
+        } else {
+            self.carried_from(start)?
+        };
+        for index in from..start {
             plant.set_state(&self.states.at(index));
             if of_rotors {
                 self.substeps(index, |input, step_s| plant.step_own(input, step_s));
@@ -160,7 +169,21 @@ impl<'a> Played<'a> {
             }
         }
         plant.set_state(&self.states.at(start));
+        if !of_rotors {
+            self.carried.set(Some((start, plant.memory())));
+        }
         Ok(plant)
+    }
+
+    /// Where the own states have followed the recording to, at most to an instant, and the vehicle there.
+    fn carried_from(&self, start: usize) -> Result<(usize, Plant<'_>), CompareError> {
+        let usable = &self.states.signals.usable[..start];
+        let is_one_run = |from: usize| from <= start && usable[from..].iter().all(|used| *used);
+        if let Some((at, memory)) = self.carried.get().filter(|(at, _)| is_one_run(*at)) {
+            return Ok((at, self.resume(memory)));
+        }
+        let from = start - usable.iter().rev().take_while(|used| **used).count();
+        Ok((from, self.plant(from)?))
     }
 
     /// Torque (body, N m) in the middle of the step from an instant to the next one, as measured; moves the effects' own states on.

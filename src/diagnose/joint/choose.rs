@@ -3,6 +3,7 @@
 use super::requested::RequestedEffects;
 use crate::diagnose::base::{Base, lift_load};
 use crate::diagnose::fit::{Newton, fit};
+use crate::diagnose::priors::Alike;
 use crate::diagnose::recorded::Recorded;
 use crate::diagnose::signature::EffectTerm;
 use crate::diagnose::trace::Trace;
@@ -93,7 +94,7 @@ fn likeliest(
             Ok((
                 fitted.misfit(),
                 fitted.weighted.long_run_deviation(),
-                fitted.against_priors(),
+                fitted.against_priors(Alike::ONE),
                 fitted.rows.len(),
             ))
         })

@@ -143,7 +143,7 @@ impl Judge<'_> {
         compared
     }
 
-    /// Of a balance that moved without a name keeps what a rotor that the motion names does not account for.
+    /// Of what the balance tells keeps what a rotor that the motion names does not account for.
     fn keep_beside(
         &self,
         changes: &mut Vec<Change>,
@@ -152,7 +152,9 @@ impl Judge<'_> {
     ) {
         let known = (rotor.rotor, rotor.moved.after);
         let left = left_beside_rotor((self.balance, balance), groups, self.vehicle, known);
-        changes.retain(|change| change.what != Changed::Balance || left >= NAMED);
+        let is_of_balance =
+            |what: Changed| matches!(what, Changed::Balance | Changed::CentreOfMass(_) | Changed::YawTorque);
+        changes.retain(|change| !is_of_balance(change.what) || left >= NAMED);
         for change in changes.iter_mut().filter(|change| change.what == Changed::Balance) {
             change.sigmas = change.sigmas.min(left.sqrt());
             change.rivals.retain(|rival| *rival != What::Rotor(rotor.rotor));
@@ -190,7 +192,14 @@ impl Judge<'_> {
     /// Whether the balance moved without a name: between the groups, or at a border between all flights.
     #[must_use]
     pub fn moved_without_name(&self, groups: Option<&Groups>) -> bool {
-        let has_none = |groups: &Groups| self.compared(groups).balance.moved_without_name();
+        let has_none = |groups: &Groups| {
+            let Compared { balance, changes, .. } = self.compared(groups);
+            let has = |wanted: fn(&Changed) -> bool| changes.iter().any(|change| wanted(&change.what));
+            // a rotor that the motion names may account for it
+            let is_told =
+                has(|what| matches!(what, Changed::Rotor(_))) && !has(|what| *what == Changed::Balance);
+            balance.moved_without_name() && !is_told
+        };
         let count = self.balance.flights.len();
         match groups {
             Some(groups) => has_none(groups),

@@ -63,18 +63,29 @@ impl Judge<'_> {
                 known.iter().filter(is_there).map(|(place, _)| *place).collect()
             };
             let before = [side(true), side(false)].into_iter().find(|side| 2 * side.len() >= known.len())?;
+            let most = 2 * before.len() > known.len();
             let groups = Groups { before, after: vec![*flight] };
-            Some((*flight, self.apart(&groups, LiftsOf::Groups, least)?.moved))
+            Some(((*flight, self.apart(&groups, LiftsOf::Groups, least)?.moved), most))
         };
-        let mut odd: Vec<Odd> = known.iter().filter_map(of).collect();
+        let mut odd: Vec<(Odd, bool)> = known.iter().filter_map(of).collect();
         if odd.len() == known.len() {
             let is_other = |flight: usize| {
                 let lift = |place: usize| known.iter().find(|(of, _)| *of == place).map(|(_, lift)| *lift);
                 known.first().map(|(_, meant)| *meant).zip(lift(flight)).is_some_and(are_apart)
             };
-            odd.retain(|(flight, _)| is_other(*flight));
+            odd.retain(|((flight, _), _)| is_other(*flight));
+        } else {
+            // half of them are not most
+            odd.retain(|(_, most)| *most);
         }
-        odd
+        let odd: Vec<Odd> = odd.into_iter().map(|(of, _)| of).collect();
+        let is_odd = |place: usize| odd.iter().any(|(flight, _)| *flight == place);
+        let rest = || known.iter().filter(|(place, _)| !is_odd(*place)).map(|(_, lift)| *lift);
+        let mean = rest().sum::<f64>() / rest().count() as f64;
+        // a flight between those of two vehicles makes no two of the others
+        let are_other =
+            known.iter().filter(|(place, _)| is_odd(*place)).all(|(_, lift)| are_apart((mean, *lift)));
+        if are_other { odd } else { Vec::new() }
     }
 
     /// What is told of odd flights.

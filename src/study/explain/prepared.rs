@@ -146,7 +146,7 @@ impl Task<'_> {
                 return Ok((study, notes));
             }
             let unshown = study.unshown(&traces_of(&flights.signals, self.asked.vehicle, &settings));
-            let worthless = study.nameless().filter(|(id, ..)| !settings.refused.contains(id));
+            let worthless = study.nameless();
             let is_unshown = unshown.is_some();
             let (id, note) = match (unshown, worthless) {
                 (Some(of), _) => {
