@@ -281,16 +281,20 @@ mod tests {
         let random = RandomTrajectory::default();
         let (signals, mut vehicle) =
             flown(4711, &random, |truth, _| truth_kg_m2.set(truth.vehicle.body.inertia_kg_m2[(2, 2)]));
-        vehicle.propulsion.torque_per_thrust_m *= 1.5;
+        let torque_per_thrust_m = vehicle.propulsion.torque_per_thrust_m;
+        vehicle.propulsion.torque_per_thrust_m *= 0.75;
         vehicle.guesses = vec![Guess { of: Guessed::TorqueRatio, relative: 0.45, why: String::new() }];
         let found = explain(&[signals], &vehicle, &ExplainSettings::default()).unwrap().search.after;
         let of = |column: &NuisanceColumn| column.nuisance == Nuisance::GuessedMomentAboutZ;
         let place = found.rows.nuisances.iter().position(of).unwrap();
-        let on_scale_kg_m2 = found.base.vehicle.body.inertia_kg_m2[(2, 2)];
+        let (body, propulsion) = (&found.base.vehicle.body, &found.base.vehicle.propulsion);
+        let on_scale_kg_m2 = body.inertia_kg_m2[(2, 2)];
         let (told, std) =
             (on_scale_kg_m2 + found.coefficients[place], found.covariance[(place, place)].sqrt());
         let truth_kg_m2 = truth_kg_m2.get();
-        assert!((on_scale_kg_m2 / truth_kg_m2 - 1.5).abs() < 0.1, "{on_scale_kg_m2}, {truth_kg_m2}");
+        let scale = propulsion.torque_per_thrust_m / torque_per_thrust_m;
+        assert!((scale - 1.0).abs() > 0.15, "{scale}");
+        assert!((on_scale_kg_m2 / truth_kg_m2 / scale - 1.0).abs() < 0.07, "{on_scale_kg_m2}, {truth_kg_m2}");
         assert!(
             std < 0.15 * truth_kg_m2 && (told - truth_kg_m2).abs() < 4.0 * std,
             "{told} +- {std}, {truth_kg_m2}"

@@ -226,13 +226,13 @@ fn positions(signals: &Signals) -> Vec<String> {
 }
 
 /// Torque of the rotors about each axis against the change of the body rates, with columns for the aerodynamic torques
-/// of velocity and rates, and for the thrust. Without the first, on a circle a hub moment would look like the torque of another axis,
-/// and without the last a centre of mass that is off would.
+/// of velocity, rates and a steady wind, and for the thrust. Without the first, on a circle a hub moment would look like the torque of
+/// another axis; without the others, drag at the hubs in wind and a centre of mass that is off would.
 fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Option<String> {
     let (rate, velocity, attitude) =
         (signals.rate.as_ref()?, signals.velocity.as_ref()?, signals.attitude.as_ref()?);
     let inverse = vehicle.body.inertia_kg_m2.try_inverse()?;
-    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); 10];
+    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); 12];
     let mut changed: Vec<Vector3<f64>> = Vec::with_capacity(spans.len());
     for &(first, last) in spans {
         let wrench = signals.wrench[first..=last].iter().sum::<Vector4<f64>>();
@@ -240,7 +240,9 @@ fn torques(signals: &Signals, vehicle: &Vehicle, spans: &[(usize, usize)]) -> Op
         let middle = (first + last) / 2;
         let through_air = attitude[middle].inverse_transform_vector(&velocity[middle]);
         let parts = [inverse * torque * signals.grid.step_s, through_air, mean(&rate[first..=last])];
-        let values = parts.iter().flat_map(Vector3::iter).copied().chain([wrench[0]]);
+        // what a steady wind pushes goes with the heading
+        let north = attitude[middle].inverse_transform_vector(&Vector3::x());
+        let values = parts.iter().flat_map(Vector3::iter).copied().chain([wrench[0], north.x, north.y]);
         columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
         changed.push(rate[last] - rate[first]);
     }

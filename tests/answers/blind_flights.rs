@@ -249,15 +249,6 @@ fn a_name_that_the_hold_out_refutes_is_withdrawn() {
     assert!(why.is_warning() && why.text.contains("damping of the rotation"), "{why}");
 }
 
-/// The estimator's noise on this flight resembles the swing of a load of 3 % of the mass. With it the flight itself is not predicted better.
-#[test]
-fn a_load_with_which_its_own_flight_is_not_predicted_better_gets_no_name() {
-    let study = studied(20_621_191, "idle");
-    assert!(study.effects.iter().all(|named| named.id != "slung_load"), "{:?}", study.effects);
-    let why = study.notes.iter().find(|note| note.text.contains("so it gets none")).unwrap();
-    assert!(why.is_warning() && why.text.contains("swings below"), "{why}");
-}
-
 /// As `mavid prove` reads and explains a case.
 fn explained(case: &Case) -> Explanation {
     let flown = case.fly(0).unwrap();

@@ -114,7 +114,7 @@ fn bad_effects_are_refused_with_what_was_expected() {
         ),
         ("[[effect]]\nid = \"weak_rotor\"\nrotor = \"none\"\nfactor = 0.9\n", "a rotor: 0 to 3, or its name"),
         ("[[wrong]]\n", "wrong"),
-        ("", "expected a file in TOML with [[effect]] tables and nothing else: "),
+        ("", "expected a file in TOML with [[effect]] tables and nothing else, got an empty file"),
         (
             include_str!("../../configs/x500.toml"),
             "effects.toml: expected a file in TOML with [[effect]] tables and nothing else, got a vehicle file (",

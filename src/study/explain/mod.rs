@@ -10,7 +10,6 @@ mod hold_out;
 mod left_out;
 mod located;
 mod meant;
-mod nameless;
 mod next_flight;
 mod not_determined;
 mod path;

@@ -146,7 +146,7 @@ impl Task<'_> {
                 return Ok((study, notes));
             }
             let unshown = study.unshown(&traces_of(&flights.signals, self.asked.vehicle, &settings));
-            let worthless = study.nameless();
+            let worthless = study.worthless().filter(|of| !settings.refused.contains(&of.id));
             let is_unshown = unshown.is_some();
             let (id, note) = match (unshown, worthless) {
                 (Some(of), _) => {
@@ -154,9 +154,10 @@ impl Task<'_> {
                     unsure.push((of.id, of.name));
                     more
                 }
-                (None, Some((id, name, note))) => {
-                    withdrawn.extend(name.map(|name| (id, name)));
-                    (id, note)
+                (None, Some(of)) => {
+                    let more = (of.id, of.note());
+                    withdrawn.push((of.id, of.name));
+                    more
                 }
                 (None, None) => {
                     // one that came back as a part of what stays has its name
