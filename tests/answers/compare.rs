@@ -179,7 +179,7 @@ fn a_drag_that_moved_along_a_history_is_told_before_it_is_certain() {
     let folder = folder("drag-along");
     let mut flights: Vec<String> =
         (1..4).map(|seed| simulated(&folder, "slow", (2.0643, 0.3), seed)).collect();
-    flights.extend((4..6).map(|seed| simulated(&folder, "fast", (2.0643, 0.45), seed)));
+    flights.extend((4..6).map(|seed| simulated(&folder, "fast", (2.0643, 0.41), seed)));
     let request = CompareRequest {
         before: flights.iter().map(PathBuf::from).collect(),
         vehicle: Some(VehicleGiven::File(config("x500.toml").into())),
