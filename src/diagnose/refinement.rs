@@ -2,6 +2,7 @@
 //! not bias (flight path reconstruction, instruments).
 
 use super::base::Base;
+use super::climb_alone::is_of_climb;
 use super::drag_law::settle_laws;
 use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
@@ -17,7 +18,6 @@ use super::reconstructed::{Forms, reconstruct};
 use super::recorded::heights_flown_m;
 use super::rotor_axes::is_refuted;
 use super::signature::EffectTerm;
-use super::stand_ins::stands_for_another;
 use super::tested::Search;
 use super::thrust_slope::may_be_noise;
 use super::torques_by_instruments::torques_by_instruments;
@@ -179,11 +179,11 @@ fn unnamed(
         let unseen = bent && (!shows_in_forces(fitted, present, first) || is_noise(present, traces, fitted));
         let unbalanced = is_refuted(given, fitted, present, first);
         let ordinary = is_ordinary(present, &fitted.base, traces);
-        let of_another = stands_for_another(traces, fitted, present, first);
-        let is_unnamed = refuted || unseen || unbalanced || ordinary || of_another;
+        let of_climb = is_of_climb(traces, fitted, present, first);
+        let is_unnamed = refuted || unseen || unbalanced || ordinary || of_climb;
         if is_unnamed {
             let effect = present.id();
-            tracing::info!(effect, refuted, unseen, unbalanced, ordinary, of_another, "effect gets no name");
+            tracing::info!(effect, refuted, unseen, unbalanced, ordinary, of_climb, "effect gets no name");
         }
         is_unnamed
     };

@@ -1,9 +1,7 @@
-//! What effects are held against that may stand for something else: a thrust that falls in climb alone for what is found of descents, and one that
-//! drifts with time for what follows the height.
+//! A thrust that falls in climb alone, held against what is found of descents.
 //!
 //! ArduCopter's simulator takes `rho A v_z^2 / 2` from the thrust of a rotor that climbs, and nothing from one that descends. Symmetric
-//! laws of the air (drag along z, inflow) leave the even part of it, and in descents that looks like a loss of thrust. A flight that rises once
-//! and then hovers does not tell a line to the ground from a battery or a sensor that drifts.
+//! laws of the air (drag along z, inflow) leave the even part of it, and in descents that looks like a loss of thrust.
 
 use super::channels::{Channels, append, channels, nothing};
 use super::evidence::weighted;
@@ -13,24 +11,21 @@ use super::trace::Trace;
 use crate::physics::State;
 use nalgebra::Vector3;
 
-/// Share of its size that an effect keeps beside what it may stand for. Set by judgement.
+/// Share of its size that an effect of descents keeps beside the loss in climb. Set by judgement.
 const KEPT: f64 = 0.5;
-/// Standard errors from which on it is shown beside that. The usual three.
+/// Standard errors from which on it is shown beside the loss in climb. The usual three.
 const SHOWN: f64 = 3.0;
 
-/// Whether something else may be what an effect explains, a loss of thrust in climb alone for one of descents and a thrust that drifts with
-/// time for one that follows the height: with both in the model, little of the effect is left. The effect's first column in the model has
-/// the index `first`.
-pub(super) fn stands_for_another(traces: &[Trace], fitted: &Fitted, term: &EffectTerm, first: usize) -> bool {
-    let (of_descent, of_height) = (term.signature.role.in_descent, term.signature.naming.by_height);
+/// Whether a loss of thrust in climb alone may be what an effect of descents explains: with both in the model, little of the effect is left.
+/// `false` of effects that do not act in descents alone. The effect's first column in the model has the index `first`.
+pub(super) fn is_of_climb(traces: &[Trace], fitted: &Fitted, term: &EffectTerm, first: usize) -> bool {
     let amount = term.free.iter().position(|slot| term.is_amount(*slot));
-    let Some(place) = amount.filter(|_| of_descent || of_height) else { return false };
+    let Some(place) = amount.filter(|_| term.signature.role.in_descent) else { return false };
     let size = term.from_nothing(term.free[place]);
-    let column = if of_descent { lost_in_climb(traces, fitted) } else { drifting(traces, fitted) };
+    let column = lost_in_climb(traces, fitted);
     let Some(evidence) = fitted.weighted.test(std::slice::from_ref(&column)) else { return false };
     let (lost, lost_std) = (evidence.theta[0], evidence.std(0));
-    // thrust is not gained in climb
-    if of_descent && lost <= 0.0 {
+    if lost <= 0.0 {
         return false;
     }
     let index = first + place;
@@ -38,29 +33,8 @@ pub(super) fn stands_for_another(traces: &[Trace], fitted: &Fitted, term: &Effec
     let stands_for = fitted.weighted.part_in(&weighted(&column, &fitted.weighted.sigma))[index];
     let beside = size - stands_for * lost;
     let std = fitted.covariance[(index, index)].max(0.0).sqrt().hypot(stands_for * lost_std);
-    tracing::debug!(
-        effect = term.id(),
-        size,
-        beside,
-        std,
-        lost,
-        lost_std,
-        "held against what it may stand for"
-    );
+    tracing::debug!(effect = term.id(), size, beside, std, lost, lost_std, "held against a loss in climb");
     beside < (KEPT * size).max(SHOWN * std)
-}
-
-/// Column of `F_z = -k m g t` with k of 1, and t from -1 to 1 along each flight.
-fn drifting(traces: &[Trace], fitted: &Fitted) -> Channels {
-    let weight_n = fitted.weight_n();
-    let mut out = Channels::default();
-    for trace in traces {
-        let middle = 0.5 * trace.states.len() as f64;
-        let of = |index: usize| Vector3::new(0.0, 0.0, -weight_n * (index as f64 / middle - 1.0));
-        let series: Vec<Vector3<f64>> = (0..trace.states.len()).map(of).collect();
-        append(&mut out, &channels(trace, trace.weak_vector(0, &series), nothing(trace)));
-    }
-    out
 }
 
 /// Column of `F_z = -k max(0, v_z)^2` with k of 1 N/(m/s)^2 and the airspeed along body z.
