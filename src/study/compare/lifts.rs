@@ -128,8 +128,8 @@ impl Judge<'_> {
     }
 }
 
-/// Full thrust over weight of two groups that differs by more than that of one vehicle.
-fn are_apart((before, after): (f64, f64)) -> bool {
+/// Full thrust over weight of two groups, or two masses, that differ by more than those of one vehicle.
+pub(in crate::study) fn are_apart((before, after): (f64, f64)) -> bool {
     before.max(after) > OTHER_LIFT * before.min(after)
 }
 

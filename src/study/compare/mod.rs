@@ -15,6 +15,7 @@ mod usable;
 
 pub use by_motion::WeakAlone;
 pub use judge::Judge;
+pub(super) use lifts::are_apart;
 pub(super) use motion::is_compared;
 pub use request::CompareRequest;
 pub use result::{

@@ -14,6 +14,7 @@ use crate::note::{About, Note};
 use crate::recording::Quantity;
 use crate::signals::Signals;
 use crate::study::Track;
+use crate::study::compare::are_apart;
 use crate::study::flights::Prepared;
 use crate::study::input::InputFile;
 use crate::study::track::OF_LOG;
@@ -153,11 +154,20 @@ impl ExplainStudy {
         self.notes.extend(told);
     }
 
-    /// A remark on each flight that flew with another load than the others.
+    /// A remark on each flight that flew with another load than the others, and a warning where it is no load that one vehicle carries.
     fn tell_payloads(&mut self, flights: &[Signals]) {
+        let mass_kg = self.explanation.search.after.base.vehicle.body.mass_kg;
         for (signals, input) in flights.iter().zip(&self.given.inputs) {
             let kg = signals.own.payload_kg;
-            if kg != 0.0 {
+            if are_apart((mass_kg, (mass_kg + kg).max(f64::MIN_POSITIVE))) {
+                let text = format!(
+                    "it flew with {} kg where the others have {} kg: that is hardly a load, and it may be another vehicle",
+                    significant((mass_kg + kg).max(0.0), 3),
+                    significant(mass_kg, 3)
+                );
+                self.differing.get_or_insert_with(|| text.clone());
+                self.notes.push(Note::warning(About::File(input.path.clone()), text));
+            } else if kg != 0.0 {
                 let text = format!(
                     "it flew with {} kg {} than the others: load and mass are each flight's own, and the model has the mass without that",
                     significant(kg.abs(), 2),

@@ -110,7 +110,7 @@ impl ExplainStudy {
         match differing(&self.explanation, &used, vehicle, &settings) {
             Ok(why) => {
                 self.notes.extend(why.iter().map(|why| Note::warning(About::Estimate, why.as_str())));
-                self.differing = why;
+                self.differing = why.or(self.differing.take());
             }
             Err(error) => {
                 let text = format!("whether the flights are of one vehicle: {error}");
