@@ -37,7 +37,7 @@ pub(super) fn number(text: impl Into<String>) -> Cell {
 
 /// A section with its heading.
 pub(super) fn section(heading: &str, content: &Markup) -> Markup {
-    html! { section { h2 { (unbroken(heading)) } (BREAK) (content) } (BREAK) }
+    html! { section { h2 { (whole(heading)) } (BREAK) (content) } (BREAK) }
 }
 
 /// Sections that are folded until they are asked for, under one heading.
@@ -47,24 +47,24 @@ pub(super) fn folded(heading: &str, content: &Markup) -> Markup {
 
 /// Numbers that are folded until they are asked for, within a section. They are not printed.
 pub(super) fn folded_numbers(words: &str, content: &Markup) -> Markup {
-    html! { details.numbers { summary { (unbroken(words)) } (content) } (BREAK) }
+    html! { details.numbers { summary { (whole(words)) } (content) } (BREAK) }
 }
 
 pub(super) fn paragraph(words: &str) -> Markup {
-    html! { p { (unbroken(words)) } (BREAK) }
+    html! { p { (whole(words)) } (BREAK) }
 }
 
 pub(super) fn note(words: &str) -> Markup {
-    html! { p.note { (unbroken(words)) } (BREAK) }
+    html! { p.note { (whole(words)) } (BREAK) }
 }
 
 pub(super) fn warning(words: &str) -> Markup {
-    html! { p.warn { (unbroken(words)) } (BREAK) }
+    html! { p.warn { (whole(words)) } (BREAK) }
 }
 
 /// A chart, with a caption if it is not empty.
 pub(super) fn figure(chart: &Markup, caption: &str) -> Markup {
-    html! { figure { (chart) @if !caption.is_empty() { figcaption { (unbroken(caption)) } } } (BREAK) }
+    html! { figure { (chart) @if !caption.is_empty() { figcaption { (whole(caption)) } } } (BREAK) }
 }
 
 /// A table; nothing without rows. A heading that ends in `|` is above numbers. On a narrow screen each value stands after the
@@ -76,7 +76,7 @@ pub(super) fn table(caption: &str, heads: &[&str], rows: &[Vec<Cell>]) -> Markup
     };
     html! {
         @if !rows.is_empty() {
-            p.cap { (unbroken(caption)) }
+            p.cap { (whole(caption)) }
             div.wide.stack tabindex="0" role="region" aria-label=(caption) { table {
                 thead { tr { @for head in heads {
                     @if let Some(head) = head.strip_suffix('|') { th.n { (unbroken(head)) } } @else { th { (unbroken(head)) } }
@@ -99,7 +99,7 @@ fn cell_markup(cell: &Cell, head: &str) -> Markup {
 }
 
 /// Words in which a number with its error is whole also where any other word may be broken.
-fn whole(words: &str) -> Markup {
+pub(super) fn whole(words: &str) -> Markup {
     html! {
         @for (place, part) in unbroken(words).split(' ').enumerate() {
             @if place > 0 { " " }

@@ -3,7 +3,7 @@
 //! Its plots are drawings. The script of the page makes them into plots to zoom and to read values from; without it, and on
 //! paper, the drawings stay.
 
-use super::html::BREAK;
+use super::html::{BREAK, whole};
 use crate::text::{clean_lines, unbroken};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -35,7 +35,7 @@ pub(super) fn page(title: &str, answer: &str, tags: &[String], sections: &Markup
             (BREAK)
             body { main { (BREAK)
                 h1 { (title) } (BREAK)
-                p.answer { (unbroken(answer)) } (BREAK)
+                p.answer { (whole(answer)) } (BREAK)
                 p.tags { @for tag in tags { span { (unbroken(tag)) } " " } } (BREAK)
                 (sections)
             }
