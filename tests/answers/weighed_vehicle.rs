@@ -137,7 +137,7 @@ fn a_guessed_thrust_curve_is_in_the_errors_until_the_flight_tells_it() {
     for name in ["ixx", "iyy"] {
         let best = &identified["best"]["parameters"][name];
         let (value, std) = (best["value"].as_f64().unwrap(), best["std"].as_f64().unwrap());
-        assert!((value - 0.02).abs() < 2.0 * std && std < 0.002, "{name} {value} +- {std}");
+        assert!((value - 0.02).abs() < 3.0 * std && std < 0.002, "{name} {value} +- {std}");
     }
     assert!(verdict.contains("good for thrust, ixx") && verdict.contains("not for izz"), "{verdict}");
     let verdict = inspected["verdict"].as_str().unwrap();
