@@ -25,8 +25,9 @@ const ELSEWHERE: f64 = 1.35;
 
 /// Standard error of moments of inertia by a bent thrust law, relative, over its curvature. Torques are differences of thrusts, so moments go
 /// with the slope of the law, and a curve that has not quite the form of the law has another slope. A linear thrust that was
-/// described with an exponent of 0.6 has a curvature of -0.304 at hover, and the law fitted to a flight up to full thrust had -0.265.
-const SLOPE: f64 = 0.15;
+/// described with an exponent of 0.6 has a curvature of -0.3 at hover. Moments of a simulated flight up to full thrust were then 11 % too large
+/// and those of a calm one 6 %: 0.4 and 0.2 of it.
+const SLOPE: f64 = 0.3;
 
 fn bend_of(base: &Base) -> f64 {
     let bend = |term: &EffectTerm| Some(term.values[term.signature.role.bends_thrust?].abs());
