@@ -9,7 +9,7 @@ use super::explain::{ExplainSettings, explain};
 use super::explanation::Verdict;
 use super::fit::{Fitted, Newton, fit};
 use super::latency::finding_of;
-use super::reconstructed::{Forms, reconstruct};
+use super::reconstructed::{Forms, column, reconstruct};
 use super::score::test_winds;
 use super::signature::EffectTerm;
 use super::signatures::{ALL, CALM_M_S};
@@ -68,20 +68,14 @@ struct Shown {
 impl Shown {
     /// Of a fit to a drag and a wind, in this order.
     fn by(fitted: &Fitted) -> Self {
-        let mut column = fitted.rows.nuisances.len();
-        let sizes: Vec<Vec<(f64, f64)>> = fitted
-            .base
-            .effects
-            .iter()
-            .map(|present| {
-                let of = present.free.iter().map(|&slot| {
-                    let std = fitted.covariance[(column, column)].max(0.0).sqrt();
-                    column += 1;
-                    (present.values[slot], std)
-                });
-                of.collect()
-            })
-            .collect();
+        let sizes = |(place, present): (usize, &EffectTerm)| -> Vec<(f64, f64)> {
+            let of = |&slot: &usize| {
+                let index = column(fitted, place, slot)?;
+                Some((present.values[slot], fitted.covariance[(index, index)].max(0.0).sqrt()))
+            };
+            present.free.iter().filter_map(of).collect()
+        };
+        let sizes: Vec<Vec<(f64, f64)>> = fitted.base.effects.iter().enumerate().map(sizes).collect();
         let is_certain = |(value, std): &(f64, f64)| value.abs() > CERTAIN * std;
         let [drag, wind] = &sizes[..] else {
             return Self { wind_m_s: [0.0; 2], blows: false, is_dragged: false };

@@ -25,15 +25,16 @@ impl Judge<'_> {
         }
         let count = self.balance.flights.len();
         let at = |from: usize| self.apart(&Groups::split(count, from), LiftsOf::From(from), UNDECIDED);
+        let widest = || (1..count).filter_map(at).max_by(|a, b| a.ratio().total_cmp(&b.ratio()));
         let odd = self.odd();
         if odd.is_empty() {
-            return (1..count).filter_map(at).max_by(|a, b| a.ratio().total_cmp(&b.ratio()));
+            return widest();
         }
         // those at an end of the row are told by its place
         let ends = [(0..odd.len(), odd.len()), (count - odd.len()..count, count - odd.len())];
         let are = |places: &Range<usize>| odd.iter().map(|(flight, _)| *flight).eq(places.clone());
         let border = ends.into_iter().find(|(places, _)| are(places)).and_then(|(_, from)| at(from));
-        border.or_else(|| self.odd_apart(&odd))
+        border.or_else(|| self.odd_apart(&odd)).or_else(widest)
     }
 
     /// Full thrust over weight of two groups, if it differs and no parameter tells that it is one vehicle. Where one moved by `least_sigmas`
@@ -78,22 +79,19 @@ impl Judge<'_> {
             // half of them are not most
             odd.retain(|(_, most)| *most);
         }
-        let odd: Vec<Odd> = odd.into_iter().map(|(of, _)| of).collect();
-        let is_odd = |place: usize| odd.iter().any(|(flight, _)| *flight == place);
-        let rest = || known.iter().filter(|(place, _)| !is_odd(*place)).map(|(_, lift)| *lift);
-        let mean = rest().sum::<f64>() / rest().count() as f64;
-        // a flight between those of two vehicles makes no two of the others
-        let are_other =
-            known.iter().filter(|(place, _)| is_odd(*place)).all(|(_, lift)| are_apart((mean, *lift)));
-        if are_other { odd } else { Vec::new() }
+        odd.into_iter().map(|(of, _)| of).collect()
     }
 
-    /// What is told of odd flights.
+    /// What is told of odd flights. `None` where one of them is not far from the mean of the others: a flight of two vehicles between which the
+    /// others lie.
     fn odd_apart(&self, odd: &[Odd]) -> Option<LiftsApart> {
         let is_odd = |place: usize| odd.iter().any(|(flight, _)| *flight == place);
         let (of_odd, of_others): (Vec<_>, Vec<_>) =
             self.known_lifts().into_iter().partition(|(flight, _)| is_odd(*flight));
         let before = of_others.iter().map(|(_, lift)| lift).sum::<f64>() / of_others.len() as f64;
+        if of_odd.iter().any(|(_, after)| !are_apart((before, *after))) {
+            return None;
+        }
         let apart = of_odd.iter().map(|(_, after)| LiftsApart {
             before,
             after: *after,
