@@ -5,8 +5,8 @@ use super::channels::Nuisance;
 use super::fit::Fitted;
 use super::trace::Trace;
 use crate::estimate::{
-    Finding, MOMENTS, Nominal, THETA, Theta, finding, inertia_of, is_physical, nearest_physical, size_of,
-    theta_of,
+    Finding, MOMENTS, Nominal, THETA, Theta, ThetaCovariance, finding, inertia_of, is_physical,
+    nearest_physical, size_of, theta_of,
 };
 use crate::physics::PhysicsError;
 use crate::vehicle::{Guessed, Vehicle};
@@ -174,12 +174,23 @@ fn inertia_places(fitted: &Fitted) -> Option<[usize; ENTRIES]> {
     places.iter().all(known).then_some(places)
 }
 
+/// The covariance of an inertia with the errors of what the description guesses: a guessed torque per thrust holds izz no more firmly than
+/// the guess is.
+pub(super) fn with_guesses(
+    covariance: &ThetaCovariance,
+    theta: &Theta,
+    nominal: &Nominal,
+) -> ThetaCovariance {
+    let mut whole = *covariance;
+    for index in 1..THETA {
+        whole[(index, index)] += (nominal.guessed(index) * theta[index]).powi(2);
+    }
+    whole
+}
+
 /// The nearest possible one, if it lies within the error, that of what the description guesses included.
 fn near(fitted: &Fitted, theta: &Theta, nominal: &Nominal) -> Option<Theta> {
-    let mut covariance = fitted.rigid_body().covariance;
-    for index in 1..THETA {
-        covariance[(index, index)] += (nominal.guessed(index) * theta[index]).powi(2);
-    }
+    let covariance = with_guesses(&fitted.rigid_body().covariance, theta, nominal);
     let nearest = nearest_physical(theta, &covariance, &nominal.theta)?;
     let by = nearest - theta;
     let wald = by.dot(&covariance.cholesky()?.solve(&by));

@@ -13,13 +13,13 @@ use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::floors::add_slope;
 use crate::diagnose::latency::{LatencyFinding, finding_of};
 use crate::diagnose::left_over::add_left_over;
-use crate::diagnose::physical::WITHIN_ERROR;
+use crate::diagnose::physical::{WITHIN_ERROR, with_guesses};
 use crate::diagnose::recorded::Recorded;
 use crate::diagnose::torque_law::{ABOUT_Z, TorqueLaw, torque_law};
 use crate::diagnose::trace::Trace;
 use crate::estimate::{
-    Estimated, Finding, Method, MethodResult, MovedByCurve, Nominal, THETA, Theta, identified_vehicle,
-    is_physical, moved_by_guessed_curve, nearest_physical, rescaled, thrust_scale,
+    Estimated, Finding, Method, MethodResult, MovedByCurve, Nominal, THETA, identified_vehicle, is_physical,
+    moved_by_guessed_curve, nearest_physical, rescaled, thrust_scale,
 };
 use crate::physics::{ActiveEffect, Airframe};
 use crate::signals::Signals;
@@ -105,7 +105,7 @@ fn put_together(
     };
     (estimated, estimated_before) =
         (in_errors(estimated, torque_law), in_errors(estimated_before, law_before));
-    let physical = made_physical(&mut estimated, &nominal.theta);
+    let physical = made_physical(&mut estimated, &nominal);
     let result = |estimated: &Estimated| MethodResult::new(Method::Weak, estimated, &nominal);
     let (mut body, mut body_before) = (result(&estimated), result(&estimated_before));
     let mut scale = None;
@@ -150,17 +150,19 @@ fn put_together(
     }
 }
 
-/// Replaces a physically impossible inertia by the nearest possible one, if that lies within its error.
-fn made_physical(estimated: &mut Estimated, nominal: &Theta) -> Physical {
+/// Replaces a physically impossible inertia by the nearest possible one, if that lies within its error, that of what the description guesses
+/// included.
+fn made_physical(estimated: &mut Estimated, nominal: &Nominal) -> Physical {
     // an inertia that is not determined needs no repair
     if is_physical(&estimated.theta) || estimated.theta.iter().any(|value| value.is_nan()) {
         return Physical::AsEstimated;
     }
-    let Some(theta) = nearest_physical(&estimated.theta, &estimated.covariance, nominal) else {
+    let covariance = with_guesses(&estimated.covariance, &estimated.theta, nominal);
+    let Some(theta) = nearest_physical(&estimated.theta, &covariance, &nominal.theta) else {
         return Physical::No;
     };
     let moved = theta - estimated.theta;
-    let factor = estimated.covariance.cholesky();
+    let factor = covariance.cholesky();
     let wald = factor.map_or(f64::INFINITY, |factor| moved.dot(&factor.solve(&moved)));
     if normal_deviate(wald, THETA) > WITHIN_ERROR {
         return Physical::No;
