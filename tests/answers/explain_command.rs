@@ -323,6 +323,21 @@ fn a_hover_beside_a_flight_that_moves_raises_no_doubt() {
     }
 }
 
+/// The thrust of this small vehicle drifts while it climbs, and no line leads down from it. A baseline predicts what was held back better
+/// than the model with a line.
+#[test]
+fn a_thrust_that_drifts_with_the_height_is_no_line_to_the_ground() {
+    let Some(shared) = support::shared() else { return };
+    let log = shared.join("onboard/logs/copter_368_indoor_quad.bin").display().to_string();
+    let output = mavid(&["explain", &log, "--mass", "1.0", "--size", "0.45", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let effects = document["effects"].as_array().unwrap();
+    assert!(effects.is_empty(), "{effects:?}");
+    let said = document["warnings"].to_string();
+    assert!(said.contains("A line leads down to the ground") && said.contains("so it gets none"), "{said}");
+}
+
 /// The beginning of a log, up to so many seconds after its first frame.
 fn beginning(log: &Path, seconds: f64) -> Vec<u8> {
     let bytes = std::fs::read(log).unwrap();

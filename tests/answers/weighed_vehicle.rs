@@ -138,7 +138,7 @@ fn a_guessed_thrust_curve_is_in_the_errors_until_the_flight_tells_it() {
         let (value, std) = moment(&with);
         assert!((value - 0.02).abs() < 2.0 * std && std < 0.002, "{name} {value} +- {std}");
         let (value, std) = moment(&calm);
-        assert!((value / 0.02 - 1.0).abs() < 0.08 && std < 0.002, "{name} {value} +- {std}");
+        assert!((value / 0.02 - 1.0).abs() < 0.08 && std < 0.1 * value, "{name} {value} +- {std}");
     }
     let verdict = identified["verdict"].as_str().unwrap();
     // the flight shows its curve, and with it the moments; Izz still rests on the guessed torque per thrust

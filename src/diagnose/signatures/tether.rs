@@ -14,7 +14,7 @@ const LEAST_LINE_KG_M: f64 = 0.005;
 /// Least share of the vehicle's mass by which the weight of a line changes over the heights of a flight. Set by judgement: errors of the
 /// thrust law are nearly as large, and follow the height by chance (1.8 and 1.9 % in two of 400 simulated flights without a line).
 const LEAST_OF_MASS: f64 = 0.02;
-/// Added to the least normal deviate. A thrust that drifts with height reached 6.2 in one real flight, which still has the name. Set by
+/// Added to the least normal deviate. A thrust that drifts with height reached 6.2 in one real flight, where the hold-out refutes it. Set by
 /// judgement.
 const EXTRA_Z: f64 = 2.0;
 /// Mass per length at which a carried line is tried, kg/m: a line without weight has no effect. A start value.

@@ -108,7 +108,7 @@ fn withdrawn(study: &ExplainStudy) -> String {
     let (on, another) = (study.shown_on.words(), matches!(study.shown_on, ValidationData::Flights(_)));
     let changed = if another { " If the vehicle changed in between, mavid compare tells what." } else { "" };
     format!(
-        " What was explained also shows {}, but errors on {on} are smaller without {them}, so {} {have} no name.{changed}",
+        " What was explained also shows {}, but the errors on {on} do not confirm {them}, so {} {have} no name.{changed}",
         list(names),
         if names.len() > 1 { "they" } else { "it" }
     )

@@ -1,7 +1,7 @@
 //! What the better model is shown on, and how it does there.
 
 use super::left_out::{of_others, shown_only_by};
-use super::refuted::{Refuted, Worthless};
+use super::refuted::{BetterBy, Refuted, Worthless};
 use super::result::ExplainStudy;
 use super::validation_data::ValidationData;
 use crate::diagnose::holdout::{
@@ -134,7 +134,8 @@ impl ExplainStudy {
         refuted.then_some(Refuted { names, worse_percent })
     }
 
-    /// The named effect without which flights that were not used are predicted better, by most, and by more than chance. `None` where there is no such effect, where
+    /// The named effect that flights which were not used do not confirm: they are predicted better without it, by most and by more than
+    /// chance, or it follows the height alone and the model predicts no better than a baseline. `None` where there is no such effect, where
     /// the hold-out is of another vehicle, and where the wind of the explained flights was another one.
     pub(super) fn worthless(&self) -> Option<Worthless> {
         let worth = self.worth.as_ref().filter(|worth| !worth.on_explained)?;
@@ -157,12 +158,26 @@ impl ExplainStudy {
             if chance.is_some_and(|chance| chance > BY_CHANCE) {
                 return None;
             }
-            Some(Worthless { id: named.id, name: brief(named, &self.given.vehicle, true), better_percent })
+            let name = brief(named, &self.given.vehicle, true);
+            Some(Worthless { id: named.id, name, better_percent, by: BetterBy::Without })
         };
         let judged = self.explanation.named.iter().filter(|named| is_judged(named.id)).filter_map(of);
         judged
             .filter(|of| of.better_percent > LEAST_BETTER_PERCENT)
             .max_by(|a, b| a.better_percent.total_cmp(&b.better_percent))
+            .or_else(|| self.drifts_with_height())
+    }
+
+    /// A named effect that follows the height alone, where a baseline predicts the hold-out better than the model. A thrust that drifts
+    /// during a flight follows its height by chance, and what is outside the vehicle needs more than the flight in which it was found.
+    fn drifts_with_height(&self) -> Option<Worthless> {
+        let better_percent = -self.holdout.as_ref()?.improvement()?;
+        let by_height = |named: &&Named| {
+            signature_of(named.id).is_some_and(|of| of.naming.by_height) && self.judges(named.id)
+        };
+        let named = self.explanation.named.iter().find(by_height).filter(|_| better_percent > 0.0)?;
+        let name = brief(named, &self.given.vehicle, true);
+        Some(Worthless { id: named.id, name, better_percent, by: BetterBy::Baseline })
     }
 
     /// Whether the hold-out can refute an effect: another flight that hardly moves tells nothing of what acts in motion.

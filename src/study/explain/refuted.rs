@@ -25,25 +25,42 @@ impl Refuted {
     }
 }
 
-/// An effect that the flights explained would name, and without which flights that were not used are predicted better.
+/// An effect that the flights explained would name, and that flights that were not used do not confirm.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Worthless {
     /// the effect
     pub(super) id: &'static str,
     /// in brief, with its size
     pub(super) name: String,
-    /// by how much errors over 0.5 s are smaller without it, mean over the quantities, %
+    /// by how much errors over 0.5 s are smaller, mean over the quantities, %
     pub(super) better_percent: f64,
+    /// by what they are smaller
+    pub(super) by: BetterBy,
+}
+
+/// What predicts a hold-out better than a model with a named effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum BetterBy {
+    /// the model without the effect
+    Without,
+    /// the rigid body alone, or a state that does not change
+    Baseline,
 }
 
 impl Worthless {
     pub(super) fn note(&self) -> Note {
-        let text = format!(
-            "the flights explained alone would give a name to {}; without it, errors over 0.5 s are {} % smaller in the mean on the \
-             hold-out, so it gets none",
-            self.name,
-            significant(self.better_percent, 2)
-        );
+        let percent = significant(self.better_percent, 2);
+        let why = match self.by {
+            BetterBy::Without => {
+                format!("without it, errors over 0.5 s are {percent} % smaller in the mean on the hold-out")
+            }
+            BetterBy::Baseline => format!(
+                "it follows the height, as a thrust that drifts does, and a state that does not change or the rigid body alone \
+                 predicts the hold-out better than the model with it, over 0.5 s by {percent} % in the mean"
+            ),
+        };
+        let text =
+            format!("the flights explained alone would give a name to {}; {why}, so it gets none", self.name);
         Note::warning(About::HoldOut, text)
     }
 }
