@@ -338,6 +338,19 @@ fn a_thrust_that_drifts_with_the_height_is_no_line_to_the_ground() {
     assert!(said.contains("A line leads down to the ground") && said.contains("so it gets none"), "{said}");
 }
 
+/// The squares change the thrust of this drone four times as much as its random flight, and leave as much more of it. It is the same drone.
+#[test]
+fn a_livelier_flight_of_one_drone_is_not_of_another_one() {
+    let Some(shared) = support::shared() else { return };
+    let path = |name: &str| shared.join("recordings/nanodrone").join(name).display().to_string();
+    let [log, vehicle, squares] = ["random1_run1.csv", "vehicle.toml", "square_run3.csv"].map(path);
+    let output = mavid(&["explain", &log, "--vehicle", &vehicle, "--holdout", &squares, "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let answer = document["answer"].as_str().unwrap();
+    assert!(!answer.contains("another vehicle") && answer.contains("on the hold-out falls by"), "{answer}");
+}
+
 /// The beginning of a log, up to so many seconds after its first frame.
 fn beginning(log: &Path, seconds: f64) -> Vec<u8> {
     let bytes = std::fs::read(log).unwrap();

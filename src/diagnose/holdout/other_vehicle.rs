@@ -5,7 +5,7 @@ use super::error::HoldoutError;
 use super::ready::{Ready, trace_of};
 use super::settings::{Explained, HeldOut, HoldoutSettings};
 use super::weak::Weak;
-use crate::diagnose::channels::{AXES, CHANNEL_NAMES, CHANNELS, Nuisance};
+use crate::diagnose::channels::{AXES, CHANNEL_NAMES, CHANNELS, Nuisance, NuisanceColumn};
 use crate::diagnose::common_values::mass_after;
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::fit::{Fitted, evaluate};
@@ -186,10 +186,13 @@ fn by_what_is_left(
     whose: &str,
 ) -> Option<OtherVehicle> {
     let compared = |channel: &usize| torques_alike || !(3..AXES).contains(channel);
-    // a flight that turns more leaves more of its torque, and a faster one more of the air's force
+    // a flight that turns more leaves more of its torque, a faster one more of the air's force, and one that changes its thrust more of that
     let moves = |channel: usize| {
         let Some(axis) = channel.checked_sub(3).filter(|axis| *axis < 3) else {
-            return faster.powi(2).max(1.0);
+            let there = weak.own.iter().map(|own| change_of_force(own, channel)).fold(0.0, f64::max);
+            let here = change_of_force(identified, channel);
+            let livelier = if here > 0.0 { there / here } else { 1.0 };
+            return faster.powi(2).max(livelier).max(1.0);
         };
         let here = identified.rows.torque_rms[axis];
         let there = weak.own.iter().map(|own| own.rows.torque_rms[axis]).fold(0.0, f64::max);
@@ -207,6 +210,16 @@ fn by_what_is_left(
     );
     let by = Difference::Residual { channel, ratio };
     Some(OtherVehicle { by, reason })
+}
+
+/// By how much a force channel changes along the flights: the standard deviation of the specific force that it compares, m/s^2.
+fn change_of_force(of: &Fitted, channel: usize) -> f64 {
+    let is_mass = |column: &&NuisanceColumn| column.nuisance == Nuisance::Mass;
+    let Some(mass) = of.rows.nuisances.iter().find(is_mass) else { return 0.0 };
+    let of_rows = || of.rows.measured[channel].iter().flat_map(Clone::clone);
+    let count = of_rows().count().max(1) as f64;
+    let mean = of_rows().map(|row| mass.at(channel, row)).sum::<f64>() / count;
+    (of_rows().map(|row| (mass.at(channel, row) - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 /// Mean speed over the rows of the held-out flights, as a share of the mean airspeed of the flights explained.
