@@ -22,10 +22,11 @@ impl Alike {
     /// Of rows that are independent.
     pub(super) const ONE: Self = Self { all: 1.0, torques: 1.0 };
 
-    /// Of the rows that tell a nuisance.
+    /// Of the rows that tell a nuisance. Of a moment or product of inertia, those of the whole residual: the noise that a controller feeds
+    /// back is an error of the motion, and the residual of the torques does not show how long it lasts.
     pub(super) fn of(self, nuisance: Nuisance) -> f64 {
         match nuisance {
-            Nuisance::Inertia(_) | Nuisance::GuessedMomentAboutZ => self.torques,
+            Nuisance::GuessedMomentAboutZ => self.torques,
             _ => self.all,
         }
     }
