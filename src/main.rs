@@ -13,11 +13,11 @@ fn main() -> ExitCode {
     };
     let stderr = match commands::install(&cli.verbosity, cli.color, cli.verb.is_live()) {
         Ok(stderr) => stderr,
-        Err(error) => return error.report().into(),
+        Err(error) => return commands::failed(&error, cli.json).into(),
     };
     let status = match commands::run(&cli, &stderr) {
         Ok(outcome) => outcome.into(),
-        Err(error) => error.report().into(),
+        Err(error) => commands::failed(&error, cli.json).into(),
     };
     stderr.finish();
     status

@@ -39,5 +39,5 @@ pub use recording::{
 };
 pub use report::{ReportArgs, ReportFormat};
 pub use run::RunArgs;
-pub use verb::{Cli, Verb, color_of};
+pub use verb::{Cli, Verb, color_of, is_json};
 pub use verbosity::Verbosity;

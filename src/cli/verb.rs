@@ -178,6 +178,11 @@ pub fn color_of(arguments: &[OsString]) -> ColorChoice {
     choice.and_then(|choice| choice.parse().ok()).unwrap_or(ColorChoice::Auto)
 }
 
+/// Whether `--json` is among the arguments, before anything else is parsed.
+pub fn is_json(arguments: &[OsString]) -> bool {
+    arguments.iter().take_while(|argument| *argument != "--").any(|argument| argument == "--json")
+}
+
 impl Verb {
     /// It talks to vehicles: nothing in it waits for standard error.
     pub fn is_live(&self) -> bool {
@@ -237,5 +242,7 @@ mod tests {
         assert_eq!(of(&["mavid", "--color", "never", "plan"]), ColorChoice::Never);
         assert_eq!(of(&["mavid", "plan", "--color=always"]), ColorChoice::Always);
         assert_eq!(of(&["mavid", "plan", "--color"]), ColorChoice::Auto);
+        let json = |words: &[&str]| is_json(&words.iter().map(OsString::from).collect::<Vec<_>>());
+        assert!(json(&["mavid", "plan", "--json"]) && !json(&["mavid", "plan", "--", "--json"]));
     }
 }

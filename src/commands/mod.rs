@@ -13,6 +13,7 @@ mod demo;
 mod dispatch;
 mod effects;
 mod error;
+mod error_document;
 mod explain;
 mod export;
 mod fleet;
@@ -48,6 +49,7 @@ mod words;
 
 pub use dispatch::run;
 pub use error::CommandError;
+pub use error_document::failed;
 pub use outcome::{NOT_ALL, Outcome};
 pub use standard_error::install;
 pub use usage::usage;

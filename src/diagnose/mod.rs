@@ -1,5 +1,6 @@
 //! Where simulation and recording differ, which physics was left out, and the better model.
 
+mod about_z;
 mod acceptance;
 mod averaged;
 mod base;
@@ -119,6 +120,7 @@ pub use named::{Confusable, DetectionLimit, Named, NamedParameter, Strength};
 pub use own_of_flights::{Apart, apart};
 pub use own_wind::{drift_m, own_wind, relative_to_air};
 pub use pace::Pace;
+pub use physical::MOMENT_STD;
 pub use recorded::{Need, Recorded};
 pub use rotors::{OfRotors, RotorMotion, Thrusts};
 pub use rows::Rows;

@@ -79,7 +79,7 @@ pub(super) fn make_physical(
 const ABOUT_Z: usize = 6;
 
 /// Another torque per thrust by a factor, with the sizes that the motion tells as ratios to it.
-fn turn_with(base: &mut Base, factor: f64) {
+pub(super) fn turn_with(base: &mut Base, factor: f64) {
     base.vehicle.propulsion.torque_per_thrust_m *= factor;
     for term in &mut base.effects {
         for slot in 0..term.values.len() {
@@ -156,8 +156,8 @@ fn stay_at_prior(
 
 /// Entries of an inertia: xx xy xz yy yz zz.
 const ENTRIES: usize = THETA - 1;
-/// Standard deviation of a stated moment as a share of it. Moments by drawings and rules of thumb are wrong by 10 to 30 %.
-const MOMENT_STD: f64 = 0.3;
+/// Standard deviation (-) of a stated moment as a share of it. Moments by drawings and rules of thumb are wrong by 10 to 30 %.
+pub const MOMENT_STD: f64 = 0.3;
 /// Standard deviation of a stated product as a share of the largest moment: arms and batteries are placed about planes of symmetry.
 const PRODUCT_STD: f64 = 0.05;
 

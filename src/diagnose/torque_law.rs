@@ -138,9 +138,10 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
     use crate::diagnose::made_flights::flown;
-    use crate::diagnose::{ExplainSettings, explain};
+    use crate::diagnose::{ExplainSettings, Explanation, explain};
     use crate::physics::{ActiveEffect, Bounds, Condition, Effect, Hook, Own, Parameter, Rotors, Wrench};
     use crate::simulate::RandomTrajectory;
+    use crate::vehicle::Vehicle;
 
     /// Torques that go with a power of the thrust.
     #[derive(Debug)]
@@ -178,13 +179,37 @@ mod tests {
         }
     }
 
-    fn told(seed: u64, exponent: f64) -> Option<TorqueLaw> {
+    fn explained(seed: u64, exponent: f64) -> (Explanation, Vehicle) {
         let (signals, vehicle) = flown(seed, &RandomTrajectory::default(), |truth, _| {
             if exponent != 1.0 {
                 truth.effects.push(ActiveEffect::new(&Powered, &[exponent - 1.0]).unwrap());
             }
         });
-        explain(&[signals], &vehicle, &ExplainSettings::default()).unwrap().torque_law
+        (explain(&[signals], &vehicle, &ExplainSettings::default()).unwrap(), vehicle)
+    }
+
+    fn told(seed: u64, exponent: f64) -> Option<TorqueLaw> {
+        explained(seed, exponent).0.torque_law
+    }
+
+    #[test]
+    fn izz_stays_as_stated_where_only_its_ratio_to_the_torque_is_told() {
+        let (found, stated) = explained(6101, 1.6);
+        let of = |found: &Explanation| {
+            let vehicle = &found.search.after.base.vehicle;
+            (vehicle.body.inertia_kg_m2[(2, 2)], vehicle.propulsion.torque_per_thrust_m)
+        };
+        let (izz, torque_m) = of(&found);
+        assert!((torque_m / stated.propulsion.torque_per_thrust_m - 1.0).abs() < 1e-12);
+        let kept = found.keeping_about_z(&stated);
+        let (kept_izz, kept_torque_m) = of(&kept);
+        let moments = [0, 1].map(|axis| kept.search.after.base.vehicle.body.inertia_kg_m2[(axis, axis)]);
+        let nearest = stated.body.inertia_kg_m2[(2, 2)].min((moments[0] + moments[1]) / 1.01);
+        assert!((kept_izz / nearest - 1.0).abs() < 0.01, "{kept_izz} and {nearest}");
+        assert!((kept_izz / kept_torque_m / (izz / torque_m) - 1.0).abs() < 1e-12);
+        // names that flights refute give it back
+        let (back_izz, back_torque_m) = of(&kept.refuted());
+        assert!((back_torque_m / torque_m - 1.0).abs() < 1e-12, "{back_izz}");
     }
 
     #[test]

@@ -302,10 +302,8 @@ pub fn finding(estimated: &Estimated, nominal: &Nominal, index: usize) -> Findin
     if let Some(exponent) = estimated.torque_exponent.filter(|_| index == ABOUT_Z) {
         return Finding::NotDetermined {
             reason: format!(
-                "the rotors' torque goes with the power {exponent:.2} of their thrust, and the motion about z tells only how it \
-                 changes with the thrust: {:.3e} kg m^2 if the stated torque per thrust is torque over thrust at hover, {value:.3e} if it \
-                 is the change of the torque with the thrust there",
-                exponent * value
+                "the rotors' torque goes with the power {exponent:.2} of their thrust, so the motion about z tells only the ratio of \
+                 izz and the change of the torque with the thrust"
             ),
         };
     }

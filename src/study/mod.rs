@@ -40,9 +40,9 @@ pub use effects::{effects_file, with_further, with_stated_lag};
 pub use error::StudyError;
 pub use explain::{
     AlongFlights, AxisFit, AxisResidual, AxisShare, BodyParameter, Estimate, ExplainRequest, ExplainStudy,
-    Field, Figures, FlownPath, Followed, Given, Harmonics, Heat, LeftAlongTime, Located, PathResidual,
-    Predicted, QUANTITIES, RecordedAndSimulated, Refuted, StateShare, Tried, TriedAs, ValidationData, Worth,
-    explain, for_readers, stored_trajectory,
+    Field, Figures, FlightLimit, FlownPath, Followed, Given, Harmonics, Heat, LeftAlongTime, LeftOutForce,
+    Located, PathResidual, Predicted, QUANTITIES, RecordedAndSimulated, Refuted, StateShare, Tried, TriedAs,
+    ValidationData, Worth, explain, for_readers, no_model_in, stored_trajectory,
 };
 pub use flights::{ReadSettings, unread};
 pub use identify::{

@@ -22,6 +22,7 @@ mod explain_names;
 #[cfg(target_os = "linux")]
 mod explain_terminal;
 mod feedback;
+mod first_lines;
 mod fleet;
 mod hold_out_and_next_flight;
 mod identify;

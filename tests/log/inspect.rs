@@ -144,7 +144,8 @@ fn what_is_no_log_is_status_two_with_a_message() {
     ] {
         let output = mavid(&["inspect", &argument, "--json"]);
         assert_eq!(output.status.code(), Some(2), "{argument}");
-        assert!(output.stdout.is_empty());
+        let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(document["error"]["exit_status"], 2, "{argument}");
         let message = String::from_utf8(output.stderr).unwrap();
         assert!(message.contains(expected), "{argument}: {message}");
     }

@@ -106,7 +106,9 @@ fn wrong_input_is_named() {
         let output = plan("qball2.toml", &[&arguments[..], &["--starts", "1", "--json"]].concat());
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
-        assert!(output.stdout.is_empty() && message.contains(word), "{arguments:?}: {message}");
+        let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let told = document["error"]["message"].as_str().unwrap();
+        assert!(told.contains(word) && message.contains(word), "{arguments:?}: {message}");
     }
     let vehicle = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml");
     let output = plan("qball2.toml", &["--limits", vehicle.to_str().unwrap(), "--starts", "1"]);

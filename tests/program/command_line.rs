@@ -84,8 +84,8 @@ fn bad_input_and_bad_usage_are_status_two_with_nothing_on_stdout() {
     let path = written("typo.toml", "nmae = \"x\"\n");
     let typo = path.to_str().unwrap();
     for arguments in [
-        vec!["vehicle", "no-such-file.toml", "--json"],
-        vec!["vehicle", typo, "--json"],
+        vec!["vehicle", "no-such-file.toml"],
+        vec!["vehicle", typo],
         vec!["vehicle"],
         vec!["vehicle", typo, "--unknown"],
         vec!["fly-away"],
@@ -98,6 +98,51 @@ fn bad_input_and_bad_usage_are_status_two_with_nothing_on_stdout() {
     }
     let message = stderr(&mavid(&["vehicle", typo]));
     assert!(message.contains("typo.toml") && message.contains("unknown field `nmae`"), "{message}");
+}
+
+/// A script that asks for a document gets one, also where the command fails: its message is that of standard error.
+#[test]
+fn a_failure_with_json_is_one_document_with_the_message_and_the_status() {
+    let path = written("typo_json.toml", "nmae = \"x\"\n");
+    let typo = path.to_str().unwrap();
+    for (arguments, expected) in [
+        (vec!["vehicle", "no-such-file.toml", "--json"], "no-such-file.toml"),
+        (vec!["--json", "vehicle", typo], "unknown field `nmae`"),
+        (vec!["vehicle", typo, "--unknown", "--json"], "--unknown"),
+        (vec!["--json", "fly-away"], "fly-away"),
+        (vec!["--json", "sitl", "--speed", "0"], "--speed"),
+        (vec!["--json", "identify", "no-such-log.tlog", "--mass", "2"], "no-such-log.tlog"),
+        (vec!["--json", "explain", "no-such-log.tlog", "--mass", "2"], "no-such-log.tlog"),
+        (vec!["--json", "compare", "no-such-log.tlog", "--mass", "2"], "two flights"),
+        (vec!["--json", "inspect", "no-such-log.tlog"], "no-such-log.tlog"),
+        (
+            vec!["--json", "run", "--connect", "udq:127.0.0.1:9", "--mass", "2", "--room", "4,4,3", "--yes"],
+            "udq",
+        ),
+    ] {
+        let output = mavid(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
+        let document: serde_json::Value =
+            serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}"));
+        assert_eq!((&document["schema"], &document["error"]["exit_status"]), (&1.into(), &2.into()));
+        let message = document["error"]["message"].as_str().unwrap();
+        assert!(message.contains(expected) && !message.starts_with("mavid"), "{arguments:?}: {message}");
+        assert!(stderr(&output).contains(message.split("; ").next().unwrap()), "{arguments:?}: {message}");
+    }
+}
+
+/// Where a document was printed already, a failure after it adds none.
+#[test]
+fn a_failure_after_the_document_adds_none() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let fixture = |name: &str| root.join("fixtures").join(name).display().to_string();
+    let (log, vehicle) = (fixture("p01_identify_0_25s.tlog"), fixture("p01_vehicle.toml"));
+    let no_folder = written("no_folder", "");
+    let model = no_folder.join("model.toml").display().to_string();
+    let output = mavid(&["--json", "identify", &log, "--vehicle", &vehicle, "--out", &model]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(document["error"].is_null() && document["methods"].is_object());
 }
 
 #[test]

@@ -45,10 +45,17 @@ impl Pair {
         self.loaded.as_ref().map_or((&self.before, &self.after), |loaded| (&loaded.before, &loaded.after))
     }
 
-    /// Takes back what no model file has: what the beginning of the flight shows of its own load, and the mass of an empirical term. The
-    /// same part of the flight is predicted. Returns whether there was any of the first.
-    pub(super) fn unload(&mut self, trace: &Trace, empirical: Option<&Empirical>) -> bool {
-        self.after.vehicle.body.mass_kg -= empirical.map_or(0.0, |term| term.mass_change_kg);
+    /// Takes the mass of an empirical term out of the better model.
+    pub(super) fn take_out(&mut self, term: &Empirical) {
+        self.after.vehicle.body.mass_kg -= term.mass_change_kg;
+        if let Some(loaded) = &mut self.loaded {
+            loaded.after.vehicle.body.mass_kg -= term.mass_change_kg;
+        }
+    }
+
+    /// Takes back what no model file has: what the beginning of the flight shows of its own load. The same part of the flight is predicted.
+    /// Returns whether there was any.
+    pub(super) fn unload(&mut self, trace: &Trace) -> bool {
         let until_s = self.predicted_from_s();
         self.own(trace, until_s);
         until_s.is_finite()

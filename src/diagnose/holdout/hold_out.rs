@@ -66,7 +66,8 @@ pub fn on_left_out(
     let another = other_vehicle.is_some();
     let other_mass = ready.iter().any(|ready| ready.pair.other_mass);
     let speed_share = other_vehicle::speed_share(&ready, explanation);
-    notes.extend(as_written(&mut ready, empirical, settings));
+    let without_empirical = empirical.map_or_else(Vec::new, |term| without(term, &mut ready, settings));
+    notes.extend(as_written(&mut ready, empirical.is_some().then_some(&*without_empirical), settings));
     tracing::info!(improvement_percent = improvement, blocks, other_vehicle = another, "hold-out predicted");
     notes.push(Note::remark(
         About::HoldOut,
@@ -75,6 +76,7 @@ pub fn on_left_out(
     ));
     Ok(HoldoutFit {
         open_loop,
+        without_empirical,
         no_open_loop,
         improvement_percent,
         weak: weak.compared,
@@ -87,22 +89,34 @@ pub fn on_left_out(
     })
 }
 
-/// The errors over 0.5 s by the model as it is written, where a flight was predicted with more: a load of its own, or an empirical term.
+/// The errors without an empirical term, which is taken out of the models; none where nothing can be predicted.
+fn without(term: &Empirical, ready: &mut [Ready], settings: &HoldoutSettings) -> Vec<OpenLoop> {
+    ready.iter_mut().for_each(|ready| ready.pair.take_out(term));
+    // what was shown with it stands without this, too
+    open_loop::open_loop(ready, None, settings).map_or_else(|_| Vec::new(), |(open_loop, ..)| open_loop)
+}
+
+/// The errors over 0.5 s by the model as it is written, where a flight was predicted with more: a load of its own, or an empirical term,
+/// without which they are known.
 fn as_written(
     ready: &mut [Ready],
-    empirical: Option<&Empirical>,
+    without_empirical: Option<&[OpenLoop]>,
     settings: &HoldoutSettings,
 ) -> Option<Note> {
-    let unload = |ready: &mut Ready| ready.pair.unload(&ready.trace, empirical);
+    let unload = |ready: &mut Ready| ready.pair.unload(&ready.trace);
     let unloaded: Vec<bool> = ready.iter_mut().map(unload).collect();
-    let with = match (unloaded.contains(&true), empirical) {
+    let is_loaded = unloaded.contains(&true);
+    let with = match (is_loaded, without_empirical) {
         (false, None) => return None,
         (true, None) => "the load of each flight",
         (false, Some(_)) => "the empirical force",
         (true, Some(_)) => "the load of each flight and the empirical force",
     };
     // what was shown above stands without this, too
-    let (open_loop, ..) = open_loop::open_loop(ready, None, settings).ok()?;
+    let open_loop = match without_empirical.filter(|_| !is_loaded) {
+        Some(known) => known.to_vec(),
+        None => open_loop::open_loop(ready, None, settings).ok()?.0,
+    };
     let errors = OpenLoop::half_second(&open_loop).map(OpenLoop::quantities);
     let named = errors.into_iter().flatten().zip(["m", "m/s", "rad", "rad/s"]);
     let each: Vec<String> = named

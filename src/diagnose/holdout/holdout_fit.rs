@@ -12,6 +12,8 @@ use crate::note::Note;
 pub struct HoldoutFit {
     /// open-loop prediction, one entry a length of window; none where `no_open_loop` says why
     pub open_loop: Vec<OpenLoop>,
+    /// where the flights were predicted with an empirical term: the same without it; otherwise none
+    pub without_empirical: Vec<OpenLoop>,
     /// reason why nothing could be predicted
     pub no_open_loop: Option<String>,
     /// mean over the four quantities at 0.5 s of `100 (1 - after/before)`

@@ -33,5 +33,5 @@ pub use open_loop::{HALF_S, OpenLoop, WINDOWS_S};
 pub use other_vehicle::{Difference, OtherVehicle, differing};
 pub use rate_law::RateLaw;
 pub use settings::{Explained, HeldOut, HoldoutSettings};
-pub use split::{Split, split_last_periods};
+pub use split::{Split, flown_period_s, split_last_periods};
 pub use without::{HALF_SECOND, SquaredErrors, WindowError, Without, without_each};

@@ -51,8 +51,10 @@ pub fn split_last_periods(signals: &Signals) -> Option<Split> {
     })
 }
 
-/// Period of the flight by velocity if it is known, otherwise by body rates, s.
-fn flown_period_s(signals: &Signals, used: &[usize]) -> Option<f64> {
+/// Period of the flight (s) over the instants that are `used`, by velocity if it is known, otherwise by body rates; `None` where it does not
+/// repeat itself.
+#[must_use]
+pub fn flown_period_s(signals: &Signals, used: &[usize]) -> Option<f64> {
     let motion = signals.velocity.as_ref().or(signals.rate.as_ref())?;
     let rows: Vec<usize> = used.iter().copied().step_by(stride(signals.grid.step_s)).collect();
     let time_s: Vec<f64> = rows.iter().map(|&index| signals.grid.time_s(index)).collect();

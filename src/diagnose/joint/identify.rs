@@ -24,6 +24,7 @@ use crate::estimate::{
 use crate::physics::{ActiveEffect, Airframe};
 use crate::signals::Signals;
 use crate::stats::normal_deviate;
+use crate::text::significant;
 use crate::vehicle::{Anchor, Vehicle};
 
 /// Identifies the requested effects together with the rigid body. `known` are the effects of the vehicle file:
@@ -132,7 +133,14 @@ fn put_together(
     identified.body.gyroscopic = after.base.vehicle.body.gyroscopic;
     if torque_law.is_some() && estimated.theta[ABOUT_Z].is_finite() {
         // what turns the vehicle about z with the stated torque per thrust, as the flight does
-        identified.body.inertia_kg_m2[(2, 2)] = estimated.theta[ABOUT_Z];
+        let about_z = estimated.theta[ABOUT_Z];
+        identified.body.inertia_kg_m2[(2, 2)] = about_z;
+        if let Finding::NotDetermined { reason } = &mut body.parameters[ABOUT_Z].finding {
+            reason.push_str(&format!(
+                "; in the model izz is {} kg m^2, which turns the vehicle as it flew with the stated torque per thrust",
+                significant(about_z, 3)
+            ));
+        }
     }
     JointEstimate {
         vehicle: identified,

@@ -1,22 +1,31 @@
 //! The answer in one sentence.
 
 use super::limits::{unseen_of_usual_size, would_show};
+use super::no_model::{left_out_force, no_model, spoken_along, written};
 use super::own_wind::own_wind;
 use super::whereabouts::whereabouts;
 use crate::diagnose::holdout::HoldoutFit;
-use crate::diagnose::{Along, Named, Verdict, brief, called, clause};
+use crate::diagnose::{Named, Verdict, brief, called, clause};
 use crate::report::number::significant;
-use crate::study::{ExplainStudy, Predicted, Refuted, ValidationData};
+use crate::study::{ExplainStudy, FlightLimit, Predicted, Refuted, ValidationData};
 use crate::text::{list, list_or};
-use crate::vehicle::AXIS_NAMES;
 
 /// Largest number of effects that are listed with their sizes.
 const SIZED: usize = 4;
 
-/// The answer in one sentence; what makes it doubtful comes first, or last where that concerns no name.
+/// The answer in one sentence; what limits the flights and what makes it doubtful come first, or last where that concerns no name.
 #[must_use]
 pub fn answer(study: &ExplainStudy) -> String {
-    let found = format!("{}{}{}", found(study), withdrawn(study), no_model(study));
+    let clauses: Vec<String> = study.limited().iter().map(FlightLimit::words).collect();
+    let unsure = if study.effects.is_empty() { "" } else { "; no name is certain" };
+    match clauses.as_slice() {
+        [] => with_doubts(study),
+        clauses => format!("Limited: {}{unsure}. {}", clauses.join("; "), with_doubts(study)),
+    }
+}
+
+fn with_doubts(study: &ExplainStudy) -> String {
+    let found = format!("{}{}{}{}", found(study), withdrawn(study), left_out_force(study), no_model(study));
     match study.doubts().as_slice() {
         [] => found,
         [doubt] if study.doubts_torques_alone() => {
@@ -27,29 +36,6 @@ pub fn answer(study: &ExplainStudy) -> String {
         }
         doubts => format!("Doubtful: {}. {found}", doubts.join("; ")),
     }
-}
-
-/// A sentence on what the model does not predict.
-fn no_model(study: &ExplainStudy) -> String {
-    let (predicted, on) = match &study.holdout {
-        Some(_) if study.other_vehicle().is_some() => return String::new(),
-        Some(holdout) => (Some(holdout), study.shown_on.words()),
-        None => (study.identify.as_ref(), "the flights that were explained"),
-    };
-    let over = predicted.map_or_else(Vec::new, Predicted::no_model_over);
-    if over.is_empty() {
-        return String::new();
-    }
-    let each = over.into_iter().map(|(window_s, worse)| {
-        let worse: Vec<String> = worse.into_iter().map(ToOwned::to_owned).collect();
-        format!("the {window_s} s error of {}", list(&worse))
-    });
-    let each: Vec<String> = each.collect();
-    let (are, these) = if each.len() > 1 { ("are", "these") } else { ("is", "this") };
-    format!(
-        " On {on} {} {are} larger than that of a state that does not change: for prediction of {these}, the model is not usable.",
-        each.join(" and ")
-    )
 }
 
 fn found(study: &ExplainStudy) -> String {
@@ -204,6 +190,8 @@ fn gain(study: &ExplainStudy) -> String {
     if pair.most().is_none() {
         return format!("; on {shown} nothing could be predicted");
     }
+    // the model that is written has no empirical force
+    let pair = written(study).unwrap_or(pair);
     let rises = pair.rises();
     let worse =
         rises.map_or_else(String::new, |(name, percent)| format!(", that of {name} rises by {percent:.0} %"));
@@ -339,12 +327,4 @@ fn each_alone(study: &ExplainStudy) -> String {
         " Alone, {}. No one model explains these flights together: explain each by itself.",
         each.join("; ")
     )
-}
-
-/// The quantity on which an empirical term depends, in words.
-fn spoken_along(along: Along) -> String {
-    match along {
-        Along::Position(axis) => format!("world {}", AXIS_NAMES[axis.min(2)]),
-        Along::Velocity(axis) => format!("the velocity along body {}", AXIS_NAMES[axis.min(2)]),
-    }
 }

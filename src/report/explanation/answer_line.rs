@@ -10,6 +10,7 @@ use crate::text::list;
 #[must_use]
 pub fn answer_line(study: &ExplainStudy, columns: usize) -> String {
     let doubtful = if study.doubts().is_empty() { "" } else { "doubtful: " };
+    let limited = if study.limited().is_empty() { "" } else { "limited flight: " };
     let names = |with_size| -> String {
         let each = study.effects.iter().map(|effect| brief(effect, study.vehicle(), with_size));
         list(&each.collect::<Vec<_>>())
@@ -28,7 +29,7 @@ pub fn answer_line(study: &ExplainStudy, columns: usize) -> String {
             forms.iter().map(|names| format!("{names} {was} left out; {more}")).collect()
         }
     };
-    first_that_fits(found.into_iter().map(|found| format!("answer: {doubtful}{found}")), columns)
+    first_that_fits(found.into_iter().map(|found| format!("answer: {limited}{doubtful}{found}")), columns)
 }
 
 /// The first that finds room; the last where none does.

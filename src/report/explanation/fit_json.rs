@@ -4,7 +4,7 @@ use crate::compare::SIGNALS;
 use crate::diagnose::holdout::{AtEnd, Compared, HoldoutFit, OpenLoop};
 use crate::diagnose::{AXES, CHANNEL_NAMES};
 use crate::note::Note;
-use crate::study::{ExplainStudy, Predicted, QUANTITIES, ValidationData};
+use crate::study::{ExplainStudy, Predicted, QUANTITIES, ValidationData, no_model_in};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -53,6 +53,8 @@ struct FitValue {
 struct WindowValue {
     window_s: f64,
     windows: usize,
+    /// quantities that a state that does not change predicts better over this window, or at its end
+    worse_than_unchanged: Vec<&'static str>,
     errors: BTreeMap<&'static str, ComparedValue>,
 }
 
@@ -157,9 +159,11 @@ fn pair(predicted: Option<&Predicted>) -> PairValue {
 fn window(of: &OpenLoop) -> WindowValue {
     const KEYS: [&str; 4] = ["position", "velocity", "attitude", "rates"];
     let errors = of.quantities().into_iter().zip(KEYS.into_iter().zip(QUANTITIES));
+    let worse = QUANTITIES.into_iter().zip(no_model_in(of)).filter(|(_, worse)| *worse);
     WindowValue {
         window_s: of.window_s,
         windows: of.windows,
+        worse_than_unchanged: worse.map(|((name, _), _)| name).collect(),
         errors: errors
             .filter_map(|(of, (key, (_, unit)))| Some((key, compared(of.as_ref()?, unit))))
             .collect(),

@@ -1,11 +1,13 @@
 //! The section on the fit before and after, and on the hold-out.
 
+use super::no_model::no_model_line;
 use crate::compare::SIGNALS;
 use crate::diagnose::holdout::{AtEnd, Compared, HoldoutFit, OpenLoop};
 use crate::diagnose::{AXES, CHANNEL_NAMES};
 use crate::report::html::{Cell, note, number, section, table, text, warning};
 use crate::report::number::{percent, significant, spoken, with_error};
 use crate::study::{ExplainStudy, Predicted, QUANTITIES, ValidationData};
+use crate::text::capital;
 use maud::{Markup, html};
 
 const COMPARED: [&str; 6] = ["", "before|", "after|", "noise alone|", "better by|", "unit"];
@@ -33,7 +35,10 @@ pub(super) fn hold_out(study: &ExplainStudy) -> Markup {
 
 fn at_horizon(on: &str, predicted: &Predicted) -> Markup {
     let (rows, _) = rows(predicted.at_half_second());
-    table(&format!("Prediction error, rms, {on}{}", mean(predicted)), &PREDICTED, &rows)
+    html! {
+        (table(&format!("Prediction error, rms, {on}{}", mean(predicted)), &PREDICTED, &rows))
+        @if let Some(line) = no_model_line(predicted) { (warning(&format!("{}.", capital(&line)))) }
+    }
 }
 
 /// All errors before and after, on the explained flights and on the hold-out flights.
@@ -100,6 +105,7 @@ fn prediction(on: &str, predicted: &Predicted) -> Markup {
     html! {
         (table(&format!("Prediction error, rms, {on}{}", mean(predicted)), &PREDICTED, &rows))
         (table(&format!("Error at the horizon, mean, {on}"), &AT_END, &at_end))
+        @if let Some(line) = no_model_line(predicted) { (note(&format!("{}.", capital(&line)))) }
     }
 }
 

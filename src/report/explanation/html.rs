@@ -8,7 +8,7 @@ use super::motor::{motor, sizes};
 use super::pictures;
 use super::rivals::rival;
 use super::shown_by::shown_by;
-use super::text::{ERRORS, after, scale};
+use super::text::{ERRORS, after, before, scale};
 use crate::diagnose::holdout::RateLaw;
 use crate::diagnose::{Empirical, NO_LATENCY, Named, Slight, Verdict, called, clause};
 use crate::report::html::{
@@ -59,6 +59,9 @@ fn tags(study: &ExplainStudy) -> Vec<String> {
     ];
     if study.explanation.too_little_excitation {
         tags.push("too little excitation".to_owned());
+    }
+    if !study.limited().is_empty() {
+        tags.push("limited flight".to_owned());
     }
     tags.extend(study.other_vehicle().map(|_| "hold-out of another vehicle".to_owned()));
     tags
@@ -163,18 +166,12 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
         .map(|of| {
             // both are of the same flights and err alike: their difference errs by no more than this
             let std = of.before.own_std().hypot(of.after.own_std());
-            let known = of.not_determined.is_none() && of.before.std > 0.0;
+            let known = of.not_determined.is_none() && of.before_not_determined.is_none();
             let moved = (of.after.value - of.before.value) / std.max(f64::MIN_POSITIVE);
             vec![
                 text(of.name),
                 number(significant(of.nominal, 4)),
-                number(if of.weighed {
-                    significant(of.before.value, 4)
-                } else if of.before.std > 0.0 {
-                    with_error(of.before.value, of.before.std)
-                } else {
-                    "not known".into()
-                }),
+                number(before(&of)),
                 number(after(&of)),
                 number(if known && !of.weighed { format!("{moved:+.1}") } else { "-".into() }),
                 text(of.unit),

@@ -10,7 +10,7 @@ use crate::diagnose::{Along, CHANNEL_NAMES};
 use crate::note::Note;
 use crate::report::thrust_source::thrust_name;
 use crate::report::value::{Thrust, thrust};
-use crate::study::{AxisFit, BodyParameter, ExplainStudy, InputFile, Located};
+use crate::study::{AxisFit, BodyParameter, ExplainStudy, FlightLimit, InputFile, Located};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -23,10 +23,15 @@ pub struct ExplanationDocument {
     schema: u32,
     verdict: &'static str,
     answer: String,
+    /// why the flights tell little, by the way they were flown; no name is certain then
+    limited: Vec<String>,
     effects: Vec<EffectValue>,
     traces: Vec<TraceValue>,
     closest: Vec<EffectValue>,
     empirical: Option<EmpiricalValue>,
+    /// only where such a term was left out, because what was not used is predicted worse with it
+    #[serde(skip_serializing_if = "Option::is_none")]
+    empirical_left_out: Option<LeftOutValue>,
     #[serde(flatten)]
     turning: TurningValue,
     localisation: Located,
@@ -59,6 +64,13 @@ struct EmpiricalValue {
     gain_percent: f64,
 }
 
+/// By how much errors over 0.5 s are larger with a term, mean over the quantities.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct LeftOutValue {
+    variable: &'static str,
+    worse_percent: f64,
+}
+
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct ParameterValue {
     value: Option<f64>,
@@ -72,7 +84,9 @@ struct ParameterValue {
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct Moved {
     nominal: f64,
-    before: f64,
+    /// by the rigid body alone; null where the flights do not determine it
+    before: Option<f64>,
+    before_std: Option<f64>,
     after: Option<f64>,
     unit: &'static str,
 }
@@ -155,10 +169,15 @@ impl ExplanationDocument {
             schema: 1,
             verdict: study.verdict().name(),
             answer: answer(study),
+            limited: study.limited().iter().map(FlightLimit::words).collect(),
             effects: effect_values(study, &study.effects),
             traces: study.explanation.slight.iter().map(|slight| trace(study, slight)).collect(),
             closest: effect_values(study, &study.closest),
             empirical: empirical(study),
+            empirical_left_out: study.left_out_force.map(|force| LeftOutValue {
+                variable: force.along.name(),
+                worse_percent: force.worse_percent,
+            }),
             turning: TurningValue::of(study),
             localisation: study.located.clone(),
             prediction: fit_values(study),
@@ -205,7 +224,14 @@ fn empirical(study: &ExplainStudy) -> Option<EmpiricalValue> {
 fn moved(study: &ExplainStudy) -> BTreeMap<&'static str, Moved> {
     let moved = |p: BodyParameter| {
         let after = p.not_determined.is_none().then_some(p.after.value);
-        let value = Moved { nominal: p.nominal, before: p.before.value, after, unit: p.unit };
+        let before = Some(p.before).filter(|_| p.before_not_determined.is_none());
+        let value = Moved {
+            nominal: p.nominal,
+            before: before.map(|of| of.value),
+            before_std: before.map(|of| of.std).filter(|std| std.is_finite()),
+            after,
+            unit: p.unit,
+        };
         (p.name, value)
     };
     study.body().into_iter().map(moved).collect()

@@ -2,12 +2,14 @@
 
 use super::answer::answer;
 use super::motor::motor;
+use super::no_model::no_model_line;
 use super::text::after;
 use crate::diagnose::called;
 use crate::report::bare::{bare, file_name};
 use crate::report::markdown::{escaped, remark, table};
 use crate::report::number::{percent, significant, spoken, with_error};
 use crate::study::{ExplainStudy, Predicted, QUANTITIES, ValidationData};
+use crate::text::capital;
 use std::fmt::Write;
 
 /// The summary.
@@ -84,6 +86,9 @@ fn better(page: &mut String, study: &ExplainStudy, files: &[&str]) {
     table(page, &columns, &rows);
     if !rows.is_empty() {
         page.push_str("\nunchanged: a state that does not change; better by: than the better one of it and the rigid body\n");
+    }
+    if let Some(line) = predicted.and_then(no_model_line) {
+        let _ = writeln!(page, "\n{}.", capital(&line));
     }
 }
 

@@ -13,6 +13,7 @@ mod limits;
 mod markdown;
 mod model;
 mod motor;
+mod no_model;
 mod own_wind;
 mod pictures;
 mod prospect;

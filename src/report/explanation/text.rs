@@ -4,6 +4,7 @@ use super::along::along_lines;
 use super::answer::answer;
 use super::limits::{named_from, not_possible};
 use super::motor::{motor, sizes};
+use super::no_model::no_model_line;
 use super::rivals::rival;
 use super::shown_by::shown_by;
 use crate::diagnose::{NO_LATENCY, Named, Verdict, clause};
@@ -127,6 +128,11 @@ fn fit_lines(page: &mut String, study: &ExplainStudy) {
     }
     page.push_str("    unchanged: a state that does not change; better by: than the better one of it and the rigid body\n");
     at_end_lines(page, study.holdout.as_ref().or(study.identify.as_ref()));
+    for (name, of) in [("flights explained", &study.identify), (shown.as_str(), &study.holdout)] {
+        if let Some(line) = of.as_ref().and_then(no_model_line) {
+            let _ = writeln!(page, "    {name}: {line}");
+        }
+    }
     if let Some(Err(why)) = study.shown.as_ref().map(|shown| &shown.closed_loop) {
         let _ = writeln!(page, "\n  not simulated in closed loop: {why}");
     }
@@ -181,14 +187,14 @@ pub(super) const ERRORS: &str = "standard error after the flight, with the effec
                                  of the rigid body alone";
 
 fn body_lines(page: &mut String, study: &ExplainStudy) {
-    let _ = writeln!(page, "\n  rigid body{:>13}{:>16}{:>28}", "nominal", "alone", "with the effects");
+    let _ = writeln!(page, "\n  rigid body{:>13}{:>24}{:>28}", "nominal", "alone", "with the effects");
     for of in study.body() {
         let _ = writeln!(
             page,
-            "    {:<6}{:>13}{:>16}{:>28}  {}",
+            "    {:<6}{:>13}{:>24}{:>28}  {}",
             of.name,
             significant(of.nominal, 4),
-            significant(of.before.value, 4),
+            before(&of),
             after(&of),
             of.unit
         );
@@ -218,10 +224,21 @@ fn body_lines(page: &mut String, study: &ExplainStudy) {
     }
 }
 
+/// A value of the rigid body alone, as people read it.
+pub(super) fn before(of: &BodyParameter) -> String {
+    match of.before_not_determined {
+        Some(_) => NOT_DETERMINED.to_owned(),
+        None if of.weighed => format!("{} (weighed)", significant(of.before.value, 4)),
+        None => with_error(of.before.value, of.before.std),
+    }
+}
+
+const NOT_DETERMINED: &str = "not determined";
+
 /// A value with the effects, as people read it.
 pub(super) fn after(of: &BodyParameter) -> String {
     match of.not_determined {
-        Some(_) => "not determined".to_owned(),
+        Some(_) => NOT_DETERMINED.to_owned(),
         None if of.weighed => format!("{} (weighed)", significant(of.after.value, 4)),
         None => with_error(of.after.value, of.after.std),
     }

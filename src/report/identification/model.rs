@@ -26,9 +26,9 @@ pub fn identified_model(study: &IdentifyStudy) -> Result<String, ConfigError> {
     if let Some(share) = study.gyroscopic {
         identified.body.gyroscopic = share.value;
     }
-    if study.torque_law.is_some() {
-        // what turns the vehicle about z with the stated torque per thrust, as the flight does
-        identified.body.inertia_kg_m2[(2, 2)] = best.estimated.theta[6];
+    if let Some(about_z_kg_m2) = study.about_z_kg_m2 {
+        // with the torque per thrust that goes with it, it turns the vehicle as the flight does
+        identified.body.inertia_kg_m2[(2, 2)] = about_z_kg_m2;
     }
     let mut text = vehicle_to_toml(&identified)?;
     let _ = writeln!(text, "\n[identified]\nmethod = \"{}\"", best.method.name());
@@ -39,7 +39,7 @@ pub fn identified_model(study: &IdentifyStudy) -> Result<String, ConfigError> {
         );
         let _ = writeln!(text, "beside = {:?}", study.beside);
     }
-    let _ = writeln!(text, "# what the flight did not determine keeps its nominal value in [body]");
+    let _ = writeln!(text, "{NOT_DETERMINED}");
     text.push_str(&identified_entries(best, scale));
     text.push_str(&flown(study));
     text.push_str(&correlation_lines(&study.correlation()));
@@ -47,6 +47,9 @@ pub fn identified_model(study: &IdentifyStudy) -> Result<String, ConfigError> {
     let _ = writeln!(text, "cutoff_hz = {:.4}", study.identification.cutoff_hz);
     Ok(text)
 }
+
+/// What stands in `[body]` in place of what is not determined.
+const NOT_DETERMINED: &str = "# what the flight did not determine is in [body] as the vehicle file states it, unless its reason tells another value";
 
 /// What the flights were flown with.
 fn flown(study: &IdentifyStudy) -> String {
@@ -60,7 +63,7 @@ fn model_with(study: &IdentifyStudy, with: &WithEffects) -> Result<String, Confi
     text.push_str(&effect_tables(&joint.acting, &joint.vehicle));
     let ids: Vec<&str> = joint.effects.iter().map(|effect| effect.effect.id()).collect();
     let _ = writeln!(text, "\n[identified]\nmethod = \"WEAK\"\nwith = {ids:?}");
-    let _ = writeln!(text, "# what the flight did not determine keeps its nominal value in [body]");
+    let _ = writeln!(text, "{NOT_DETERMINED}");
     text.push_str(&identified_entries(&joint.body, joint.scale.as_ref()));
     let latency = &joint.latency;
     let _ = if latency.is_determined() {

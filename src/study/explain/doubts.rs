@@ -1,12 +1,13 @@
 //! Why an explanation is doubtful.
 
 use super::body::BodyParameter;
+use super::limited::FlightLimit;
 use super::result::ExplainStudy;
 use super::short::Short;
-use crate::diagnose::Named;
 use crate::diagnose::locate::Redness;
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
+use crate::diagnose::{Named, Verdict};
 use crate::estimate::{Contradiction, Finding, FlightApart, NAMES, ThrustScale, stated};
 use crate::note::{About, Note};
 use crate::study::doubts::{TWO_VEHICLES, doubts};
@@ -131,5 +132,21 @@ impl ExplainStudy {
             && self.doubts().len() == 1
             && !self.effects.is_empty()
             && self.effects.iter().all(is_force)
+    }
+
+    /// Why the flights that were explained tell little; none where they tell what flights tell.
+    #[must_use]
+    pub fn limited(&self) -> Vec<FlightLimit> {
+        let hardly_moves = self.explanation.too_little_excitation;
+        if hardly_moves && self.verdict() == Verdict::NothingMissing {
+            // that is the answer itself
+            return Vec::new();
+        }
+        let is_hover = self.given.limited.contains(&FlightLimit::Hover);
+        let more = (hardly_moves && !is_hover).then_some(FlightLimit::LittleMotion);
+        // that a flight is short as a whole is said as a doubt
+        let is_told =
+            |limit: &FlightLimit| self.short.is_some() && matches!(limit, FlightLimit::FewPeriods { .. });
+        self.given.limited.iter().copied().filter(|limit| !is_told(limit)).chain(more).collect()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::left_out::{of_others, shown_only_by};
 use super::refuted::{BetterBy, Refuted, Worthless};
+use super::left_out_force::{LeftOutForce, WORSE_PERCENT};
 use super::result::ExplainStudy;
 use super::validation_data::ValidationData;
 use crate::diagnose::holdout::{
@@ -82,10 +83,11 @@ pub(super) fn hold_back(flights: &mut Prepared) -> (ValidationData, Option<Signa
 
 impl ExplainStudy {
     /// Prediction errors before and after on the flights that were explained, and, of several, whether they are of one
-    /// vehicle. An empirical term stands in where no mechanism serves.
-    pub(super) fn evaluate_explained(&mut self, flights: &Prepared) {
+    /// vehicle. An empirical term stands in where no mechanism serves, unless it was `left_out`.
+    pub(super) fn evaluate_explained(&mut self, flights: &Prepared, left_out: bool) {
         let (vehicle, settings) = (&self.given.vehicle, &self.given.settings);
-        self.empirical = match Empirical::fit(&self.explanation, &flights.signals, vehicle, settings) {
+        let fit = || Empirical::fit(&self.explanation, &flights.signals, vehicle, settings);
+        self.empirical = match if left_out { Ok(None) } else { fit() } {
             Ok(empirical) => empirical,
             Err(error) => {
                 self.notes.push(Note::warning(About::Estimate, format!("no empirical term: {error}")));
@@ -263,7 +265,27 @@ impl ExplainStudy {
         let other = shown.other_vehicle.iter();
         self.notes.extend(other.map(|other| Note::warning(About::HoldOut, other.reason.clone())));
         self.holdout = Some(Predicted::from(&shown));
+        self.without_empirical = (!shown.without_empirical.is_empty())
+            .then(|| Predicted { open_loop: shown.without_empirical.clone(), improvement_percent: None });
         self.shown = Some(shown);
         self.shown_on = shown_on;
+    }
+
+    /// The empirical force, where flights that were not used are predicted clearly worse with it than without it. `None` where there is
+    /// none, and where the hold-out is of another vehicle.
+    pub(super) fn refuted_force(&self) -> Option<LeftOutForce> {
+        let along = self.empirical.as_ref()?.along;
+        if self.other_vehicle().is_some() {
+            return None;
+        }
+        let with = self.holdout.as_ref()?.half_second();
+        let without = self.without_empirical.as_ref()?.half_second();
+        let each = with.iter().zip(&without).filter_map(|(with, without)| {
+            let percent = 100.0 * (with.as_ref()?.after.value / without.as_ref()?.after.value - 1.0);
+            percent.is_finite().then_some(percent)
+        });
+        let each: Vec<f64> = each.collect();
+        let worse_percent = each.iter().sum::<f64>() / each.len().max(1) as f64;
+        (worse_percent > WORSE_PERCENT).then_some(LeftOutForce { along, worse_percent })
     }
 }

@@ -77,19 +77,22 @@ impl Predicted {
         QUANTITIES.into_iter().zip(worse).filter(|(_, worse)| *worse).map(|((name, _), _)| name).collect()
     }
 
-    /// The same over each window from 0.5 s on, or at its end: its length (s) with the quantities, if there are any.
+    /// The same over each window, or at its end, by quantity: the lengths of the windows (s), if there are any.
     #[must_use]
-    pub fn no_model_over(&self) -> Vec<(f64, Vec<&'static str>)> {
-        let long = self.open_loop.iter().filter(|of| of.window_s >= HALF_S);
-        let of_window = |of: &OpenLoop| {
-            let is_worse = |of: Compared| of.is_worse_than_unchanged() || of.ends_worse_than_unchanged();
-            let worse = QUANTITIES
-                .into_iter()
-                .zip(of.quantities())
-                .filter(|(_, compared)| compared.is_some_and(is_worse));
-            (of.window_s, worse.map(|((name, _), _)| name).collect::<Vec<_>>())
-        };
-        long.map(of_window).filter(|(_, worse)| !worse.is_empty()).collect()
+    pub fn no_model_of(&self) -> Vec<(&'static str, Vec<f64>)> {
+        let each = QUANTITIES.into_iter().enumerate().map(|(place, (name, _))| {
+            let worse = self.open_loop.iter().filter(|of| no_model_in(of)[place]);
+            (name, worse.map(|of| of.window_s).collect::<Vec<_>>())
+        });
+        each.filter(|(_, windows_s)| !windows_s.is_empty()).collect()
+    }
+
+    /// Whether the answer has to tell it: it holds over 0.5 s, or over several windows.
+    #[must_use]
+    pub fn is_no_model(&self) -> bool {
+        let worse = self.open_loop.iter().filter(|of| no_model_in(of).contains(&true));
+        let windows_s: Vec<f64> = worse.map(|of| of.window_s).collect();
+        windows_s.len() > 1 || windows_s.iter().any(|window_s| (window_s - HALF_S).abs() < 1e-9)
     }
 
     /// Mean over the quantities of what the effects lower the rigid body's errors by, percent. That a state which does not change
@@ -124,6 +127,13 @@ impl Predicted {
             self.half_second().into_iter().flatten().map(|of| of.improvement_percent.value).collect();
         (!each.is_empty()).then(|| each.iter().sum::<f64>() / each.len() as f64)
     }
+}
+
+/// Whether a state that does not change predicts each quantity better over a window, or at its end.
+#[must_use]
+pub fn no_model_in(of: &OpenLoop) -> [bool; 4] {
+    let is_worse = |of: Compared| of.is_worse_than_unchanged() || of.ends_worse_than_unchanged();
+    of.quantities().map(|compared| compared.is_some_and(is_worse))
 }
 
 impl From<&HoldoutFit> for Predicted {
@@ -185,9 +195,14 @@ mod tests {
             window(1.0, of(2.0, 1.0), of(1.0, 2.0)),
         ];
         let predicted = Predicted { open_loop, improvement_percent: None };
-        // a tenth of a second is no prediction that anyone needs
-        assert_eq!(predicted.no_model_over(), [(1.0, vec!["attitude"])]);
-        assert!(predicted.worse_than_unchanged().is_empty());
+        assert_eq!(predicted.no_model_of(), [("position", vec![0.1]), ("attitude", vec![1.0])]);
+        // over two windows: the answer tells it
+        assert!(predicted.worse_than_unchanged().is_empty() && predicted.is_no_model());
+        let alone = |window_s| Predicted {
+            open_loop: vec![window(window_s, of(1.0, 2.0), None)],
+            improvement_percent: None,
+        };
+        assert!(alone(0.5).is_no_model() && !alone(0.1).is_no_model() && !alone(1.0).is_no_model());
     }
 
     #[test]
@@ -198,6 +213,6 @@ mod tests {
         };
         let open_loop = vec![window(0.5, ends(2.0, 1.9), None), window(1.0, None, ends(0.4, 0.9))];
         let predicted = Predicted { open_loop, improvement_percent: None };
-        assert_eq!(predicted.no_model_over(), [(1.0, vec!["attitude"])]);
+        assert_eq!(predicted.no_model_of(), [("attitude", vec![1.0])]);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::along::{with_own, with_own_winds, without_gust_of_none};
 use super::hold_out::hold_back;
+use super::limited::{FlightLimit, limits_of_flights};
 use super::result::{ExplainStudy, Given};
 use super::short::Short;
 use super::traces::traces_of;
@@ -55,6 +56,7 @@ pub(in crate::study) fn explain_prepared(
     let winds_m_s = if several { with_own_winds(flights, asked.vehicle) } else { Vec::new() };
     let held_winds_m_s = if several { with_own_winds(held, asked.vehicle) } else { Vec::new() };
     let alone = if several { with_own(flights, asked.vehicle) } else { Vec::new() };
+    let limited = limits_of_flights(&flights.signals, asked.vehicle);
     let whole = flights.signals.last().cloned();
     let (shown_on, back) = match (held.is_empty(), several) {
         (true, true) => (ValidationData::LeftOut { flights: flights.signals.len() }, None),
@@ -66,7 +68,7 @@ pub(in crate::study) fn explain_prepared(
     let short = is_short.then_some(Short { usable_s, unsure: Vec::new() });
     let own_load = false;
     let mut task =
-        Task { asked, winds_m_s: &winds_m_s, flown_hover, alone: &alone, short, own_load, progress };
+        Task { asked, winds_m_s: &winds_m_s, flown_hover, limited, alone: &alone, short, own_load, progress };
     progress.stage(Stage::Explaining);
     let (mut study, refused) = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
     // payload and wind of another day make no other vehicle; the names stay as they were found
@@ -102,6 +104,8 @@ struct Task<'a> {
     winds_m_s: &'a [Option<[f64; 2]>],
     /// command of the flown hover with its standard error, of the flights before any wind was taken out of them
     flown_hover: Option<(f64, f64)>,
+    /// why the flights tell little, with the parts that are held back
+    limited: Vec<FlightLimit>,
     /// of each flight, where they are several and not alike
     alone: &'a [Vec<Named>],
     /// where one flight is given, and no part of it can be held back
@@ -199,6 +203,7 @@ impl Task<'_> {
         let tell = |done, of| self.progress.about(done, of);
         let found = crate::diagnose::explain_watched(&flights.signals, self.asked.vehicle, settings, &tell)
             .map_err(|source| self.unexplained(flights, source))?;
+        let found = found.keeping_about_z(self.asked.vehicle);
         Ok(without_gust_of_none(found, &flights.signals, self.alone, (self.asked.vehicle, settings)))
     }
 
@@ -231,19 +236,39 @@ impl Task<'_> {
             hover_command,
             by_guessed_curve: moved_by_guessed_curve(&flights.signals, self.asked.vehicle),
             contradicting,
+            limited: self.limited.clone(),
             settings,
             transient_s: self.asked.transient_s,
             own_load: self.own_load,
         }
     }
 
-    /// An explanation with what it does on the flights explained and on those held out.
+    /// An explanation with what it does on the flights explained and on those held out. An empirical force with which these are predicted
+    /// worse is left out.
     fn evaluated(
         &self,
         given: Given,
         explanation: Explanation,
         flights: &Prepared,
         (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
+    ) -> ExplainStudy {
+        let on = (held, back, shown_on.clone());
+        let study = self.evaluated_with((given, explanation), flights, on, false);
+        let Some(refuted) = study.refuted_force() else { return study };
+        let ExplainStudy { given, explanation, .. } = study;
+        let mut without = self.evaluated_with((given, explanation), flights, (held, back, shown_on), true);
+        without.notes.push(refuted.note());
+        without.left_out_force = Some(refuted);
+        without
+    }
+
+    /// The same with an empirical force where no mechanism serves, or with that `left_out`.
+    fn evaluated_with(
+        &self,
+        (given, explanation): (Given, Explanation),
+        flights: &Prepared,
+        (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
+        left_out: bool,
     ) -> ExplainStudy {
         let mut study = ExplainStudy::new(given, explanation);
         study.short = self.short.clone().filter(|_| matches!(shown_on, ValidationData::Nothing { .. }));
@@ -258,7 +283,7 @@ impl Task<'_> {
             study.tell_along(&flights.signals, self.winds_m_s.to_vec(), self.alone);
         }
         study.tell_flights_apart();
-        study.evaluate_explained(flights);
+        study.evaluate_explained(flights, left_out);
         if let ValidationData::LeftOut { .. } = shown_on {
             study.evaluate_left_out(flights);
         } else {

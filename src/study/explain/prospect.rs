@@ -21,6 +21,7 @@ impl ExplainStudy {
         decided
             && !self.explanation.too_little_excitation
             && self.doubts().is_empty()
+            && self.limited().is_empty()
             && self.other_vehicle().is_none()
             && self.effects.iter().all(|effect| effect.confusable_with.is_empty())
             && self.unsettled().next().is_none()

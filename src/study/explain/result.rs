@@ -1,9 +1,9 @@
 //! The result of explaining: what went in, what was found, and what shows it.
 
 use super::along_flights::AlongFlights;
-use super::body::{BodyParameter, Estimate};
+use super::left_out_force::LeftOutForce;
+use super::limited::FlightLimit;
 use super::located::Located;
-use super::not_determined::{BY_CONTROL, KEPT};
 use super::predicted::Predicted;
 use super::readers::for_readers;
 use super::refuted::Refuted;
@@ -18,10 +18,7 @@ use crate::diagnose::{
     Named, Trace, Verdict,
 };
 use crate::draft::Draft;
-use crate::estimate::{
-    Estimated, Finding, FlightApart, MovedByCurve, NAMES, Nominal, THETA, ThrustScale, UNITS, finding,
-    rescaled, scaling_mass, theta_of,
-};
+use crate::estimate::{FlightApart, MovedByCurve};
 use crate::note::Note;
 use crate::physics::ActiveEffect;
 use crate::signals::Quality;
@@ -47,6 +44,8 @@ pub struct Given {
     pub by_guessed_curve: Option<MovedByCurve>,
     /// flights whose masses or moments of inertia, by the rigid body alone, contradict those of the first one
     pub contradicting: Vec<FlightApart>,
+    /// why the flights that were explained tell little, by the way they were flown
+    pub limited: Vec<FlightLimit>,
     /// settings of the method
     pub settings: ExplainSettings,
     /// s left out at the beginning of each flight
@@ -76,6 +75,10 @@ pub struct ExplainStudy {
     pub worth: Option<Worth>,
     /// a term without a mechanism, where none serves
     pub empirical: Option<Empirical>,
+    /// where there is such a term: errors of open-loop prediction on flights that were not used, without it
+    pub without_empirical: Option<Predicted>,
+    /// such a term that was left out, because flights that were not used are predicted worse with it
+    pub left_out_force: Option<LeftOutForce>,
     /// a law of the rates for open-loop predictions, where the torques predict worse than no change
     pub rate_law: Option<RateLaw>,
     /// which flights those are
@@ -131,6 +134,8 @@ impl ExplainStudy {
             shown: None,
             worth: None,
             empirical: None,
+            without_empirical: None,
+            left_out_force: None,
             rate_law: None,
             shown_on: ValidationData::Nothing { reason: "no hold-out".to_owned() },
             notes: Vec::new(),
@@ -163,87 +168,6 @@ impl ExplainStudy {
     #[must_use]
     pub fn vehicle(&self) -> &Vehicle {
         &self.fitted().base.vehicle
-    }
-
-    /// Mass and inertia, nominal, alone and with the effects.
-    #[must_use]
-    pub fn body(&self) -> Vec<BodyParameter> {
-        let before = self.estimates(&self.explanation.search.before);
-        let after = self.estimates(self.fitted());
-        let nominal = Nominal::of(&self.given.vehicle);
-        let estimated =
-            self.on_scale(self.fitted()).with_wider_window(self.explanation.search.by_wider_window);
-        let is_weighed = |index| index == 0 && self.fitted().base.weighed_kg.is_some();
-        let fitted = self.fitted();
-        let by_control = |index: usize| index > 0 && self.explanation.turned_by_control;
-        let not_determined = |index| match finding(&estimated, &nominal, index) {
-            _ if by_control(index) => Some(BY_CONTROL.to_owned()),
-            Finding::NotDetermined { reason } if !is_weighed(index) => Some(reason),
-            _ if fitted.undetermined.contains(&index) => Some(KEPT.to_owned()),
-            _ => None,
-        };
-        (0..NAMES.len())
-            .map(|index| BodyParameter {
-                name: NAMES[index],
-                unit: UNITS[index],
-                nominal: nominal.theta[index],
-                before: before[index],
-                after: after[index],
-                weighed: is_weighed(index),
-                not_determined: not_determined(index),
-            })
-            .collect()
-    }
-
-    /// The rotors' thrust against the vehicle file's, where the mass was weighed.
-    #[must_use]
-    pub fn scale(&self) -> Option<ThrustScale> {
-        let fitted = self.fitted();
-        let weighed_kg = fitted.base.weighed_kg?;
-        // with the stated thrust the flight would show this mass
-        let stated = &self.given.vehicle.propulsion;
-        let estimated = fitted.with_stated_thrust(stated);
-        let mass = scaling_mass(&self.guessing(estimated, fitted), &Nominal::of(&self.given.vehicle));
-        Some(ThrustScale::of(mass, weighed_kg, stated))
-    }
-
-    /// Mass and inertia of a fit, with the covariance that a weighed mass leaves.
-    fn on_scale(&self, fitted: &Fitted) -> Estimated {
-        let estimated = self.guessing(fitted.rigid_body(), fitted);
-        fitted.base.weighed_kg.map_or(estimated.clone(), |weighed_kg| rescaled(&estimated, weighed_kg))
-    }
-
-    /// An estimate with what a guessed thrust curve does to it, unless the fit has a curve of its own.
-    fn guessing(&self, estimated: Estimated, fitted: &Fitted) -> Estimated {
-        let told = fitted.base.estimates_bend();
-        let moved = self.given.by_guessed_curve.filter(|_| !told).map(|by| by.on(&estimated.theta));
-        let estimated = estimated.with_guessed_curve(moved);
-        self.explanation.torque_law.iter().fold(estimated, |estimated, law| law.in_errors_of(estimated))
-    }
-
-    /// Mass and inertia of a fit with their standard errors.
-    fn estimates(&self, fitted: &Fitted) -> [Estimate; THETA] {
-        let (values, of) = (theta_of(&fitted.base.vehicle.body), self.on_scale(fitted));
-        let nominal = Nominal::of(&self.given.vehicle);
-        std::array::from_fn(|index| {
-            let of_guesses = (nominal.guessed(index) * values[index]).hypot(of.moved_by_curve(index));
-            let std = of.covariance[(index, index)].max(0.0).sqrt().hypot(of_guesses);
-            Estimate { value: values[index], std, of_guesses }
-        })
-    }
-
-    /// Reasons why mass or entries of the inertia are not determined, each with the names that it holds for.
-    #[must_use]
-    pub fn body_not_determined(&self) -> Vec<(String, Vec<&'static str>)> {
-        let mut reasons: Vec<(String, Vec<&'static str>)> = Vec::new();
-        for BodyParameter { name, not_determined, .. } in self.body() {
-            let Some(reason) = not_determined else { continue };
-            match reasons.iter_mut().find(|(of, _)| *of == reason) {
-                Some((_, names)) => names.push(name),
-                None => reasons.push((reason, vec![name])),
-            }
-        }
-        reasons
     }
 
     /// Where what the found effects leave differs from the recording.

@@ -1,6 +1,7 @@
 //! Opens, conditions, holds out, explains, tries again, shows, and designs the next flight.
 
 use super::hold_out::refuse_shared;
+use super::limited::saturated;
 use super::prepared::{Asked, explain_prepared};
 use super::request::ExplainRequest;
 use super::result::ExplainStudy;
@@ -20,8 +21,6 @@ use crate::study::{Progress, Stage, StudyError, lost};
 use crate::text;
 use crate::vehicle::Vehicle;
 
-/// Share of the flight that may be saturated without a word. Only a warning depends on it.
-const SATURATED: f64 = 0.3;
 /// What a recording without velocity cannot tell.
 const NO_VELOCITY: &str = "no velocity (LOCAL_POSITION_NED or similar), or no attitude, is recorded: drag, wind and \
                            other effects of the air cannot be tested, and a named effect may be a substitute for \
@@ -125,7 +124,7 @@ fn of_data(flights: &Prepared, held: &Prepared) -> Vec<Note> {
         let doubts = signals.quality.notes.iter().filter(|note| note.is_warning());
         notes.extend(doubts.map(|doubt| Note::warning(about(), doubt.text.as_str())));
         let used = &signals.quality.usable;
-        if !used.saturation_kept && used.saturated_s > SATURATED * (used.usable_s + used.saturated_s) {
+        if saturated(&signals.quality).is_some() {
             let text = format!(
                 "rotors were at a bound of their commands for {:.0} s, which are left out, and {:.0} s are used: \
                  missing physics may then appear under a wrong name; fly a gentler trajectory (mavid plan --limits)",

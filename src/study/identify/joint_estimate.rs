@@ -1,11 +1,15 @@
 //! Mass and inertia by the estimator of `explain`, together with the effects that the flights show.
 
-use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, TorqueLaw, Verdict, brief, explain};
+use crate::diagnose::{
+    ExplainSettings, Explanation, GyroscopicShare, Named, TorqueLaw, Verdict, brief, explain,
+};
 use crate::estimate::{Finding, MethodResult, Nominal, Recommendation, THETA, moved_by_guessed_curve};
+use crate::note::{About, Note};
 use crate::signals::Signals;
-use crate::study::explain::{Asked, BY_CONTROL, KEPT, explain_prepared};
+use crate::study::explain::{Asked, BY_CONTROL, KEPT, explain_prepared, kept_about_z};
 use crate::study::flights::Prepared;
 use crate::study::{Progress, StudyError};
+use crate::text::significant;
 use crate::vehicle::Vehicle;
 
 /// The recommended estimate, and what was estimated beside mass and inertia.
@@ -22,8 +26,14 @@ pub(super) struct EstimateWithEffects {
     pub(super) torque_law: Option<TorqueLaw>,
     /// places in mass and inertia of what the model has from the vehicle file
     pub(super) undetermined: Vec<usize>,
-    /// m, of the model: a guessed one follows izz
+    /// m, of the model: a guessed one follows izz, and one that no flight can tell follows the stated izz
     pub(super) torque_per_thrust_m: f64,
+    /// kg m^2, of the model, where it has izz from the vehicle file because flights tell only its ratio to the torque per thrust
+    pub(super) about_z_kg_m2: Option<f64>,
+    /// why izz is not determined then
+    pub(super) about_z: Option<String>,
+    /// what the mass rests on
+    pub(super) notes: Vec<Note>,
 }
 
 /// Takes the moments of inertia out of a result that rests on the controller's answer to noise.
@@ -43,6 +53,13 @@ pub(super) fn without_undetermined(result: &mut MethodResult, undetermined: &[us
     }
 }
 
+/// Says of a result which of izz and the torque per thrust the model keeps.
+pub(super) fn with_kept_about_z(result: &mut MethodResult, kept: &str) {
+    if let Finding::NotDetermined { reason } = &mut result.parameters[THETA - 1].finding {
+        reason.push_str(&format!("; {kept}"));
+    }
+}
+
 /// Flights as `explain` sees them, and what is found in them.
 #[derive(Debug)]
 pub(super) struct Found {
@@ -50,6 +67,8 @@ pub(super) struct Found {
     pub(super) flights: Vec<Signals>,
     /// with the effects that hold on what was held back
     pub(super) explanation: Explanation,
+    /// of the part that `explain` does not hold back: the whole flight does not show all that this part shows
+    pub(super) of_part: bool,
 }
 
 impl Found {
@@ -57,7 +76,8 @@ impl Found {
     pub(super) fn in_whole(flights: &[Signals], vehicle: &Vehicle) -> Result<Self, String> {
         let explanation =
             explain(flights, vehicle, &ExplainSettings::default()).map_err(|why| why.to_string())?;
-        Ok(Self { flights: flights.to_vec(), explanation })
+        let explanation = explanation.keeping_about_z(vehicle);
+        Ok(Self { flights: flights.to_vec(), explanation, of_part: false })
     }
 }
 
@@ -80,7 +100,7 @@ pub(super) fn found_beside(
         signals.iter().flat_map(|one| one.usable.iter()).filter(|usable| **usable).count()
     };
     if usable(&flights.signals) == usable(&whole) {
-        return Ok(Found { flights: flights.signals, explanation: study.explanation });
+        return Ok(Found { flights: flights.signals, explanation: study.explanation, of_part: false });
     }
     let of_part = &study.explanation;
     let (unexplained, terms) = (of_part.verdict == Verdict::Unexplained, &of_part.search.after.base.effects);
@@ -94,14 +114,18 @@ pub(super) fn found_beside(
     if unexplained {
         explanation.verdict = Verdict::Unexplained;
     }
-    Ok(Found { flights: whole, explanation })
+    // without an effect that holds, what it does would be in mass and inertia: the part that shows it tells them
+    let has = |of: &Explanation, id: &str| of.search.after.base.effects.iter().any(|term| term.id() == id);
+    let is_lost = |id: &str| has(of_part, id) && !has(&explanation, id);
+    if !unexplained && of_part.named.iter().any(|named| is_lost(named.id)) {
+        return Ok(Found { flights: flights.signals, explanation: study.explanation, of_part: true });
+    }
+    Ok(Found { flights: whole, explanation: explanation.keeping_about_z(asked.vehicle), of_part: false })
 }
 
 /// Mass and inertia of the final fit.
-pub(super) fn joint_estimate(
-    Found { flights, explanation: found }: &Found,
-    vehicle: &Vehicle,
-) -> EstimateWithEffects {
+pub(super) fn joint_estimate(of: &Found, vehicle: &Vehicle) -> EstimateWithEffects {
+    let Found { flights, explanation: found, .. } = of;
     let unexplained = found.verdict == Verdict::Unexplained;
     // what serves as no explanation is not in the model
     let fitted = if unexplained { &found.search.before } else { &found.search.after };
@@ -115,7 +139,7 @@ pub(super) fn joint_estimate(
         estimated = law.in_errors_of(estimated);
     }
     let effects: Vec<&'static str> = found.named.iter().map(|named| named.id).collect();
-    let best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(found, vehicle));
+    let best = Recommendation::joint(&estimated, &Nominal::of(vehicle), why(of, vehicle));
     let (turned_by_control, torque_law) = (found.turned_by_control, found.torque_law);
     EstimateWithEffects {
         best,
@@ -125,22 +149,45 @@ pub(super) fn joint_estimate(
         torque_law,
         undetermined: fitted.undetermined.clone(),
         torque_per_thrust_m: fitted.base.vehicle.propulsion.torque_per_thrust_m,
+        about_z_kg_m2: torque_law.map(|_| fitted.base.vehicle.body.inertia_kg_m2[(2, 2)]),
+        about_z: torque_law.map(|_| kept_about_z(&fitted.base.vehicle, vehicle)),
+        notes: found.named.iter().filter_map(of_voltage).collect(),
     }
 }
 
+/// The voltage at which the stated thrust is taken to hold, where the thrust falls with the battery.
+fn of_voltage(named: &Named) -> Option<Note> {
+    let full_v = named.get("full_voltage")?.value;
+    let text = format!(
+        "the thrust falls with the battery. The mass rests on the stated thrust at {} V, the highest voltage that was used. If the stated thrust \
+         is that of another voltage, the mass is wrong by the same factor as the thrust (`mavid explain` gives the power of the voltage)",
+        significant(full_v, 3)
+    );
+    Some(Note::remark(About::Estimate, text))
+}
+
 /// The reason for the user.
-fn why(found: &Explanation, vehicle: &Vehicle) -> String {
+fn why(Found { flights, explanation: found, of_part }: &Found, vehicle: &Vehicle) -> String {
     let names: Vec<String> = found.named.iter().map(|named| brief(named, vehicle, false)).collect();
+    let usable = |one: &Signals| one.usable.iter().filter(|usable| **usable).count() as f64 * one.grid.step_s;
+    let seconds: f64 = flights.iter().map(usable).sum();
+    let part = if *of_part {
+        ", those that `mavid explain` does not hold back: the rest does not show all names"
+    } else {
+        ""
+    };
+    let used = format!("from {seconds:.0} s of flight{part}");
     match (found.verdict, names.join(", ")) {
-        (Verdict::Unexplained, _) => {
-            "mass and inertia alone: something acts in these flights that no known effect explains, and `mavid explain` \
+        (Verdict::Unexplained, _) => format!(
+            "mass and inertia alone, {used}: something acts in these flights that no known effect explains, and `mavid explain` \
              shows where"
-                .to_owned()
+        ),
+        (_, names) if names.is_empty() => {
+            format!("these flights show no effect beside mass and inertia ({used})")
         }
-        (_, names) if names.is_empty() => "these flights show no effect beside mass and inertia".to_owned(),
         (_, names) => format!(
             "mass and inertia are estimated together with the other effects in these flights: {names} (`mavid explain` gives \
-             their sizes)"
+             their sizes; {used})"
         ),
     }
 }

@@ -1,6 +1,8 @@
 //! The result of identifying: what went in, the estimates, and what is to be known of them.
 
-use super::joint_estimate::{Found, joint_estimate, without_inertia, without_undetermined};
+use super::joint_estimate::{
+    Found, joint_estimate, with_kept_about_z, without_inertia, without_undetermined,
+};
 use crate::diagnose::joint::JointEstimate;
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
@@ -32,6 +34,9 @@ pub struct IdentifyStudy {
     pub gyroscopic: Option<GyroscopicShare>,
     /// where the rotors' torque certainly does not go with their thrust
     pub torque_law: Option<TorqueLaw>,
+    /// kg m^2, of the model, where it has izz from the vehicle file because flights tell only its ratio to the torque per thrust; that
+    /// follows it, in `vehicle`
+    pub about_z_kg_m2: Option<f64>,
     /// where the mass was weighed
     pub scale: Option<ThrustScale>,
     /// effects that were identified together with the rigid body
@@ -117,6 +122,7 @@ impl IdentifyStudy {
         let mut identification = identify(&flights, &vehicle, settings)?;
         let (mut effects, mut turned_by_control) = (Vec::new(), false);
         let (mut gyroscopic, mut torque_law, mut undetermined) = (None, None, Vec::new());
+        let (mut about_z, mut about_z_kg_m2) = (None, None);
         match found.as_ref().map(|found| joint_estimate(found, &vehicle)) {
             Ok(found) => {
                 identification.methods.push(found.best.result.clone());
@@ -124,9 +130,11 @@ impl IdentifyStudy {
                 (effects, turned_by_control) = (found.effects, found.turned_by_control);
                 (gyroscopic, torque_law) = (found.gyroscopic, found.torque_law);
                 undetermined = found.undetermined;
+                (about_z, about_z_kg_m2) = (found.about_z, found.about_z_kg_m2);
                 vehicle.propulsion.torque_per_thrust_m = found.torque_per_thrust_m;
                 identification.notes.extend(torque_law.iter().map(TorqueLaw::note));
                 identification.notes.extend(gyroscopic.iter().map(GyroscopicShare::note));
+                identification.notes.extend(found.notes);
             }
             Err(why) => rigid_body_alone(&mut identification, &vehicle, why),
         }
@@ -138,7 +146,10 @@ impl IdentifyStudy {
         identification.best.result.emit();
         let scale = apply_anchor(&mut identification, &vehicle);
         let joint = |result: &&mut MethodResult| result.method == Method::Joint;
-        let kept = |result: &mut MethodResult| without_undetermined(result, &undetermined);
+        let kept = |result: &mut MethodResult| {
+            without_undetermined(result, &undetermined);
+            about_z.iter().for_each(|kept| with_kept_about_z(result, kept));
+        };
         identification.methods.iter_mut().filter(joint).for_each(kept);
         kept(&mut identification.best.result);
         if turned_by_control {
@@ -156,6 +167,7 @@ impl IdentifyStudy {
             beside: effects,
             gyroscopic,
             torque_law,
+            about_z_kg_m2,
             scale,
             with: None,
             notes: Vec::new(),
