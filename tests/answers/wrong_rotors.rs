@@ -70,8 +70,7 @@ fn compare_refuses_rotors_at_other_places_than_the_autopilot_states() {
     let logs = ["px4_flight.ulg", "px4_baseline_40_46s.tlog"].map(|name| fixture(name).display().to_string());
     for given in [vec!["--vehicle", &path], vec!["--frame", "quadrotor-plus"]] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_mavid"));
-        let refused =
-            command.args(["compare", &logs[0], "--with", &logs[1]]).args(&given).output().unwrap();
+        let refused = command.args(["compare", &logs[0], "--with", &logs[1]]).args(&given).output().unwrap();
         let why = String::from_utf8(refused.stderr).unwrap();
         assert_eq!(refused.status.code(), Some(2), "{given:?}: {why}");
         assert!(
