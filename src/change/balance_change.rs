@@ -120,8 +120,7 @@ pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> B
     let pair = Pair { balance, groups, scale };
     let moved: [Moved; AXES] = std::array::from_fn(|axis| pair.moved(axis));
     let (by, variances) = (difference(&moved), variances_of(&moved));
-    let before = Vector3::from(moved.map(|moved| moved.before.0));
-    let known = explanations(vehicle, &before);
+    let known = explanations(vehicle, &middle(&moved));
     let strength = by.component_mul(&by).component_div(&variances).sum();
     let loaded: [Moved; AXES] = std::array::from_fn(|axis| beside_a_load(axis, &moved[axis]));
     let beyond_load = by.component_mul(&by).component_div(&variances_of(&loaded)).sum();
@@ -133,7 +132,9 @@ pub fn judge_balance(balance: &Balance, groups: &Groups, vehicle: &Vehicle) -> B
         found.carried_by = carriers(&pair, found, &known);
     }
     let least = |explanation: &Explanation| match explanation.what {
-        What::Rotor(rotor) => Some(explanation.least(&variances, NAMED) / shares[rotor]),
+        What::Rotor(rotor) => {
+            Some(1.0 - factor((explanation.least(&variances, NAMED), 0.0), shares[rotor]).0)
+        }
         _ => None,
     };
     let worst = variances.x.max(variances.y) + 2.0 * LOADED * LOADED;
@@ -154,6 +155,11 @@ fn beside_a_load(axis: usize, moved: &Moved) -> Moved {
     let load = if axis < 2 { LOADED } else { 0.0 };
     let with = |(value, std): (f64, f64), sides: f64| (value, std.hypot(sides.sqrt() * load));
     Moved { before: with(moved.before, 1.0), after: with(moved.after, 1.0), by: with(moved.by, 2.0) }
+}
+
+/// The balance in the middle between before and after: the same whichever of the two groups is the earlier one.
+pub(super) fn middle(moved: &[Moved; AXES]) -> Vector3<f64> {
+    Vector3::from(moved.map(|moved| f64::midpoint(moved.before.0, moved.after.0)))
 }
 
 fn difference(moved: &[Moved; AXES]) -> Vector3<f64> {
@@ -289,14 +295,18 @@ impl Pair<'_> {
     }
 
     fn share(&self, rotor: usize) -> f64 {
-        share_after(self.balance, self.groups, rotor)
+        mean_share(self.balance, self.groups, rotor)
     }
 }
 
-/// Mean share of a rotor in the commanded thrust of the later flights.
-pub(super) fn share_after(balance: &Balance, groups: &Groups, rotor: usize) -> f64 {
-    let each = groups.after.iter().map(|&flight| balance.flights[flight].shares[rotor]);
-    each.sum::<f64>() / groups.after.len() as f64
+/// Share of a rotor in the commanded thrust, mean of the earlier flights' and the later flights' means.
+pub(super) fn mean_share(balance: &Balance, groups: &Groups, rotor: usize) -> f64 {
+    let mean = |group: &[usize]| {
+        let each = group.iter().map(|&flight| balance.flights[flight].shares[rotor]);
+        each.sum::<f64>() / group.len() as f64
+    };
+    let [before, after] = groups.both().map(mean);
+    f64::midpoint(before, after)
 }
 
 /// Scatter of the flights of each group over what is expected beforehand, learned as far as there are flights to learn it from.

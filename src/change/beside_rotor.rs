@@ -1,6 +1,6 @@
 //! What a rotor leaves of a move of the balance, where something else than the balance tells how much that rotor lost.
 
-use super::balance_change::{BalanceChange, share_after};
+use super::balance_change::{BalanceChange, mean_share, middle};
 use super::explanation::{amount, pull};
 use super::groups::Groups;
 use crate::trim::{AXES, Balance, TORQUE_SPREAD};
@@ -20,9 +20,8 @@ pub fn left_beside_rotor(
 ) -> f64 {
     let Some(of) = vehicle.rotors.get(rotor) else { return f64::INFINITY };
     let moved: [_; AXES] = std::array::from_fn(|axis| change.beside_a_load(axis));
-    let before = Vector3::from(moved.map(|moved| moved.before.0));
-    let pull = pull(vehicle, of, &before);
-    let (amount, std) = amount(factor, share_after(balance, groups, rotor));
+    let pull = pull(vehicle, of, &middle(&moved));
+    let (amount, std) = amount(factor, mean_share(balance, groups, rotor));
     let left = Vector3::from(moved.map(|moved| moved.by.0)) - amount * pull;
     let mut covariance = Matrix3::from_diagonal(&Vector3::from(moved.map(|moved| moved.by.1.powi(2))));
     covariance += std * std * pull * pull.transpose();

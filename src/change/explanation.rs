@@ -38,11 +38,11 @@ pub(super) struct Account {
     pub(super) cost: f64,
 }
 
-/// All explanations for a vehicle. `after` is what a changed rotor's share is taken from.
-pub(super) fn explanations(vehicle: &Vehicle, before: &Vector3<f64>) -> Vec<Explanation> {
+/// All explanations for a vehicle. `middle` is the mean of the balance before and after, from which a changed rotor pulls it.
+pub(super) fn explanations(vehicle: &Vehicle, middle: &Vector3<f64>) -> Vec<Explanation> {
     let rotors = vehicle.rotors.iter().enumerate().map(|(place, rotor)| Explanation {
         what: What::Rotor(place),
-        directions: vec![pull(vehicle, rotor, before)],
+        directions: vec![pull(vehicle, rotor, middle)],
     });
     let others = [
         Explanation { what: What::CentreOfMass, directions: vec![Vector3::x(), Vector3::y()] },
@@ -51,10 +51,11 @@ pub(super) fn explanations(vehicle: &Vehicle, before: &Vector3<f64>) -> Vec<Expl
     rotors.chain(others).collect()
 }
 
-/// Where a rotor that is commanded more pulls the balance to, from where it was.
-pub(super) fn pull(vehicle: &Vehicle, rotor: &Rotor, before: &Vector3<f64>) -> Vector3<f64> {
+/// Where a rotor that is commanded more pulls the balance to, from `middle`: the mean of where it was and where it is, which is the same for the
+/// way back.
+pub(super) fn pull(vehicle: &Vehicle, rotor: &Rotor, middle: &Vector3<f64>) -> Vector3<f64> {
     let at = (rotor.position_m - vehicle.body.center_of_mass_m) / mean_arm_m(vehicle);
-    Vector3::new(at.x, at.y, rotor.spin.yaw_sign()) - before
+    Vector3::new(at.x, at.y, rotor.spin.yaw_sign()) - middle
 }
 
 impl Explanation {
@@ -130,14 +131,24 @@ pub(super) fn other_rotor_and_load(
     known.iter().any(|other| is_enough(&other)).then(|| widened.ln())
 }
 
-/// The factor of a rotor's thrust that an amount means, with its standard error: the rotor takes a larger share of the commands.
+/// The factor of a rotor's thrust that an amount means, with its standard error: the rotor takes a larger share of the commands, and the other
+/// rotors keep theirs among each other. `share` is the mean of the rotor's shares before and after. With `h`, half the amount, and `o`, the
+/// share of the others, its share was `s - o h` and is `s + o h`; those of the others went by `(1 - h) / (1 + h)`. The factor is the ratio of
+/// both. The way back has the opposite amount and the inverse factor, as many standard errors from 1.
 pub(super) fn factor((amount, std): (f64, f64), share: f64) -> (f64, f64) {
-    (1.0 - amount / share, std / share)
+    let half = 0.5 * amount;
+    let now = (share + (1.0 - share) * half) * (1.0 + half);
+    (1.0 - amount / now, std / now.abs())
 }
 
-/// The amount that a factor on a rotor's thrust means, with its standard error.
+/// The amount that a factor on a rotor's thrust means, with its standard error: the inverse of [`factor`], and the error of the factor's
+/// logarithm, which is that of the inverse factor as well. By `g = (1 - f) / (1 + f)`, [`factor`] is `h - o g h^2 = s g`.
 pub(super) fn amount((factor, std): (f64, f64), share: f64) -> (f64, f64) {
-    ((1.0 - factor) * share, std * share)
+    let (others, lost) = (1.0 - share, (1.0 - factor) / (1.0 + factor));
+    let root = (1.0 - 4.0 * others * share * lost * lost).max(f64::MIN_POSITIVE).sqrt();
+    let half = 2.0 * share * lost / (1.0 + root);
+    let slope = (1.0 - lost * lost) * (share + others * half * half) / root;
+    (2.0 * half, slope * std / factor.abs())
 }
 
 /// A balance as a vector.
@@ -149,6 +160,25 @@ pub(super) fn lean(of: &FlightBalance) -> Vector3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_way_back_has_the_opposite_amount_and_the_inverse_factor() {
+        // a rotor that gives 0.8 hovers with 1 / 0.8 of its command: its share, and that of the commands which it took from the others
+        let before = 0.26;
+        let after = before / 0.8 / (1.0 - before + before / 0.8);
+        let taken: f64 = (after - before) / (1.0 - before);
+        let (amount_of, share) = (taken / (1.0 - 0.5 * taken), 0.5 * (before + after));
+        let [there, back] = [amount_of, -amount_of].map(|amount| factor((amount, 0.01), share));
+        assert!((there.0 - 0.8).abs() < 1e-12 && (back.0 - 1.25).abs() < 1e-12, "{there:?} {back:?}");
+        // as many standard errors from 1
+        assert!(((1.0 - there.0) / there.1 - (back.0 - 1.0) / back.1).abs() < 1e-9, "{there:?} {back:?}");
+        let [of_there, of_back] = [(0.8, 0.008), (1.25, 0.0125)].map(|factor| amount(factor, share));
+        assert!((of_there.0 - amount_of).abs() < 1e-12 && (of_back.0 + amount_of).abs() < 1e-12);
+        assert!((of_there.1 - of_back.1).abs() < 1e-12 && of_there.1 > 0.0);
+        // by the difference of two factors near it
+        let slope = (amount((0.8008, 0.0), share).0 - amount((0.7992, 0.0), share).0) / 0.0016;
+        assert!((of_there.1 - 0.008 * slope.abs()).abs() < 1e-7, "{of_there:?} {slope}");
+    }
 
     #[test]
     fn the_least_amount_is_as_many_standard_errors_as_are_asked_with_the_spread_that_follows_it() {

@@ -55,9 +55,35 @@ impl Moved {
         Self { before: of(self.before), after: of(self.after), by: of(self.by) }
     }
 
+    /// A factor on what was before, and the standard error of its logarithm: the way back has the inverse factor, as many standard errors
+    /// from 1.
+    #[must_use]
+    pub fn factor(value: f64, std_of_log: f64) -> Self {
+        let log = value.ln();
+        let slope = (value - 1.0) / log;
+        let std = std_of_log * if slope.is_finite() { slope } else { 1.0 };
+        Self { before: (1.0, 0.0), after: (value, std), by: (value - 1.0, std) }
+    }
+
     /// The difference in standard errors.
     #[must_use]
     pub fn sigmas(&self) -> f64 {
         self.by.0 / self.by.1.max(f64::MIN_POSITIVE)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_factor_and_its_inverse_are_as_many_standard_errors_from_1() {
+        let [there, back] = [0.8, 1.25].map(|value| Moved::factor(value, 0.02));
+        assert!(
+            (there.sigmas() + back.sigmas()).abs() < 1e-9 && there.sigmas() < -11.0,
+            "{there:?} {back:?}"
+        );
+        assert!((there.sigmas() - 0.8_f64.ln() / 0.02).abs() < 1e-9);
+        assert_eq!(Moved::factor(1.0, 0.02).by, (0.0, 0.02));
     }
 }

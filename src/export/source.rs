@@ -3,12 +3,13 @@
 use super::cost::Costs;
 use super::error::ExportError;
 use super::program::EffectsProgram;
+use crate::physics::effects::by_id;
 use crate::physics::{ActiveEffect, Airframe, Parameter};
 use crate::text::compact;
 use crate::vehicle::{ThrustLaw, Vehicle};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
-use toml::Table;
+use toml::{Table, Value};
 
 /// Static thrust coefficient of a usual propeller of small multirotors, `T / (rho n^2 D^4)`: 0.08 to 0.12 in the propeller database of the
 /// University of Illinois.
@@ -16,6 +17,8 @@ const USUAL_THRUST_COEFFICIENT: f64 = 0.1;
 /// Density of the standard atmosphere at sea level, kg/m^3.
 const AIR_KG_M3: f64 = 1.225;
 
+/// The effect of a rotor that gives less.
+const WEAK_ROTOR: &str = "weak_rotor";
 /// The effects between a command and its thrust.
 const LATENCIES: [&str; 2] = ["motor_lag", "transport_delay"];
 /// Latency below which none is lost, s.
@@ -151,10 +154,9 @@ impl<'a> Source<'a> {
 
     /// Thrust and torque of each rotor over those of an ordinary one, by the rotors that were found weak.
     pub(super) fn rotor_factors(&mut self) -> Vec<f64> {
-        const ID: &str = "weak_rotor";
-        self.taken.push(ID);
+        self.taken.push(WEAK_ROTOR);
         let mut factors = vec![1.0; self.vehicle.rotors.len()];
-        for active in self.effects.iter().filter(|active| active.effect().id() == ID) {
+        for active in self.effects.iter().filter(|active| active.effect().id() == WEAK_ROTOR) {
             let value = |name: &str| {
                 let mut named = active.effect().parameters().iter().zip(active.parameters());
                 named.find(|(parameter, _)| parameter.name == name).map(|(_, value)| *value)
@@ -208,8 +210,32 @@ impl<'a> Source<'a> {
         Ok(coefficient)
     }
 
+    /// What one of several flights has alone, by the model's file: the model does not have it, so no file that is written can.
+    fn of_one_flight(&self) -> Vec<String> {
+        let of = |(id, table): (&String, &Value)| {
+            let flight = table.get("flight").and_then(Value::as_str);
+            // models of before this key have no other effect that is named and not in the model
+            if self.has(id) || flight.is_none() && id != WEAK_ROTOR {
+                return None;
+            }
+            let effect = by_id(id)?;
+            let value = |parameter: &Parameter| number(table.get(parameter.name)?.get("value")?);
+            let values: Option<Vec<f64>> = effect.parameters().iter().map(value).collect();
+            let active = values.and_then(|values| ActiveEffect::new(effect, &values).ok());
+            let values =
+                active.map_or_else(String::new, |active| format!(": {}", self.values(&active).join(", ")));
+            let flight = flight.unwrap_or("one of the flights");
+            Some(format!(
+                "{id} was found in {flight} alone{values}; the model does not have it, and so it is not in this file"
+            ))
+        };
+        self.named.into_iter().flatten().filter_map(of).collect()
+    }
+
     /// Done: what was not taken is told, with what it costs.
     pub(super) fn finish(mut self, write: impl FnOnce(&[String]) -> String) -> Exported {
+        let of_one_flight = self.of_one_flight();
+        self.left_out.splice(0..0, of_one_flight);
         for active in self.effects {
             let id = active.effect().id();
             if self.taken.contains(&id) || self.is_no_latency(active) {
@@ -245,6 +271,11 @@ impl<'a> Source<'a> {
             };
         active.effect().parameters().iter().zip(active.parameters()).map(word).collect()
     }
+}
+
+/// A number, written as a whole one or not.
+fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
 }
 
 /// Difference of two shares of the gyroscopic torque that is none. The torque itself is about 5 % of all.

@@ -114,10 +114,13 @@ impl<'a> Assessor<'a> {
         self.restarted |= !recording.clock_resets_s.is_empty();
         self.anew |= !recording.clock_resets_s.is_empty();
         let commands = normalized_commands(recording);
-        let airborne = airborne(recording, commands.as_ref(), &mut self.before);
+        let mut airborne = airborne(recording, commands.as_ref(), &mut self.before);
+        let left_s = self.off_mixer.add(recording);
+        if let Some(left_s) = left_s {
+            self.off_mixer.flown(recording, &mut airborne, left_s);
+        }
         self.flight.airborne_from = airborne.from;
         self.rates.add(recording, &airborne.flown_s);
-        let left_s = self.off_mixer.add(recording);
         if let Some(left_s) = left_s {
             self.flight.add_off_mixer(&airborne.flown_s, left_s);
         }

@@ -117,6 +117,12 @@ impl Evidence<'_> {
         others && self.actuator_hz().is_some()
     }
 
+    /// Why the log is that of a vehicle with another number of rotors than the given one has.
+    pub(super) fn other_rotors(&self) -> Option<String> {
+        let refusal = self.assessment.refusal.as_ref();
+        refusal.filter(|refusal| matches!(refusal, SignalsError::OtherRotors { .. })).map(ToString::to_string)
+    }
+
     /// Why it is no flight, where the vehicle tells that.
     pub(super) fn grounded(&self) -> Option<String> {
         let flown = self.assessment.flight.airborne_s >= LEAST_USABLE_S;

@@ -17,6 +17,9 @@ pub struct Inspection {
     /// nothing can be identified whatever the vehicle is: nothing was flown, or no stream shows it
     #[serde(skip)]
     pub unflown: Option<Unflown>,
+    /// why the log is not one of the given vehicle: what was expected and what came
+    #[serde(skip)]
+    pub other_rotors: Option<String>,
     /// what to change about the next recording, the most important first
     pub advice: Vec<String>,
     /// whose log it is

@@ -1,8 +1,9 @@
 //! Outputs that left the mixer, from window to window: what follows in the same flight cannot be used.
 
+use super::airborne::Airborne;
 use crate::log::SILENCE_S;
 use crate::recording::{Quantity, Recording};
-use crate::signals::{OffMixer, best, outputs_off_mixer};
+use crate::signals::{OffMixer, best, outputs_off_mixer, until_down, within};
 
 /// What the windows so far have shown of outputs that left the mixer.
 #[derive(Debug, Default)]
@@ -11,6 +12,8 @@ pub(super) struct OffMixerTally {
     found: Vec<OffMixer>,
     /// one has left it in this flight
     is_off: bool,
+    /// and the vehicle fell to the ground since
+    is_down: bool,
     /// last command of the windows so far, s
     commanded_s: Option<f64>,
 }
@@ -25,6 +28,7 @@ impl OffMixerTally {
             times_s.first().zip(self.commanded_s).map_or(0.0, |(first_s, last_s)| first_s - last_s);
         if silent_s > SILENCE_S || !recording.clock_resets_s.is_empty() {
             self.is_off = false;
+            self.is_down = false;
         }
         self.commanded_s = times_s.last().copied().or(self.commanded_s);
         let outputs = outputs_off_mixer(recording);
@@ -39,6 +43,17 @@ impl OffMixerTally {
         }
         self.is_off = left_s.is_some();
         left_s
+    }
+
+    /// What of the time in the air of a window is flight, where an output left the mixer at `left_s` (s) as [`Self::add`] gave it: nothing after the
+    /// vehicle fell to the ground.
+    pub(super) fn flown(&mut self, recording: &Recording, airborne: &mut Airborne, left_s: f64) {
+        let end_s = |spans_s: &[(f64, f64)]| spans_s.last().map(|(_, end_s)| *end_s);
+        let until_s = end_s(&airborne.flown_s);
+        let flown_s = std::mem::take(&mut airborne.flown_s);
+        airborne.flown_s = if self.is_down { Vec::new() } else { until_down(recording, flown_s, left_s) };
+        airborne.free_s = within(&airborne.free_s, &airborne.flown_s);
+        self.is_down |= end_s(&airborne.flown_s) != until_s;
     }
 
     /// All outputs that left it, in the order in which they did.

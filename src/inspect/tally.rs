@@ -22,8 +22,7 @@ use crate::vehicle::Vehicle;
 use crate::wire::SystemId;
 use std::sync::mpsc::sync_channel;
 
-/// A window holds all of a flight where no more than this times its seconds can be used. Only the words "at most"
-/// depend on it.
+/// A window holds all of a flight where no more than this times its seconds can be used. Only the words "at most" depend on it.
 const MOSTLY: f64 = 1.05;
 /// MAV_SEVERITY_WARNING; smaller is worse.
 const WARNING: u8 = 4;
@@ -378,6 +377,7 @@ impl Found {
         Inspection {
             verdict,
             unflown: unflown(&evidence),
+            other_rotors: evidence.other_rotors(),
             advice,
             vehicle: self.vehicle,
             clock,

@@ -53,7 +53,7 @@ pub use flight::{AsRecorded, Quality, Reference, Series, Signals};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
 pub use hover::hover_command;
 pub use noise::white_level;
-pub use off_ground::{SHORTEST_FLIGHT_S, off_ground, spans, within};
+pub use off_ground::{SHORTEST_FLIGHT_S, off_ground, spans, until_down, within};
 pub use off_mixer::{OffMixer, outputs_off_mixer};
 pub use one_flight::{ClockOffset, clock_offset};
 pub use own::{Lacking, OwnOfFlight};

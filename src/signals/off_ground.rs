@@ -69,6 +69,24 @@ pub fn off_ground(recording: &Recording, spans_s: Vec<(f64, f64)>) -> Vec<(f64, 
     out
 }
 
+/// The spans (s) in the air of a flight in which a motor left the mixer at `failed_s`, until the vehicle is first down on the level from which it
+/// took off: it fell, and bounces and running motors after that are no flight. All of them where that level is not known, or the vehicle
+/// stays above it.
+#[must_use]
+pub fn until_down(recording: &Recording, mut spans_s: Vec<(f64, f64)>, failed_s: f64) -> Vec<(f64, f64)> {
+    let down_s = Heights::of(recording).and_then(|heights| {
+        let ground_m = spans_s.iter().find_map(|(from_s, _)| heights.ground(*from_s))?;
+        let mut after = heights.between(failed_s, f64::INFINITY);
+        let is_down = |index: &usize| heights.above(*index, ground_m) < LIFTED_M;
+        after.find(is_down).map(|index| heights.stream.time_s[index])
+    });
+    if let Some(down_s) = down_s {
+        spans_s.iter_mut().for_each(|(_, to_s)| *to_s = to_s.min(down_s));
+        spans_s.retain(|(from_s, to_s)| to_s > from_s);
+    }
+    spans_s
+}
+
 /// What `spans_s` have in common with `limits_s`, both in order, s.
 pub fn within(spans_s: &[(f64, f64)], limits_s: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let common = |span: &(f64, f64), limit: &(f64, f64)| (span.0.max(limit.0), span.1.min(limit.1));
@@ -121,11 +139,16 @@ impl<'a> Heights<'a> {
         ((later - earlier).abs() < LIFTED_M).then_some(later)
     }
 
-    /// Whether the vehicle is off `level_m`. One sample that is damaged is no height.
-    fn is_off(&self, index: usize, level_m: f64) -> bool {
+    /// Height above `level_m`, m. One sample that is damaged is no height.
+    fn above(&self, index: usize, level_m: f64) -> f64 {
         let around = index.saturating_sub(1)..(index + 2).min(self.stream.len());
         let mut heights: Vec<f64> = around.map(|index| self.height(index)).collect();
-        (median(&mut heights) - level_m).abs() > LIFTED_M
+        median(&mut heights) - level_m
+    }
+
+    /// Whether the vehicle is off `level_m`.
+    fn is_off(&self, index: usize, level_m: f64) -> bool {
+        self.above(index, level_m).abs() > LIFTED_M
     }
 
     /// When it leaves the ground, s; `None` where it never does. At once where the ground is not known.
@@ -180,6 +203,27 @@ mod tests {
         // it fell from 3 m onto ground that is 0.8 m lower, and lay there with its motors on
         let crash = recorded(0.0, 26.0, |t_s| if t_s < 20.0 { (t_s - 5.0).clamp(0.0, 3.0) } else { -0.8 });
         about(&off_ground(&crash, vec![(2.0, 26.0)]), &[(5.4, 19.9)]);
+    }
+
+    #[test]
+    fn a_vehicle_that_fell_does_not_fly_when_it_bounces() {
+        // it falls from 3 m at 15 s, the estimate overshoots, and it bounces until the end
+        let height_m = |t_s: f64| match t_s {
+            ..15.0 => (t_s - 5.0).clamp(0.0, 3.0),
+            15.0..16.0 => 3.0 - 5.0 * (t_s - 15.0),
+            _ => 2.0 * (t_s - 16.0).sin(),
+        };
+        let (flight, spans_s) = (recorded(0.0, 30.0, height_m), vec![(5.4, 29.0)]);
+        about(&until_down(&flight, spans_s.clone(), 14.0), &[(5.4, 15.6)]);
+        // what comes before the motor failed is flight
+        about(
+            &until_down(&flight, vec![(5.4, 12.0), (12.5, 20.0), (22.0, 29.0)], 14.0),
+            &[(5.4, 12.0), (12.5, 15.6)],
+        );
+        // one that stays up, and one whose ground is not known
+        let up = recorded(0.0, 30.0, |t_s| (t_s - 5.0).clamp(0.0, 3.0));
+        assert_eq!(until_down(&up, spans_s.clone(), 14.0), spans_s);
+        assert_eq!(until_down(&recorded(5.0, 30.0, height_m), spans_s.clone(), 14.0), spans_s);
     }
 
     #[test]

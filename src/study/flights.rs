@@ -11,9 +11,10 @@ use crate::log::{
     Format, Hold, LogError, LogFlight, OpenOptions, OpenedFlights, ReadReport, format_of, open_flights,
 };
 use crate::note::{About, Note};
-use crate::recording::Recording;
+use crate::recording::{Quantity, Recording};
 use crate::signals::{
-    ConditionSettings, ReportedState, Signals, adopt_in_flight_parameters, outputs_off_mixer,
+    ConditionSettings, ReportedState, Signals, adopt_in_flight_parameters, best, off_ground,
+    outputs_off_mixer, spans,
 };
 use crate::text;
 use crate::vehicle::Vehicle;
@@ -328,22 +329,27 @@ const LEAST_BEFORE_S: f64 = 40.0;
 /// name.
 pub(super) fn refuse_off_mixer<'a>(logs: impl Iterator<Item = &'a Vec<Flight>>) -> Result<(), StudyError> {
     for flight in logs.flatten().filter(|flight| !flight.off_mixer.is_empty()) {
-        let said = ReportedState::of(&flight.recording);
-        let commands = flight.recording.streams.values().flat_map(|stream| &stream.time_s);
-        let flown = || commands.clone().copied().filter(|time_s| said.may_fly(*time_s));
-        let seconds = flown().fold(f64::MIN, f64::max) - flown().fold(f64::MAX, f64::min);
+        let seconds = commanded_in_air_s(&flight.recording);
         if seconds < LEAST_BEFORE_S {
             let all: Vec<String> = flight.off_mixer.iter().map(ToString::to_string).collect();
             let why = format!(
-                "{}: the log shows the cause, so mavid does not search for effects; before that there are {:.0} s of flight, expected \
-                 {LEAST_BEFORE_S:.0} s at least",
-                all.join("; "),
-                seconds.max(0.0)
+                "{}: the log shows the cause, so mavid does not search for effects; before that it was in the air for {seconds:.0} s, \
+                 expected {LEAST_BEFORE_S:.0} s at least",
+                all.join("; ")
             );
             return Err(StudyError::File { file: flight.input.path.clone(), why });
         }
     }
     Ok(())
+}
+
+/// Time off the ground with commands, s, by what the autopilot says and by the height.
+fn commanded_in_air_s(recording: &Recording) -> f64 {
+    let said = ReportedState::of(recording);
+    let commands = best(recording, Quantity::ActuatorCommand, |stream| !stream.is_empty());
+    let times_s = commands.map_or(&[][..], |(_, stream)| stream.time_s.as_slice());
+    let flown_s = spans(times_s, |index| said.may_be_off_ground(times_s[index]));
+    off_ground(recording, flown_s).iter().map(|(from_s, to_s)| to_s - from_s).sum()
 }
 
 /// What is hardly meant in a vehicle's file.

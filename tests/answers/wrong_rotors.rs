@@ -50,3 +50,34 @@ fn rotors_that_are_turned_or_exchanged_make_an_answer_doubtful() {
     }
     assert!(answer("inspect", &by_45_degrees).contains("doubtful with this vehicle"));
 }
+
+#[test]
+fn compare_refuses_rotors_at_other_places_than_the_autopilot_states() {
+    let file = fs::read_to_string(fixture("px4-sih.toml")).unwrap();
+    let turned = [
+        ("[0.2, -0.2, 0.0]", "[0.28, 0.0, 0.0]"),
+        ("[-0.2, 0.2, 0.0]", "[-0.28, 0.0, 0.0]"),
+        ("[0.2, 0.2, 0.0]", "[0.0, 0.28, 0.0]"),
+        ("[-0.2, -0.2, 0.0]", "[0.0, -0.28, 0.0]"),
+    ];
+    let plus = turned.iter().fold(file, |file, (from, to)| {
+        assert!(file.contains(from), "{file}");
+        file.replace(from, to)
+    });
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("wrong_rotors-plus.toml");
+    fs::write(&path, plus).unwrap();
+    let path = path.display().to_string();
+    let logs = ["px4_flight.ulg", "px4_baseline_40_46s.tlog"].map(|name| fixture(name).display().to_string());
+    for given in [vec!["--vehicle", &path], vec!["--frame", "quadrotor-plus"]] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_mavid"));
+        let refused = command.args(["compare", &logs[0], "--with", &logs[1]]).args(&given).output().unwrap();
+        let why = String::from_utf8(refused.stderr).unwrap();
+        assert_eq!(refused.status.code(), Some(2), "{given:?}: {why}");
+        assert!(
+            why.contains("px4_flight.ulg with ")
+                && why.contains("the rotors contradict the autopilot's parameters: motor 1 is front right (")
+                && why.contains("Expected the rotors in the order of the autopilot's motors"),
+            "{given:?}: {why}"
+        );
+    }
+}

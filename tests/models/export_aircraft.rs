@@ -154,3 +154,45 @@ fn a_latency_that_nobody_found_is_not_lost() {
     assert!(lost("transport_delay", 0.02, None) && !lost("transport_delay", 0.001, None));
     assert!(!lost("transport_delay", 0.02, Some(&identified)));
 }
+
+/// A rotor that is weak in one of several flights is not the model's: no file holds it, and each says so, with the flight.
+#[test]
+fn what_one_flight_has_alone_is_told_by_every_exporter() {
+    let model = |flight: &str| -> toml::Table {
+        let text = format!(
+            "mass = {{ value = 2.0, std = 0.02 }}\n[effects.weak_rotor]\nrotor = {{ value = 2.0, std = 0.0, unit = \"-\" }}\n\
+             factor = {{ value = 0.93, std = 0.002, unit = \"-\" }}\n{flight}"
+        );
+        toml::from_str(&text).unwrap()
+    };
+    let vehicle = vehicle();
+    let told = |identified: &toml::Table| -> Vec<(Vec<String>, String)> {
+        let of_simulator = |format: Format| {
+            let exported = export(&vehicle, &[], Some(identified), format).unwrap();
+            (exported.left_out, exported.text)
+        };
+        let of_aircraft = |autopilot: Autopilot| {
+            let written = aircraft_parameters(&vehicle, &[], Some(identified), (autopilot, None)).unwrap();
+            (written.left_out, written.text)
+        };
+        let formats = [Format::Px4Sih, Format::ArdupilotSitl, Format::Sdf, Format::Mjcf, Format::Rotorpy];
+        let aircraft = [Autopilot::Px4, Autopilot::ArduPilot].map(of_aircraft);
+        formats.map(of_simulator).into_iter().chain(aircraft).collect()
+    };
+    let words = format!(
+        "weak_rotor was found in second.ulg alone: {}, factor = 0.93; the model does not have it",
+        vehicle.motor_words(2)
+    );
+    for (notes, text) in told(&model("flight = \"second.ulg\"\n")) {
+        assert!(notes[0].starts_with(&words), "{notes:?}");
+        assert_eq!(
+            notes.iter().filter(|note| note.contains("weak rotor") || note.contains("weak_rotor")).count(),
+            1
+        );
+        assert!(text.contains("second.ulg"), "{text}");
+    }
+    // the file of an older version does not say which
+    for (notes, _) in told(&model("")) {
+        assert!(notes[0].starts_with("weak_rotor was found in one of the flights alone: "), "{notes:?}");
+    }
+}

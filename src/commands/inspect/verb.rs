@@ -34,6 +34,11 @@ pub fn run(json: bool, stderr: &StandardError, args: &InspectArgs) -> Result<Out
     let vehicle = of_file.or_else(|| draft.as_ref().map(|draft| &draft.vehicle));
     let inspection = inspect(stderr, args, vehicle)?;
     let file = text::path(&args.log);
+    if let Some(why) = &inspection.other_rotors {
+        let given =
+            args.vehicle.as_ref().map_or_else(String::new, |path| format!(" with {}", text::path(path)));
+        return Err(CommandError::Input(format!("{file}{given}: {why}")));
+    }
     if json {
         output::json(&InspectionDocument::new(&file, &inspection))?;
     } else {

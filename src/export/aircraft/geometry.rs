@@ -50,7 +50,6 @@ fn places(source: &mut Source<'_>, determined: &Determined<'_>) -> Vec<AircraftP
 fn coefficients(source: &mut Source<'_>, determined: &Determined<'_>) -> Vec<AircraftParameter> {
     let Some(std) = determined.std("weak_rotor", "factor") else { return Vec::new() };
     if !source.has("weak_rotor") {
-        source.note("a weak rotor was found that the model does not have: one of the flights has it alone");
         return Vec::new();
     }
     let rotor = source.take_or("weak_rotor", "rotor", f64::NAN);

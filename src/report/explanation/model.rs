@@ -2,8 +2,8 @@
 
 use super::answer::answer;
 use crate::config::{ConfigError, vehicle_to_toml};
-use crate::diagnose::NO_LATENCY;
 use crate::diagnose::holdout::{RateLaw, WINDOWS_S, Without};
+use crate::diagnose::{NO_LATENCY, Named};
 use crate::estimate::{Finding, ThrustScale};
 use crate::report::model_parts::{self, correlation_lines, effect_tables, files};
 use crate::study::{ExplainStudy, ValidationData, Worth};
@@ -52,13 +52,17 @@ fn identified(text: &mut String, study: &ExplainStudy) {
     };
     text.push_str(&model_parts::as_flown(study.given.battery_voltage_v, study.given.hover_command));
     text.push_str(&correlation_lines(&study.correlation()));
-    for effect in &study.effects {
+    for (effect, flight) in named(study) {
         let _ = writeln!(text, "\n[identified.effects.{}]", effect.id);
         for p in &effect.parameters {
             let _ = writeln!(text, "{}", entry(p.name, p.value, p.std, p.unit));
         }
         let others: Vec<&str> = effect.confusable_with.iter().map(|other| other.id).collect();
         let _ = writeln!(text, "confusable_with = {others:?}");
+        if let Some(flight) = flight {
+            let path = toml_string(&study.given.inputs[flight].path);
+            let _ = writeln!(text, "flight = {path} # alone has it: the model does not");
+        }
     }
     if let Some(law) = &study.rate_law {
         rate_law(text, law);
@@ -66,6 +70,20 @@ fn identified(text: &mut String, study: &ExplainStudy) {
     if let Some(worth) = &study.worth {
         prediction(text, worth);
     }
+}
+
+/// The named effects, with the flight that alone of several has one; also those that a flight has by itself and the flights together have not, of
+/// each effect one.
+fn named(study: &ExplainStudy) -> Vec<(&Named, Option<usize>)> {
+    let of_one = |id: &str| study.along.as_ref().and_then(|along| along.flight_with_alone(id));
+    let mut all: Vec<(&Named, Option<usize>)> =
+        study.effects.iter().map(|effect| (effect, of_one(effect.id))).collect();
+    for (flight, effect) in study.along.iter().flat_map(|along| &along.of_one_flight) {
+        if all.iter().all(|(known, _)| known.id != effect.id) {
+            all.push((effect, Some(*flight)));
+        }
+    }
+    all
 }
 
 /// How the rates move in open-loop predictions: no effect, and nothing that a simulation in closed loop may use.

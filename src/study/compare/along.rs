@@ -161,11 +161,14 @@ mod tests {
         load_vehicle(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/x500.toml")).unwrap()
     }
 
-    /// Where a rotor that gives 0.93 of its thrust pulls the balance to.
+    /// Share of the commanded thrust of a rotor of four that gives 0.93 of its thrust.
+    const WEAK_SHARE: f64 = 0.25 / 0.93 / (0.75 + 0.25 / 0.93);
+
+    /// Where that rotor pulls the balance to.
     fn weak(vehicle: &Vehicle, rotor: usize) -> Vector3<f64> {
         let of = &vehicle.rotors[rotor];
         let at = (of.position_m - vehicle.body.center_of_mass_m) / mean_arm_m(vehicle);
-        0.0175 * Vector3::new(at.x, at.y, of.spin.yaw_sign())
+        (WEAK_SHARE - 0.25) / 0.75 * Vector3::new(at.x, at.y, of.spin.yaw_sign())
     }
 
     /// Flights whose balance is known to 0.0015 and wanders by as much.
@@ -245,7 +248,9 @@ mod tests {
     #[test]
     fn the_standard_deviations_of_a_named_rotor_are_its_loss_over_its_error() {
         let vehicle = vehicle();
-        let balance = balance(&[Vector3::zeros(), weak(&vehicle, 2)]);
+        let mut balance = balance(&[Vector3::zeros(), weak(&vehicle, 2)]);
+        balance.flights[1].shares = vec![(1.0 - WEAK_SHARE) / 3.0; 4];
+        balance.flights[1].shares[2] = WEAK_SHARE;
         let judge = Judge { vehicle: &vehicle, balance: &balance, tracks: &[], alone: &[], is_known: true };
         let compared = judge.compared(&Groups::split(2, 1));
         let [change] = compared.changes.as_slice() else { panic!("{compared:?}") };
@@ -254,6 +259,11 @@ mod tests {
         assert!((change.sigmas - moved.sigmas().abs()).abs() < 1e-9, "{compared:?}");
         // the same balance is further than that from what an unchanged vehicle would show
         assert!(change.sigmas < compared.balance.strength.sqrt(), "{compared:?}");
+        // the way back is the same change
+        let back = judge.compared(&Groups { before: vec![1], after: vec![0] });
+        let [of_back] = back.changes.as_slice() else { panic!("{back:?}") };
+        assert!(of_back.what == change.what && (of_back.sigmas - change.sigmas).abs() < 1e-9, "{back:?}");
+        assert!((of_back.moved.unwrap().after.0 * moved.after.0 - 1.0).abs() < 1e-9, "{back:?}");
     }
 
     #[test]

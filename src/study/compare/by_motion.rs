@@ -84,9 +84,7 @@ pub(super) fn rotor_by_motion(flights: &[Option<WeakAlone>], groups: &Groups) ->
     }
     let (from, to) = (pooled(&before, rotor), pooled(&after, rotor));
     // as the balance has it: over the thrust before
-    let value = to.0 / from.0;
-    let std = value * (from.1 / from.0).hypot(to.1 / to.0);
-    let moved = Moved { before: (1.0, 0.0), after: (value, std), by: (value - 1.0, std) };
+    let moved = Moved::factor(to.0 / from.0, (from.1 / from.0).hypot(to.1 / to.0));
     let carried_by = groups.after.iter().zip(&after).filter(|(_, flight)| flight.names(rotor));
     (moved.sigmas().abs() > NAMED_SIGMAS).then(|| RotorMoved {
         rotor,

@@ -2,12 +2,16 @@
 
 use super::request::CompareRequest;
 use super::result::LeftOut;
-use crate::signals::{ConditionSettings, STEP_FOR_EFFECTS_S, Signals, SignalsError, ThrustPreference};
+use crate::signals::{
+    ConditionSettings, Differing, RotorDifference, STEP_FOR_EFFECTS_S, Signals, SignalsError,
+    ThrustPreference, rotor_difference,
+};
 use crate::study::flight::Flight;
 use crate::study::flights::{EXPLAINED, Prepared, load_each, ready};
 use crate::study::unflown::unflown_first;
 use crate::study::vehicle_given::{DRAFTED, Known};
 use crate::study::{Progress, Stage, StudyError, VehicleGiven};
+use crate::text;
 use crate::trim::{LEAST_LEGS, LEG_S, Leg, TrimError, legs};
 use crate::vehicle::Vehicle;
 use rayon::prelude::*;
@@ -92,7 +96,16 @@ impl<'a> Given<'a> {
             ..ConditionSettings::default()
         };
         let vehicle = (&known.loaded.vehicle, known.origin.as_path());
-        let make = |flight: &Flight| made(flight, vehicle, &settings);
+        let states_places = match self.vehicle {
+            VehicleGiven::File(_) => true,
+            VehicleGiven::Weighed(given) => given.frame.is_some(),
+        };
+        let make = |flight: &Flight| {
+            if states_places {
+                refuse_other_places(flight, vehicle)?;
+            }
+            made(flight, vehicle, &settings)
+        };
         let groups = std::mem::take(&mut self.groups);
         let done = groups.map(|logs| logs.into_par_iter().map(|log| ready(log, make)).collect::<Vec<_>>());
         let mut out = [Vec::new(), Vec::new()];
@@ -144,6 +157,24 @@ impl<'a> Given<'a> {
             left_out: self.refused.iter().map(LeftOut::of).collect(),
         }
     }
+}
+
+/// Refuses a flight whose autopilot states other places, another order or other turning directions of the motors than the given vehicle has:
+/// a rotor would be named by a place at which another one is.
+fn refuse_other_places(flight: &Flight, (vehicle, file): (&Vehicle, &Path)) -> Result<(), StudyError> {
+    let recording = &flight.recording;
+    let difference = rotor_difference(recording.autopilot, &recording.parameters, vehicle);
+    let is_of_place =
+        |other: &RotorDifference| matches!(other.of, Differing::Order | Differing::Place | Differing::Spin);
+    let Some(RotorDifference { file: has, stated, .. }) = difference.filter(is_of_place) else {
+        return Ok(());
+    };
+    let why = format!(
+        "the rotors contradict the autopilot's parameters: {stated}, the given vehicle (its file, or --frame) has {has}. Expected the rotors in \
+         the order of the autopilot's motors, at their places and turning their way: give the file of the vehicle that flew (`mavid vehicle \
+         init` drafts one from its log), correct its [[rotor]] entries, or leave --frame out"
+    );
+    Err(StudyError::File { file: format!("{} with {}", flight.input.path, text::path(&file)), why })
 }
 
 /// Conditioned, and cut into legs. A flight that ended early because an output left the mixer is told so.
