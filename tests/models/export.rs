@@ -1,6 +1,7 @@
 //! A model for other simulators: values by hand, and every file read back.
 
 use mavid::autopilot::Autopilot;
+use mavid::diagnose::called;
 use mavid::export::{Exported, Format, PLACES, aircraft_parameters, export, places};
 use mavid::physics::ActiveEffect;
 use mavid::physics::effects::{ALL, by_id};
@@ -215,7 +216,7 @@ fn a_weak_rotor_is_weak_in_gazebo_and_mujoco_and_left_out_elsewhere() {
     for format in [Format::Px4Sih, Format::ArdupilotSitl, Format::Rotorpy] {
         let left_out = export(&vehicle, &effects, Some(&identified), format).unwrap().left_out;
         // the motor by the autopilot's number, and what it costs by the model's own figures
-        let expected = "weak_rotor cannot be represented here: motor 3 (front left), factor = 0.9; without it the \
+        let expected = "a weak rotor cannot be represented here: motor 3 (front left), factor = 0.9; without it the \
                         prediction error of the attitude grows from 0.0010 to 0.014 rad over 0.1 s, from 0.0080 to 0.33 rad \
                         over 0.5 s";
         assert!(left_out.iter().any(|note| note == expected), "{format:?}: {left_out:?}");
@@ -371,7 +372,7 @@ fn the_table_says_of_every_effect_which_simulators_can_hold_it() {
             let has_place = !exported
                 .left_out
                 .iter()
-                .any(|note| note.starts_with(&format!("{id} cannot be represented")));
+                .any(|note| note.starts_with(&format!("{} cannot be represented", called(id))));
             if has_place != places.contains(&format) {
                 wrong.push(format!("{id} in {format:?}: has a place: {has_place}"));
             }
@@ -472,7 +473,7 @@ fn an_aircraft_gets_what_was_identified_and_nothing_else() {
     let strong = aircraft_parameters(&vehicle, &strong, Some(&identified), (Autopilot::Px4, None)).unwrap();
     assert!(!strong.parameters.iter().any(|parameter| parameter.name.starts_with("EKF2")));
     for id in ["linear_drag", "quadratic_drag"] {
-        let named = format!("{id} cannot be represented here: ");
+        let named = format!("{} cannot be represented here: ", called(id));
         assert!(strong.left_out.iter().any(|note| note.starts_with(&named)), "{id}: {:?}", strong.left_out);
         assert!(
             !written.left_out.iter().any(|note| note.starts_with(&named)),
