@@ -194,7 +194,7 @@ fn the_command_writes_the_log_and_says_what_it_did() {
         .arg("redact")
         .arg(folder.path())
         .arg("--out")
-        .arg(&out)
+        .arg(folder.path().join("c.tlog"))
         .output()
         .unwrap();
     let said = String::from_utf8(of_folder.stderr).unwrap();

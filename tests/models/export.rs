@@ -348,7 +348,10 @@ fn what_mujocos_file_cannot_hold_is_in_its_callback_where_that_can_make_it() {
         assert!(callback.contains(wanted), "{callback}");
     }
     let told = |id: &str, words: &str| {
-        exported.left_out.iter().any(|note| note.starts_with(&format!("{id} cannot")) && note.contains(words))
+        exported
+            .left_out
+            .iter()
+            .any(|note| note.starts_with(&format!("{} cannot", called(id))) && note.contains(words))
     };
     assert!(told("quadratic_drag", "the callback in Python"), "{:?}", exported.left_out);
     assert!(told("slung_load", "mavid explain` writes it"), "{:?}", exported.left_out);

@@ -21,8 +21,8 @@ pub fn again(words: impl Iterator<Item = OsString>, folder: &Path) -> String {
 }
 
 fn names_folder(word: &OsStr) -> bool {
-    let word = word.to_string_lossy();
-    word == OUT || word.strip_prefix(OUT).is_some_and(|rest| rest.starts_with('='))
+    let rest = word.as_encoded_bytes().strip_prefix(OUT.as_bytes());
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(b"="))
 }
 
 #[cfg(test)]
