@@ -10,8 +10,10 @@ use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
 use mavid::link::LinkOptions;
+use mavid::log::TlogReader;
 use mavid::note::Note;
 use mavid::onboard::{OnboardError, Session, SessionRequest};
+use mavid::wire::STAMP_BYTES;
 
 fn folder(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("run").join(name);
@@ -180,6 +182,67 @@ fn a_real_room_is_never_assumed() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("--room: expected the free room"), "{}", stderr(&output));
     assert!(!out.join("plan.toml").exists());
+}
+
+/// A flight in the folder of a run that is over.
+fn flown(folder: &Path, log: &[u8]) {
+    std::fs::create_dir_all(folder).unwrap();
+    std::fs::write(folder.join("flight.tlog"), log).unwrap();
+    let phases = ["take off", "trajectory", "land", "over"].map(|phase| {
+        format!("{{\"time_s\":1.0,\"level\":\"information\",\"kind\":\"phase\",\"text\":\"{phase}\"}}\n")
+    });
+    std::fs::write(folder.join("events.jsonl"), phases.concat()).unwrap();
+}
+
+/// Of a run that is taken up after its flights: whatever is made of the answer, it comes first.
+#[test]
+fn the_answer_comes_before_what_is_made_of_it() {
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+    let log = std::fs::read(fixtures.join("p01_identify_0_25s.tlog")).unwrap();
+    // in the middle, between two frames
+    let mut reader = TlogReader::new(log.as_slice());
+    let mut middle = 0;
+    while middle < log.len() / 2 {
+        middle = usize::try_from(reader.next_record().unwrap().unwrap().offset).unwrap();
+    }
+    let middle = middle - STAMP_BYTES;
+    for (name, flights) in [("answer", vec![&log[..]]), ("answers", vec![&log[..middle], &log[middle..]])] {
+        let out = folder(name);
+        for (at, log) in flights.iter().enumerate() {
+            flown(&out.join(format!("flight{}", at + 1)), log);
+        }
+        std::fs::copy(fixtures.join("p01_vehicle.toml"), out.join("vehicle.toml")).unwrap();
+        let limits = "[limits]\nx_max_m = 3.0\ny_max_m = 3.0\nz_min_m = 0.5\nz_max_m = 4.0\n";
+        std::fs::write(out.join("limits.toml"), limits).unwrap();
+        // standard output and standard error in the order in which they are said
+        let said = out.join("said.txt");
+        let file = std::fs::File::create(&said).unwrap();
+        let status = Command::new(env!("CARGO_BIN_EXE_mavid"))
+            .args([
+                "run",
+                "--connect",
+                "udpout:127.0.0.1:9",
+                "--yes",
+                "--flights",
+                &flights.len().to_string(),
+            ])
+            .arg("--out")
+            .arg(&out)
+            .stdin(Stdio::null())
+            .stdout(file.try_clone().unwrap())
+            .stderr(file)
+            .status()
+            .unwrap();
+        let said = std::fs::read_to_string(said).unwrap();
+        assert!(matches!(status.code(), Some(0 | 3)), "{said}");
+        let answer = std::fs::read_to_string(out.join("report.txt")).unwrap();
+        let sentence: String = answer.lines().next().unwrap().chars().take(40).collect();
+        let at = |text: &str| said.find(text).unwrap_or_else(|| panic!("no {text:?} in {said}"));
+        let after =
+            ["Model and report", "for the appendix", "$ mavid identify", "$ mavid export", "report      "];
+        assert!(after.iter().all(|text| at(&sentence) < at(text)), "{said}");
+        assert_eq!(said.matches(&sentence).count(), 1, "{said}");
+    }
 }
 
 thread_local! {

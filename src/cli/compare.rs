@@ -1,6 +1,6 @@
 //! Arguments of `mavid compare`.
 
-use super::given::frame;
+use super::given::{frame, kilograms, metres};
 use super::recording::ReadArgs;
 use clap::Args;
 use mavid::autopilot::Frame;
@@ -21,10 +21,10 @@ pub struct CompareArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["mass", "size", "frame"])]
     pub vehicle: Option<PathBuf>,
     /// in place of --vehicle: mass with battery, kg. The rest comes from the first log's parameters, its flight and rules of thumb
-    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", value_parser = kilograms, allow_negative_numbers = true)]
     pub mass: Option<f64>,
     /// with --mass: distance from motor to motor across the centre, m
-    #[arg(long, value_name = "M", requires = "mass", allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", requires = "mass", value_parser = metres, allow_negative_numbers = true)]
     pub size: Option<f64>,
     /// if the first log does not say where the motors are: quadrotor-x, quadrotor-plus, hexarotor-x, ...; also without --mass
     #[arg(long, value_name = "FRAME", value_parser = frame)]

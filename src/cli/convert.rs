@@ -1,6 +1,6 @@
 //! Arguments of `mavid convert`.
 
-use super::given::ShapeArgs;
+use super::given::{ShapeArgs, kilograms};
 use super::recording::ReadArgs;
 use clap::{Args, ValueEnum};
 use mavid::study::VehicleGiven;
@@ -21,7 +21,7 @@ pub struct ConvertArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["mass", "size", "frame"])]
     pub vehicle: Option<PathBuf>,
     /// in place of --vehicle: mass with battery, kg
-    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", value_parser = kilograms, allow_negative_numbers = true)]
     pub mass: Option<f64>,
     /// its shape
     #[command(flatten)]

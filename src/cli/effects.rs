@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// Arguments of `mavid effects`.
 #[derive(Debug, Args)]
 pub struct EffectsArgs {
-    /// an effect, as `explain` names it in JSON; without it all are listed
+    /// an effect by its name (`motor lag`) or its identifier (`motor_lag`); without it all are listed
     pub id: Option<String>,
     /// vehicle.toml or model.toml: bounds and sizes are for this vehicle [default: the Holybro X500 that `sitl` flies]
     #[arg(long, value_name = "FILE")]

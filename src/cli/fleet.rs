@@ -1,6 +1,6 @@
 //! Arguments of the verbs for many logs of many vehicles.
 
-use super::given::ShapeArgs;
+use super::given::{ShapeArgs, kilograms};
 use clap::{Args, Subcommand, ValueEnum};
 use mavid::fleet::Shard;
 use mavid::study::Depth;
@@ -69,7 +69,7 @@ pub struct FleetStudyArgs {
     #[arg(long, value_name = "FILE")]
     pub vehicles: Option<PathBuf>,
     /// mass with battery of every vehicle that is not listed, kg; they are told apart by their logs
-    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", value_parser = kilograms, allow_negative_numbers = true)]
     pub mass: Option<f64>,
     /// their shape
     #[command(flatten)]

@@ -1,7 +1,7 @@
 //! Arguments of the verb that flies a vehicle.
 
 use super::address::ADDRESS;
-use super::given::ShapeArgs;
+use super::given::{ShapeArgs, kilograms};
 use clap::{ArgGroup, Args, ValueEnum};
 use mavid::fly::SETPOINT_HZ;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ pub struct FlyArgs {
     pub vehicle: Option<PathBuf>,
     /// in place of --vehicle: mass with battery, kg. The rest comes from the vehicle's parameters and rules of thumb, and is
     /// written into the folder of the flight
-    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", value_parser = kilograms, allow_negative_numbers = true)]
     pub mass: Option<f64>,
     /// its shape
     #[command(flatten)]

@@ -14,7 +14,7 @@ pub struct GivenArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["size", "frame"])]
     pub vehicle: Option<PathBuf>,
     /// in place of --vehicle: mass with battery, kg. The rest comes from the log's parameters, the flight and rules of thumb
-    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", value_parser = kilograms, allow_negative_numbers = true)]
     pub mass: Option<f64>,
     /// its shape
     #[command(flatten)]
@@ -25,7 +25,7 @@ pub struct GivenArgs {
 #[derive(Debug, Clone, Default, Args)]
 pub struct DraftArgs {
     /// in place of a file: mass with battery, kg. With --frame, and best with --size; the rest comes from rules of thumb
-    #[arg(long, value_name = "KG", requires = "frame", allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", requires = "frame", value_parser = kilograms, allow_negative_numbers = true)]
     pub mass: Option<f64>,
     /// its shape
     #[command(flatten)]
@@ -46,7 +46,7 @@ impl DraftArgs {
 #[derive(Debug, Clone, Default, Args)]
 pub struct ShapeArgs {
     /// with --mass: distance from motor to motor across the centre, m; without it, what depends on the arms is not determined
-    #[arg(long, value_name = "M", requires = "mass", allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", requires = "mass", value_parser = metres, allow_negative_numbers = true)]
     pub size: Option<f64>,
     /// with --mass, if log or parameters do not say where the motors are: quadrotor-x, quadrotor-plus, hexarotor-x, ...
     #[arg(long, value_name = "FRAME", requires = "mass", value_parser = frame)]
@@ -58,6 +58,21 @@ impl ShapeArgs {
     pub fn given(&self, mass_kg: f64) -> Given {
         Given { mass_kg, size_m: self.size, frame: self.frame }
     }
+}
+
+/// A mass in kg as people write it: `1.5`, `1,5`, `1.5 kg`.
+pub(super) fn kilograms(text: &str) -> Result<f64, String> {
+    measure(text, "kg")
+}
+
+/// A length in m as people write it: `0.45`, `0,45`, `0.45 m`.
+pub(super) fn metres(text: &str) -> Result<f64, String> {
+    measure(text, "m")
+}
+
+fn measure(text: &str, unit: &str) -> Result<f64, String> {
+    let number = text.trim().trim_end_matches(unit).trim_end().replace(',', ".");
+    number.parse().map_err(|_| format!("expected a number of {unit}, for example 0.45"))
 }
 
 /// A frame by its name.
@@ -73,5 +88,23 @@ impl GivenArgs {
             (None, Some(mass_kg)) => VehicleGiven::Weighed(self.shape.given(mass_kg)),
             (file, _) => VehicleGiven::File(file.clone().unwrap_or_default()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mass_is_taken_as_people_write_it() {
+        for text in ["1.5", "1,5", "1.5kg", "1.5 kg", " 1.5 "] {
+            assert_eq!(kilograms(text), Ok(1.5), "{text}");
+        }
+        assert_eq!((metres("0,45 m"), kilograms("-1")), (Ok(0.45), Ok(-1.0)));
+        for text in ["", "heavy", "1.5 g", "1.2,3", "45 cm"] {
+            let why = kilograms(text).unwrap_err();
+            assert!(why.starts_with("expected a number of kg"), "{text}: {why}");
+        }
+        assert!(metres("45 cm").unwrap_err().starts_with("expected a number of m"));
     }
 }

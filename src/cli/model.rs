@@ -1,6 +1,6 @@
 //! Arguments of the verbs that take a vehicle or a model alone.
 
-use super::given::{DraftArgs, ShapeArgs};
+use super::given::{DraftArgs, ShapeArgs, kilograms};
 use super::onboard::VehicleLinkArgs;
 use super::recording::ReadArgs;
 use clap::{ArgGroup, Args, Subcommand, ValueEnum};
@@ -69,7 +69,7 @@ pub struct InitArgs {
     #[arg(long, value_name = "LOG|ADDRESS")]
     pub from: PathBuf,
     /// mass with battery, kg: weigh it
-    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", value_parser = kilograms, allow_negative_numbers = true)]
     pub mass: f64,
     /// its shape
     #[command(flatten)]

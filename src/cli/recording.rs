@@ -1,6 +1,6 @@
 //! Arguments of the verbs that read recordings of flights.
 
-use super::given::{GivenArgs, ShapeArgs};
+use super::given::{GivenArgs, ShapeArgs, kilograms};
 use clap::{ArgGroup, Args};
 use mavid::study::ReadSettings;
 use mavid::wire::SystemId;
@@ -114,7 +114,7 @@ pub struct ValidateArgs {
     pub models: Vec<PathBuf>,
     /// a vehicle of this mass with battery, kg, as a further model, before all others. The rest comes from the first log's
     /// parameters, its flight and rules of thumb
-    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", value_parser = kilograms, allow_negative_numbers = true)]
     pub mass: Option<f64>,
     /// its shape
     #[command(flatten)]
@@ -139,7 +139,7 @@ pub struct InspectArgs {
     #[arg(long, conflicts_with_all = ["mass", "size", "frame"])]
     pub vehicle: Option<PathBuf>,
     /// in place of --vehicle: mass with battery, kg
-    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", value_parser = kilograms, allow_negative_numbers = true)]
     pub mass: Option<f64>,
     /// its shape
     #[command(flatten)]

@@ -1,7 +1,7 @@
 //! Arguments of the verb that does the whole: from a vehicle to the sentence.
 
 use super::address::ADDRESS;
-use super::given::ShapeArgs;
+use super::given::{ShapeArgs, kilograms};
 use super::live::autopilots;
 use clap::{ArgGroup, Args};
 use mavid::autopilot::Autopilot;
@@ -23,7 +23,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "connect")]
     pub effects: Option<PathBuf>,
     /// mass with battery, kg: weigh it. The rest of the vehicle comes from its parameters and rules of thumb
-    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", value_parser = kilograms, allow_negative_numbers = true)]
     pub mass: Option<f64>,
     /// its shape
     #[command(flatten)]

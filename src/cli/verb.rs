@@ -137,7 +137,7 @@ pub enum Verb {
     Redact(RedactArgs),
     /// List the physical effects that the program can name, or tell one: equation, parameters, usual sizes, what it is confused with
     #[command(
-        after_help = "Examples:\n  mavid effects\n  mavid effects linear_drag\n  mavid effects weak_rotor --table"
+        after_help = "Examples:\n  mavid effects\n  mavid effects linear_drag\n  mavid effects motor-lag\n  mavid effects weak_rotor --table"
     )]
     Effects(EffectsArgs),
     /// Propose what the columns of a CSV table mean, as a file for --csv-map

@@ -5,8 +5,8 @@
 //! nothing in it must be waited for any more, a signal gives it a few seconds, and then the program ends without it.
 
 use std::io::Write;
-use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -52,11 +52,20 @@ struct VerbState {
 
 /// What a running verb tells those that watch over it. Clones tell the same.
 #[derive(Debug, Clone)]
-pub struct Work(Arc<watch::Sender<VerbState>>);
+pub struct Work {
+    state: Arc<watch::Sender<VerbState>>,
+    again: Arc<OnceLock<String>>,
+}
 
 impl Work {
     fn enters(&self, phase: Phase) {
-        self.0.send_modify(|told| told.phase = phase);
+        self.state.send_modify(|told| told.phase = phase);
+    }
+
+    /// The command that continues it after a signal has ended it.
+    pub fn continues_by(&self, command: String) {
+        // the first is the one that was typed
+        let _ = self.again.set(command);
     }
 
     /// A vehicle depends on it: it alone knows when it may end.
@@ -76,7 +85,7 @@ impl Work {
 
     /// The download is over; whether a signal ended it. From now on it ends itself.
     pub fn fetched(&self, by_signal: bool) {
-        self.0.send_replace(VerbState { phase: Phase::Ending, fetch_ended: by_signal });
+        self.state.send_replace(VerbState { phase: Phase::Ending, fetch_ended: by_signal });
     }
 
     /// It works out what a recorded flight says: a signal ends it, unless it is done soon after.
@@ -120,7 +129,8 @@ pub fn run(
     let (sender, signalled) = channel();
     watch_signals(sender)?;
     let (told, phase) = watch::channel(VerbState { phase: Phase::Before, fetch_ended: false });
-    let work = Work(Arc::new(told));
+    let again = Arc::new(OnceLock::new());
+    let work = Work { state: Arc::new(told), again: again.clone() };
     let (done, outcome) = channel();
     let thread = thread::Builder::new().name("verb".into()).spawn(move || {
         let ended = verb(&work).map_err(report_in_time);
@@ -150,7 +160,7 @@ pub fn run(
             }
         };
         if is_over {
-            let (text, status) = last_words(phase, name);
+            let (text, status) = last_words(phase, name, again.get().map(String::as_str));
             last_word(move || {
                 leave_view();
                 output::error(&text);
@@ -161,11 +171,15 @@ pub fn run(
 }
 
 /// What is said of a verb that the program ends by this signal in this phase, and the exit status.
-fn last_words(phase: Phase, name: &str) -> (String, u8) {
+fn last_words(phase: Phase, name: &str, again: Option<&str>) -> (String, u8) {
     match phase {
         Phase::Before => (format!("mavid: ended by {name} before it began"), NOT_ALL),
         Phase::Between => {
-            (format!("mavid: ended by {name}; run the same command again to continue"), NOT_ALL)
+            let again = again.map_or_else(
+                || "run the same command again to continue".to_owned(),
+                |again| format!("to continue: {again}"),
+            );
+            (format!("mavid: ended by {name}; {again}"), NOT_ALL)
         }
         Phase::Analysing => (
             format!(
@@ -255,14 +269,16 @@ mod tests {
     #[test]
     fn what_a_signal_ends_is_not_all_done_and_what_cannot_be_told_is_a_failure() {
         for phase in [Phase::Before, Phase::Between, Phase::Analysing] {
-            let (said, status) = last_words(phase, INTERRUPT);
+            let (said, status) = last_words(phase, INTERRUPT, None);
             assert!(said.starts_with("mavid: ended by Ctrl-C") && status == NOT_ALL, "{said}: {status}");
         }
-        let (said, status) = last_words(Phase::Ending, "SIGTERM");
+        let (said, status) = last_words(Phase::Ending, "SIGTERM", None);
         assert!(
             said.contains("5 s after SIGTERM, before all output was written") && status == FAILED,
             "{said}"
         );
+        let (said, _) = last_words(Phase::Between, INTERRUPT, Some("mavid demo --out mavid-demo"));
+        assert_eq!(said, "mavid: ended by Ctrl-C; to continue: mavid demo --out mavid-demo");
         let ended = CommandError::Ended("ended by Ctrl-C".to_owned());
         assert_eq!((ended.status(), CommandError::Failure(String::new()).status()), (NOT_ALL, FAILED));
     }

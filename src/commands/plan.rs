@@ -29,7 +29,7 @@ pub fn make(stderr: &StandardError, args: &PlanArgs) -> Result<PlanStudy, Comman
     output::refuse_overwriting(&read, &written)?;
     let study = plan_flight(
         &request(args)?,
-        &Steps::new(stderr, "planning {bar:30} {pos} of {len} descents, {eta} left"),
+        &Steps::new(stderr, "planning {bar:30} {pos} of {len} steps, about {eta} left"),
     )?;
     if let Some(path) = &args.out {
         let text = trajectory_to_toml(&study.stored())?;

@@ -23,7 +23,7 @@ fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
 
 /// A bar of bytes that come over a link, with the time that is left.
 pub fn bytes_bar(of: u64) -> ProgressBar {
-    let template = "{bar:30} {bytes} of {total_bytes}, {bytes_per_sec}, {eta} left";
+    let template = "{bar:30} {bytes} of {total_bytes}, {bytes_per_sec}, about {eta} left";
     styled(ProgressBar::new(of), template)
 }
 
@@ -68,8 +68,8 @@ pub struct Spinner(ProgressBar);
 const STAGE: &str = "{spinner} {msg}, {elapsed}";
 /// A stage of which it is known about how long it is.
 const ESTIMATED: &str = "{spinner} {msg} {bar:20} {elapsed}, about {eta} left";
-/// A stage of counted steps.
-const COUNTED: &str = "{spinner} {msg} {bar:20} {pos} of {len}, {eta} left";
+/// A stage of counted steps; the prefix says what they are.
+const COUNTED: &str = "{spinner} {msg} {bar:20} {pos} of {len} {prefix}, about {eta} left";
 
 impl Spinner {
     /// Empty until the first stage.
@@ -108,6 +108,7 @@ impl Progress for Spinner {
         self.restyle(STAGE);
         self.0.reset_elapsed();
         self.0.set_message(stage.to_string());
+        self.0.set_prefix(stage.counted());
     }
 
     fn steps(&self, count: u64) {

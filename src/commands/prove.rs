@@ -43,7 +43,7 @@ fn check(args: &ProveArgs) -> Result<(), CommandError> {
 
 /// One after another: each uses all cores, and its time is reported.
 fn verdicts(stderr: &StandardError, folders: &[PathBuf]) -> Vec<CaseVerdict> {
-    let progress = Steps::new(stderr, "{bar:30} {pos} of {len} cases, {eta} left");
+    let progress = Steps::new(stderr, "{bar:30} {pos} of {len} cases, about {eta} left");
     progress.steps(folders.len() as u64);
     let mut verdicts = Vec::with_capacity(folders.len());
     for folder in folders {

@@ -131,7 +131,7 @@ async fn play(
 
 fn bar(frames: u64) -> ProgressBar {
     let bar = ProgressBar::new(frames);
-    match ProgressStyle::with_template("playing {wide_bar} {pos}/{len} {eta}") {
+    match ProgressStyle::with_template("playing {wide_bar} {pos} of {len} frames, about {eta} left") {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
     }

@@ -3,7 +3,11 @@
 use super::cost::Costs;
 use super::error::ExportError;
 use super::program::EffectsProgram;
+<<<<<<< HEAD
 use crate::physics::effects::by_id;
+=======
+use crate::diagnose::called;
+>>>>>>> m26-in
 use crate::physics::{ActiveEffect, Airframe, Parameter};
 use crate::text::compact;
 use crate::vehicle::{ThrustLaw, Vehicle};
@@ -241,7 +245,8 @@ impl<'a> Source<'a> {
             if self.taken.contains(&id) || self.is_no_latency(active) {
                 continue;
             }
-            let lost = format!("{id} cannot be represented here: {}", self.values(active).join(", "));
+            let lost =
+                format!("{} cannot be represented here: {}", called(id), self.values(active).join(", "));
             let instead = match &self.callback {
                 Some(callback) if callback.ids.contains(&id) => callback.whither.to_owned(),
                 _ => self.costs.words(id),
@@ -288,13 +293,13 @@ fn of_gyroscopic(of_model: f64, of_simulator: f64) -> Option<String> {
     }
     Some(if of_simulator == 0.0 {
         format!(
-            "the simulator has no gyroscopic torque w x J w, and in the model a share of {of_model:.2} acts (body.gyroscopic): \
+            "the simulator has no gyroscopic torque w x J w, and in the model a share of {of_model:.2} acts: \
              `mavid identify` and `mavid explain` estimate the share that acts in a log of the simulator; the paper's methods and \
              WEAK take it to be 1 there, and get an izz near ixx and iyy from a flight that turns while it tilts"
         )
     } else {
         format!(
-            "body.gyroscopic of {of_model:.2} cannot be represented here: in the simulator, the whole gyroscopic torque w x J w acts"
+            "a share of {of_model:.2} of the gyroscopic torque w x J w cannot be represented here: in the simulator the whole of it acts"
         )
     })
 }
@@ -330,9 +335,7 @@ mod tests {
         // the model's own simulator, with the error of the share, and a rigid body in a rigid body's
         assert!(of_gyroscopic(0.0, 0.0).is_none() && of_gyroscopic(0.04, 0.0).is_none());
         assert!(of_gyroscopic(1.0, 1.0).is_none());
-        assert!(
-            of_gyroscopic(0.0, 1.0).unwrap().starts_with("body.gyroscopic of 0.00 cannot be represented")
-        );
+        assert!(of_gyroscopic(0.0, 1.0).unwrap().starts_with("a share of 0.00 of the gyroscopic torque"));
         assert!(of_gyroscopic(1.0, 0.0).unwrap().contains("a share of 1.00 acts"));
     }
 }

@@ -130,6 +130,12 @@ pub struct FlightStatistics {
     pub tilt_planned_deg: f64,
     /// s for which the trajectory waited for the link
     pub paused_s: f64,
+    /// how often this program or its computer stood still for more than 0.1 s once the vehicle was heard
+    pub stalls: u32,
+    /// the longest of these times, s
+    pub stalled_max_s: f64,
+    /// the longest of those within 5 s before the cause of an unplanned end, s; `None` where there is none
+    pub stalled_before_end_s: Option<f64>,
 }
 
 /// Outcome of a flight.

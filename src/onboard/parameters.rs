@@ -34,10 +34,7 @@ pub async fn read_as_needed(
             if told.elapsed() >= STILL_WAITING {
                 told = Instant::now();
                 let (there, all) = reading.progress();
-                let text = format!(
-                    "reading parameters: {there} of {all} are done; one that is not there never answers"
-                );
-                tell(&Note::remark(about.clone(), text));
+                tell(&Note::remark(about.clone(), read_so_far(there, all)));
             }
             Ok(Flow::On)
         };
@@ -45,5 +42,20 @@ pub async fn read_as_needed(
         let came = reading.known();
         known.extend(more.iter().filter_map(|name| Some((name.clone(), came.value(name)?))));
         asked.extend(more);
+    }
+}
+
+/// How many of the parameters that were asked for have come.
+fn read_so_far(there: usize, all: usize) -> String {
+    format!("{there} of {all} parameters are read; one that the vehicle does not have never comes")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_count_says_of_what_it_is() {
+        assert!(read_so_far(25, 43).starts_with("25 of 43 parameters are read"));
     }
 }

@@ -7,7 +7,8 @@ use super::sensitivity::{
 use super::space::Path;
 use crate::regression::standard_regressor;
 use crate::trajectory::FlatMotion;
-use crate::vehicle::{Limits, RigidBody, Vehicle};
+use crate::units::deg_from_rad;
+use crate::vehicle::{AXIS_NAMES, Limits, RigidBody, Vehicle};
 use nalgebra::{DMatrix, SVector, Vector4};
 
 /// A quantity that a bound may hold.
@@ -43,7 +44,42 @@ pub enum Quantity {
 pub const AHEAD_S: [f64; 2] = [1.3, 0.65];
 
 impl Quantity {
-    /// The name used in files and messages.
+    /// In words, for people: the world's axes by where they point.
+    #[must_use]
+    pub fn words(self) -> String {
+        const AXES: [&str; 3] = ["north", "west", "up"];
+        match self {
+            Self::Path { axis: 3, order } => ["yaw", "yaw rate", "yaw acceleration"][order.min(2)].to_owned(),
+            Self::Path { axis, order } => {
+                let what = ["place", "speed", "acceleration"][order.min(2)];
+                format!("{what} along {}", AXES[axis.min(2)])
+            }
+            Self::Roll => "roll".to_owned(),
+            Self::Pitch => "pitch".to_owned(),
+            Self::Thrust => "thrust".to_owned(),
+            Self::Torque(axis) => format!("torque about body {}", AXIS_NAMES[axis.min(2)]),
+            Self::RotorThrust(rotor) => format!("thrust of motor {}", rotor + 1),
+            Self::Rest(axis) => format!("place along {} at rest without setpoints", AXES[axis.min(2)]),
+        }
+    }
+
+    /// A value (in the unit of the quantity) with the unit that people use: angles in degrees.
+    #[must_use]
+    pub fn amount(self, value: f64) -> String {
+        let in_degrees = |unit: &str| format!("{:.2} {unit}", deg_from_rad(value));
+        match self {
+            Self::Path { axis: 3, order: 0 } | Self::Roll | Self::Pitch => in_degrees("degrees"),
+            Self::Path { axis: 3, order: 1 } => in_degrees("degrees/s"),
+            Self::Path { axis: 3, .. } => in_degrees("degrees/s^2"),
+            Self::Path { order: 0, .. } | Self::Rest(_) => format!("{value:.3} m"),
+            Self::Path { order: 1, .. } => format!("{value:.3} m/s"),
+            Self::Path { .. } => format!("{value:.3} m/s^2"),
+            Self::Thrust | Self::RotorThrust(_) => format!("{value:.3} N"),
+            Self::Torque(_) => format!("{value:.4} N m"),
+        }
+    }
+
+    /// The name used in files.
     #[must_use]
     pub fn name(self) -> String {
         match self {

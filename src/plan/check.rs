@@ -45,7 +45,8 @@ pub struct Violation {
 impl std::fmt::Display for Violation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { time_s, quantity, value, limit } = self;
-        write!(f, "at {time_s:.3} s {} is {value:.5}, its limit {limit:.5}", quantity.name())
+        let (value, limit) = (quantity.amount(*value), quantity.amount(*limit));
+        write!(f, "at {time_s:.3} s {} is {value}, its limit {limit}", quantity.words())
     }
 }
 

@@ -1,18 +1,19 @@
 //! Planning of an excitation trajectory: from limits and a criterion to coefficients, margins and expected standard
 //! errors.
 
-use super::bounds::{Bound, Dynamics, Quantity, ROTOR_MARGINS, bounds_of, bounds_to_plan_in};
-use super::check::{CheckReport, SAMPLE_S, Violation, check};
+use super::bounds::{Bound, Dynamics, Quantity, ROTOR_MARGINS, RotorMargin, bounds_of, bounds_to_plan_in};
+use super::check::{SAMPLE_S, check};
 use super::criterion::{Criterion, condition_number, scaled_condition_number};
 use super::descent::{Iterate, Problem};
 use super::expected::{FlightSpan, expected_standard_errors, share_at_bound};
-use super::feasible::{Conflict, StartPlace, feasible};
+use super::feasible::{StartPlace, feasible};
 use super::information::GramSampler;
-use super::noise::{NoiseModel, parameter_scale};
+use super::noise::parameter_scale;
 use super::optimise::Search;
+use super::request::{Assessment, Plan, PlanError, PlanRequest, RestInside};
 use super::room::rest_bounds;
 use super::space::{AxisStart, SeriesSpace};
-use crate::trajectory::{FourierTrajectory, SizeError, check_size};
+use crate::trajectory::{FourierTrajectory, check_size};
 use crate::vehicle::{Limits, Vehicle};
 use nalgebra::Vector4;
 
@@ -21,122 +22,6 @@ const INFORMATION_SAMPLES_PER_HARMONIC: u32 = 13;
 
 /// Largest number of random starts of a search: each is held in memory.
 const STARTS_MAX: u64 = 100_000;
-
-/// Request to the planner.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlanRequest {
-    /// T of (18), s
-    pub period_s: f64,
-    /// N of (18)
-    pub harmonics: u32,
-    /// number of periods
-    pub repeats: u32,
-    /// where the series starts and ends
-    pub start: StartPlace,
-    /// what is minimised
-    pub criterion: Criterion,
-    /// for the standard errors, and for D- and A-optimality
-    pub noise: NoiseModel,
-    /// seed of the random starts
-    pub seed: u64,
-    /// number of random starts
-    pub starts: u64,
-    /// whether a vehicle that receives no more setpoints is to come to rest inside the room, if the criterion permits
-    /// it
-    pub rests_inside: bool,
-}
-
-impl Default for PlanRequest {
-    /// The paper's series, five periods, sixteen starts; as in the paper, the end of setpoints is not considered.
-    fn default() -> Self {
-        Self {
-            period_s: 10.0,
-            harmonics: 5,
-            repeats: 5,
-            start: StartPlace::default(),
-            criterion: Criterion::Cond,
-            noise: NoiseModel::default(),
-            seed: 1,
-            starts: 16,
-            rests_inside: false,
-        }
-    }
-}
-
-/// Assessment of a trajectory.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Assessment {
-    /// cond(W), `W` of (20)
-    pub condition_number: f64,
-    /// cond(W) with columns of unit norm
-    pub scaled_condition_number: f64,
-    /// standard errors of the parameters in the order of `Theta`, relative to [`parameter_scale`]; `None` if the flight
-    /// does not determine all of them
-    pub standard_errors: Option<[f64; 7]>,
-    /// the flight time for the standard errors, s
-    pub flight_s: f64,
-    /// bounds over one period
-    pub check: CheckReport,
-    /// share (0 to 1) of the rotor commands at a rotor's bound when it is flown in simulation; `None` where it cannot be
-    pub share_at_bound: Option<f64>,
-}
-
-/// A planned trajectory.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
-    /// the series (18)
-    pub trajectory: FourierTrajectory,
-    /// the criterion's value: a condition number, or a relative standard error
-    pub criterion_value: f64,
-    /// its assessment
-    pub assessment: Assessment,
-    /// the condition that a vehicle without setpoints comes to rest inside the room; `None` if it was not requested, or
-    /// if its cost was too high
-    pub rest: Option<RestInside>,
-}
-
-/// The condition that a vehicle without setpoints comes to rest inside the room.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RestInside {
-    /// distance of its rotors at rest inside the room, m; negative: outside
-    pub inside_m: f64,
-    /// bounds in addition to those of the limits; also for the transitions to the series and back
-    pub bounds: Vec<Bound>,
-}
-
-/// Errors of the planner.
-#[derive(Debug, thiserror::Error)]
-pub enum PlanError {
-    /// a number of the request is out of range
-    #[error("{name}: expected {expected}, got {came}")]
-    Request {
-        /// which
-        name: &'static str,
-        /// what was expected
-        expected: &'static str,
-        /// what was given
-        came: String,
-    },
-    /// a flight that is too long or too large
-    #[error(transparent)]
-    Size(#[from] SizeError),
-    /// limits that cannot be kept
-    #[error("limits in conflict: {0}")]
-    Conflict(#[from] Conflict),
-    /// the search ended outside a bound
-    #[error(
-        "no trajectory within the limits was found in {starts} starts; the best one breaks one: {violation}"
-    )]
-    OutsideLimits {
-        /// number of tried starts
-        starts: u64,
-        /// the first broken bound
-        violation: Violation,
-    },
-    /// no motion inside the limits determines all parameters
-    #[error("no motion inside the limits determines all seven parameters")]
-    NotDetermined,
-}
 
 /// How often a plan that breaks a bound is polished.
 const POLISHES: u32 = 3;
@@ -149,7 +34,10 @@ const INSIDE_M: [f64; 8] = [-1.25, -1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5];
 /// some, and more would contradict the thrust law.
 const AT_BOUND_MAX: f64 = 0.002;
 
-/// Plans a trajectory. `done` is called once a descent, [`Search::work`] times in all.
+/// The margins of the rotors after that of the search, in the order of trial.
+const LARGER_MARGINS: &[RotorMargin] = ROTOR_MARGINS.split_at(1).1;
+
+/// Plans a trajectory. `done` is called once for each step of the work, [`work_of`] times in all.
 ///
 /// ```no_run
 /// use mavid::config::load_vehicle;
@@ -181,12 +69,14 @@ pub fn plan(
     let search = search_of(request);
     let best = search.run(&problem, samples, done).ok_or(PlanError::NotDetermined)?;
     let mut best = polished(&search, &problem, best, (vehicle, request))?;
+    done();
     let mut rest = None;
     if request.rests_inside {
-        (best, rest) = calmed(&search, &problem, best, (vehicle, limits, request));
+        (best, rest) = calmed(&search, &problem, best, (vehicle, limits, request), done);
     }
+    let mut left = Left::of(LARGER_MARGINS.len(), done);
     // what a controller adds to the planned thrusts is known once it is flown
-    for margin in &ROTOR_MARGINS[1..] {
+    for margin in LARGER_MARGINS {
         let trajectory = problem.space.trajectory(&best.unknowns);
         if share_at_bound(&trajectory, vehicle).is_some_and(|share| share <= AT_BOUND_MAX) {
             break;
@@ -199,7 +89,9 @@ pub fn plan(
             // no calmer one fits in
             Err(_) => break,
         }
+        left.step();
     }
+    drop(left);
     let trajectory = problem.space.trajectory(&best.unknowns);
     // what is left is told to the bounds themselves
     let assessment = assess(&trajectory, vehicle, &bounds_of(limits, vehicle), request);
@@ -216,7 +108,9 @@ fn calmed(
     problem: &Problem,
     best: Iterate,
     (vehicle, limits, request): (&Vehicle, &Limits, &PlanRequest),
+    done: &(dyn Fn() + Sync),
 ) -> (Iterate, Option<RestInside>) {
+    let mut left = Left::of(INSIDE_M.len(), done);
     let samples = whole((request.period_s / SAMPLE_S).ceil());
     let worth = best.log_value + CALM_COSTS.ln();
     let (mut calmest, mut kept) = (best, None);
@@ -231,6 +125,7 @@ fn calmed(
             }
             _ => break,
         }
+        left.step();
     }
     (calmest, kept)
 }
@@ -267,6 +162,41 @@ fn polished(
 fn rise_between_samples(request: &PlanRequest) -> f64 {
     let highest_rad_s = 2.0 * std::f64::consts::TAU * f64::from(request.harmonics) / request.period_s;
     0.5 * (0.5 * highest_rad_s * SAMPLE_S).powi(2)
+}
+
+/// Steps of a part of the work, of which fewer may be needed than there are: the rest is done with its end.
+struct Left<'a> {
+    steps: usize,
+    done: &'a (dyn Fn() + Sync),
+}
+
+impl<'a> Left<'a> {
+    fn of(steps: usize, done: &'a (dyn Fn() + Sync)) -> Self {
+        Self { steps, done }
+    }
+
+    fn step(&mut self) {
+        if self.steps > 0 {
+            self.steps -= 1;
+            (self.done)();
+        }
+    }
+}
+
+impl Drop for Left<'_> {
+    fn drop(&mut self) {
+        while self.steps > 0 {
+            self.step();
+        }
+    }
+}
+
+/// Steps of the whole work for a request, for a progress bar: the descents of the search, the plan brought inside every
+/// bound, the steps further inside the room, and the larger margins of the rotors.
+#[must_use]
+pub fn work_of(request: &PlanRequest) -> u64 {
+    let inside = if request.rests_inside { INSIDE_M.len() } else { 0 };
+    search_of(request).work() + 1 + (inside + LARGER_MARGINS.len()) as u64
 }
 
 /// The search for a request. Bounds are tightened by the possible rise of a peak between two samples.

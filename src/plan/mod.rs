@@ -10,7 +10,7 @@
 //! quadratic, descent, optimise   one step, one start, many starts
 //! noise, expected   what the flight will determine, and how well
 //! excitation   from limits to a plan
-//! room         walls, ceiling and floor where none are stated
+//! room         walls, ceiling and floor where none are stated; wall: their words and keys
 //! ```
 
 mod bounds;
@@ -25,10 +25,12 @@ mod information;
 mod noise;
 mod optimise;
 mod quadratic;
+mod request;
 mod room;
 mod sensitivity;
 mod space;
 mod transition;
+mod wall;
 
 pub use bounds::{
     AHEAD_S, Bound, Dynamics, Instant, Quantity, ROTOR_MARGINS, RotorMargin, bounds_of, bounds_to_plan_in,
@@ -36,13 +38,15 @@ pub use bounds::{
 };
 pub use check::{CheckReport, Margin, SAMPLE_S, Violation, check};
 pub use criterion::{Criterion, condition_number, scaled_condition_number};
-pub use excitation::{Assessment, Plan, PlanError, PlanRequest, RestInside, assess, plan, search_of};
+pub use excitation::{assess, plan, search_of, work_of};
 pub use expected::{FlightSpan, expected_standard_errors, share_at_bound};
 pub use extremes::{Extremes, path_samples};
 pub use feasible::{Conflict, StartPlace, feasible};
 pub use information::{GramSampler, Matrix7};
 pub use noise::{NoiseModel, PARAMETERS, RowMotion, RowSpacing, parameter_scale};
 pub use optimise::{Round, Search};
+pub use request::{Assessment, Plan, PlanError, PlanRequest, RestInside};
 pub use room::{HEIGHT_ERROR_M, Reach, Roomed, floor_m, too_narrow, with_room};
 pub use space::{AxisStart, SeriesSpace};
 pub use transition::{FlightPlan, HOVER_S, TransitionError, flight_path};
+pub use wall::Wall;

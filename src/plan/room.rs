@@ -1,6 +1,7 @@
 //! The room that every plan and every flight has: walls, a ceiling and a floor above the ground.
 
 use super::bounds::{Bound, Quantity};
+use super::wall::Wall;
 use crate::note::{About, Note};
 use crate::units::{deg_from_rad, rad_from_deg};
 use crate::vehicle::{Limits, Vehicle};
@@ -66,14 +67,14 @@ impl Reach {
     }
 }
 
-/// A wall of a room in which the vehicle has no place: its name, its coordinate, and the reach of the rotors, m.
+/// A wall of a room in which the vehicle has no place: which, its coordinate, and the reach of the rotors, m.
 #[must_use]
-pub fn too_narrow(limits: &Limits, vehicle: &Vehicle) -> Option<(&'static str, f64, f64)> {
+pub fn too_narrow(limits: &Limits, vehicle: &Vehicle) -> Option<(Wall, f64, f64)> {
     let side_m = Reach::of(vehicle).side_m;
-    let walls = [("x_max_m", limits.x_max_m), ("y_max_m", limits.y_max_m)];
+    let walls = [Wall::NorthOrSouth, Wall::WestOrEast];
     walls
         .into_iter()
-        .find_map(|(name, wall_m)| Some((name, wall_m.filter(|wall_m| *wall_m <= side_m)?, side_m)))
+        .find_map(|wall| Some((wall, wall.of(limits).filter(|wall_m| *wall_m <= side_m)?, side_m)))
 }
 
 /// The least height above the ground (m) at which no rotor can touch it: the reach of the tilted rotors, and the error of

@@ -83,7 +83,9 @@ pub(super) fn walk(log: &[u8], pass: &mut Pass) -> Vec<u8> {
             pass.tally.kept += 1;
             out.extend_from_slice(&redacted);
         } else {
-            pass.tally.left_out += 1;
+            let name =
+                definitions.get(&number).map_or_else(|| format!("message {number}"), |of| of.name.clone());
+            pass.leave_out(name);
         }
     }
     out
@@ -106,12 +108,12 @@ impl Definition {
             match (letter, of) {
                 (b'N', _) => named = text(value),
                 (b'Z' | b'n', _) if is_suspicious(&text(value)) => return None,
-                (b'L' | b'i', Some(of)) => pass.move_in(of, Kind::E7, value),
-                (b'f' | b'd', Some(of)) => pass.move_in(of, Kind::Degrees, value),
+                (b'L' | b'i', Some(of)) => pass.move_in((of, Kind::E7), label, value),
+                (b'f' | b'd', Some(of)) => pass.move_in((of, Kind::Degrees), label, value),
                 (b'f' | b'd', None) if self.name == "PARM" && is_secret_parameter(&named) => {
-                    pass.empty(value)
+                    pass.empty(|| named.clone(), value)
                 }
-                _ if is_identity(label) => pass.empty(value),
+                _ if is_identity(label) => pass.empty(|| format!("{}.{label}", self.name), value),
                 _ => {}
             }
         }

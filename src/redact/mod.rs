@@ -9,5 +9,5 @@ mod tlog;
 mod ulog;
 
 pub use error::RedactError;
-pub use pass::Tally;
+pub use pass::{Counts, Tally};
 pub use redaction::{Redacted, redact};

@@ -1,6 +1,7 @@
 //! One pass over a log: what is moved, emptied and left out.
 
 use super::names::Coordinate;
+use std::collections::BTreeMap;
 
 /// Where the flight is moved to, degrees: beside the point without a position, where a degree of longitude is as long as one of
 /// latitude.
@@ -13,7 +14,8 @@ pub struct Tally {
     pub kept: u64,
     /// coordinates that were moved
     pub moved: u64,
-    /// serial numbers, hardware identifiers, keys and parameters of positions that were emptied
+    /// values of serial numbers, hardware identifiers, keys and parameters of positions that were emptied: those of a field count once
+    /// for each message
     pub emptied: u64,
     /// messages that were left out, because what they hold is not known or cannot be moved
     pub left_out: u64,
@@ -21,12 +23,19 @@ pub struct Tally {
     pub unread_bytes: u64,
 }
 
+/// How often each of several things occurred, by their names in the log.
+pub type Counts = BTreeMap<String, u64>;
+
 /// A pass with the origin of the positions.
 #[derive(Debug, Default)]
 pub(super) struct Pass {
     /// degrees; the first position of the log
     pub(super) origin_deg: Option<[f64; 2]>,
     pub(super) tally: Tally,
+    /// values that were emptied, by field or parameter
+    pub(super) emptied: Counts,
+    /// messages that were left out, by their names
+    pub(super) left_out: Counts,
     latitude_deg: Option<f64>,
 }
 
@@ -69,16 +78,23 @@ impl Pass {
         }
     }
 
-    /// Empties bytes that tell hardware or hold a key.
-    pub(super) fn empty(&mut self, bytes: &mut [u8]) {
+    /// Empties bytes that tell hardware or hold a key: those of a field or a parameter of this name.
+    pub(super) fn empty(&mut self, name: impl FnOnce() -> String, bytes: &mut [u8]) {
         if bytes.iter().any(|byte| *byte != 0) {
             self.tally.emptied += 1;
+            *self.emptied.entry(name()).or_default() += 1;
             bytes.fill(0);
         }
     }
 
+    /// A message of this name is left out.
+    pub(super) fn leave_out(&mut self, name: String) {
+        self.tally.left_out += 1;
+        *self.left_out.entry(name).or_default() += 1;
+    }
+
     /// Moves a coordinate that stands in bytes, little-endian: `i32` in 1e-7 degrees, `f32` and `f64` in degrees.
-    pub(super) fn move_in(&mut self, coordinate: Coordinate, kind: Kind, bytes: &mut [u8]) {
+    pub(super) fn move_in(&mut self, (coordinate, kind): (Coordinate, Kind), name: &str, bytes: &mut [u8]) {
         match (kind, bytes.len()) {
             (Kind::E7, 4) => {
                 if let Ok(raw) = <[u8; 4]>::try_from(&*bytes) {
@@ -99,7 +115,7 @@ impl Pass {
                     bytes.copy_from_slice(&moved.to_le_bytes());
                 }
             }
-            _ => self.empty(bytes),
+            _ => self.empty(|| name.to_owned(), bytes),
         }
     }
 }

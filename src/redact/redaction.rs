@@ -1,7 +1,7 @@
 //! Redacts a log and reads it back.
 
 use super::error::RedactError;
-use super::pass::{Pass, Tally, is_moved};
+use super::pass::{Counts, Pass, Tally, is_moved};
 use super::{dataflash, tlog, ulog};
 use crate::text::excerpt;
 
@@ -12,6 +12,10 @@ pub struct Redacted {
     pub bytes: Vec<u8>,
     /// what was done
     pub tally: Tally,
+    /// values that were emptied, by field (`sensor_accel.device_id`) or parameter (`CAL_ACC0_ID`)
+    pub emptied: Counts,
+    /// messages that were left out, by their names in the log
+    pub left_out: Counts,
 }
 
 type Walk = fn(&[u8], &mut Pass) -> Vec<u8>;
@@ -45,7 +49,7 @@ pub fn redact(log: &[u8]) -> Result<Redacted, RedactError> {
         return Err(RedactError::Nothing { format, bytes: log.len() });
     }
     read_back(walk, &bytes, &pass)?;
-    Ok(Redacted { bytes, tally: pass.tally })
+    Ok(Redacted { bytes, tally: pass.tally, emptied: pass.emptied, left_out: pass.left_out })
 }
 
 /// Everything that was to be taken out is out, and everything that was to stay is there.
@@ -54,7 +58,8 @@ fn read_back(walk: Walk, bytes: &[u8], done: &Pass) -> Result<(), RedactError> {
     walk(bytes, &mut again);
     let still = |what: String| Err(RedactError::StillThere { what });
     if again.tally.emptied > 0 {
-        return still(format!("{} serial numbers or keys", again.tally.emptied));
+        let names: Vec<&str> = again.emptied.keys().map(String::as_str).collect();
+        return still(names.join(", "));
     }
     if again.tally.left_out > 0 {
         return still(format!("{} messages that were to be left out", again.tally.left_out));

@@ -127,10 +127,18 @@ pub(super) fn walk(log: &[u8], pass: &mut Pass) -> Vec<u8> {
                 out.extend_from_slice(stamp.unwrap_or_default());
                 out.extend_from_slice(&bytes);
             }
-            None => pass.tally.left_out += 1,
+            None => pass.leave_out(name_of(frame.header().message_id)),
         }
     }
     out
+}
+
+/// What a message that is left out is called.
+fn name_of(message: u32) -> String {
+    match message {
+        id::STATUSTEXT => "text that looks like a serial number, a key or a place".to_owned(),
+        number => format!("MAVLink message {number}"),
+    }
 }
 
 /// A frame without what is not to be shared, unsigned; `None` where it is left out.
@@ -140,15 +148,18 @@ fn redacted(frame: &Frame<'_>, pass: &mut Pass, seeds: &CrcSeeds) -> Option<Vec<
     let sent = payload.len();
     match message {
         id::PARAM_VALUE => {
-            if is_secret_parameter(&Payload(&payload).text(8, 16)) {
-                pass.empty(payload.get_mut(0..4)?);
+            let name = Payload(&payload).text(8, 16);
+            if is_secret_parameter(&name) {
+                pass.empty(|| name, payload.get_mut(0..4)?);
             }
         }
         // parameters five and six are a place in many commands
-        id::COMMAND_LONG => pass.empty(grown(&mut payload, 24).get_mut(16..24)?),
+        id::COMMAND_LONG => {
+            pass.empty(|| "place of COMMAND_LONG".to_owned(), grown(&mut payload, 24).get_mut(16..24)?);
+        }
         id::AUTOPILOT_VERSION => {
-            pass.empty(grown(&mut payload, 78).get_mut(8..16)?);
-            pass.empty(payload.get_mut(60..78)?);
+            pass.empty(|| "AUTOPILOT_VERSION.uid".to_owned(), grown(&mut payload, 78).get_mut(8..16)?);
+            pass.empty(|| "AUTOPILOT_VERSION.uid2".to_owned(), payload.get_mut(60..78)?);
         }
         id::STATUSTEXT if is_suspicious(&Payload(&payload).text(1, 50)) => return None,
         id::STATUSTEXT => {}
@@ -156,8 +167,8 @@ fn redacted(frame: &Frame<'_>, pass: &mut Pass, seeds: &CrcSeeds) -> Option<Vec<
         _ => {
             let (_, from) = *POSITIONS.iter().find(|(of, _)| *of == message)?;
             grown(&mut payload, from + 8);
-            pass.move_in(Coordinate::Latitude, Kind::E7, payload.get_mut(from..from + 4)?);
-            pass.move_in(Coordinate::Longitude, Kind::E7, payload.get_mut(from + 4..from + 8)?);
+            pass.move_in((Coordinate::Latitude, Kind::E7), "lat", payload.get_mut(from..from + 4)?);
+            pass.move_in((Coordinate::Longitude, Kind::E7), "lon", payload.get_mut(from + 4..from + 8)?);
         }
     }
     Some(rebuilt(frame.bytes(), payload, sent, seeds.get(message)?))

@@ -3,7 +3,7 @@
 use super::names::{coordinate, is_identity, is_secret_parameter, is_suspicious};
 use super::pass::{Kind, Pass};
 use crate::autopilot::{ULOG_DEEPEST, ULOG_HEAD_BYTES, ULOG_MAGIC};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Length and kind before each message.
 const HEAD_BYTES: usize = 3;
@@ -42,7 +42,8 @@ struct Schema {
     formats: BTreeMap<String, Vec<Field>>,
     /// topic of each number
     topics: BTreeMap<u16, String>,
-    left_out: BTreeSet<u16>,
+    /// topics that are left out
+    left_out: BTreeMap<u16, String>,
 }
 
 /// Walks the log; the redacted one comes out. What follows a break in the messages is not read.
@@ -63,7 +64,7 @@ pub(super) fn walk(log: &[u8], pass: &mut Pass) -> Vec<u8> {
                 out.extend_from_slice(&[low, high, kind]);
                 out.extend_from_slice(&body);
             }
-            None => pass.tally.left_out += 1,
+            None => pass.leave_out(schema.name_of(kind, body)),
         }
     }
     pass.tally.unread_bytes += (log.len() - at) as u64;
@@ -80,7 +81,7 @@ impl Schema {
             b'A' => self.subscribe(body)?,
             b'D' => {
                 let number = u16::from_le_bytes([*body.first()?, *body.get(1)?]);
-                if self.left_out.contains(&number) {
+                if self.left_out.contains_key(&number) {
                     return None;
                 }
                 let topic = self.topics.get(&number)?.clone();
@@ -103,6 +104,22 @@ impl Schema {
         Some(out)
     }
 
+    /// What a message is called: its topic, or what it holds.
+    fn name_of(&self, kind: u8, body: &[u8]) -> String {
+        let number = |at: usize| Some(u16::from_le_bytes([*body.get(at)?, *body.get(at + 1)?]));
+        match kind {
+            b'D' => number(0)
+                .and_then(|number| self.left_out.get(&number))
+                .cloned()
+                .unwrap_or_else(|| "data without a topic".to_owned()),
+            b'A' => "subscription to such a topic".to_owned(),
+            b'I' => "information on the hardware".to_owned(),
+            b'M' => "texts of the boot".to_owned(),
+            b'L' | b'C' => "text that looks like a serial number, a key or a place".to_owned(),
+            _ => "damaged message".to_owned(),
+        }
+    }
+
     fn define(&mut self, body: &[u8]) {
         let text = String::from_utf8_lossy(body);
         let Some((name, fields)) = text.split_once(':') else { return };
@@ -121,7 +138,7 @@ impl Schema {
         let number = u16::from_le_bytes([*body.get(1)?, *body.get(2)?]);
         let name = String::from_utf8_lossy(body.get(3..)?).into_owned();
         if OPAQUE.iter().any(|opaque| name.starts_with(opaque)) {
-            self.left_out.insert(number);
+            self.left_out.insert(number, name);
             return None;
         }
         self.topics.insert(number, name);
@@ -159,12 +176,12 @@ impl Schema {
                     self.topic(&field.kind, value, pass, depth - 1);
                 } else if let Some(of) = coordinate(&field.name) {
                     match field.kind.as_str() {
-                        "int32_t" => pass.move_in(of, Kind::E7, value),
-                        "float" | "double" => pass.move_in(of, Kind::Degrees, value),
+                        "int32_t" => pass.move_in((of, Kind::E7), &field.name, value),
+                        "float" | "double" => pass.move_in((of, Kind::Degrees), &field.name, value),
                         _ => {}
                     }
                 } else if is_identity(&field.name) {
-                    pass.empty(value);
+                    pass.empty(|| format!("{name}.{}", field.name), value);
                 }
             }
         }
@@ -190,7 +207,7 @@ fn secret(body: &[u8], before: usize, out: &mut [u8], pass: &mut Pass) -> Option
     let length = *body.get(before)?;
     let (_, name, _) = keyed(length, body.get(before + 1..)?)?;
     if is_secret_parameter(name) {
-        pass.empty(out.get_mut(before + 1 + usize::from(length)..)?);
+        pass.empty(|| name.to_owned(), out.get_mut(before + 1 + usize::from(length)..)?);
     }
     Some(())
 }

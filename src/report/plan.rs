@@ -91,10 +91,10 @@ pub fn plan_text(study: &PlanStudy) -> String {
         }
     }
     let _ = writeln!(page, "left to each bound on 2 ms samples");
-    let margins: BTreeMap<String, f64> = study.margins().collect();
-    for (name, spare) in margins {
-        let (spare, name) = in_degrees(spare, &name);
-        let _ = writeln!(page, "  {name:<30} {spare:.6}");
+    for margin in &worth.check.margins {
+        let side = if margin.upper { "at most" } else { "at least" };
+        let bound = format!("{}, {side}", margin.quantity.words());
+        let _ = writeln!(page, "  {bound:<52} {}", margin.quantity.amount(margin.spare()));
     }
     if let Some(FlightExtremes { low_m, high_m, horizontal_speed_m_s, vertical_speed_m_s, tilt_deg }) =
         study.flown
@@ -148,13 +148,5 @@ fn of_what(name: &str) -> &'static str {
         "ixz" => " of sqrt(ixx izz)",
         "iyz" => " of sqrt(iyy izz)",
         _ => "",
-    }
-}
-
-fn in_degrees(value: f64, name: &str) -> (f64, String) {
-    if name.contains("_rad") {
-        (value.to_degrees(), name.replace("_rad", "_deg"))
-    } else {
-        (value, name.to_owned())
     }
 }

@@ -11,9 +11,10 @@ use crate::diagnose::signatures::signature_of;
 use crate::draft::Given;
 use crate::physics::effects::ALL;
 use crate::physics::{Effect, Parameter, WHICH_ROTOR};
-use crate::text::{compact, excerpt, significant};
+use crate::text::{compact, significant};
 use crate::vehicle::Vehicle;
 
+use super::effect_name::effect_of;
 use super::{StudyError, VehicleGiven};
 
 /// What `cargo bench --bench explain` measured.
@@ -131,18 +132,18 @@ struct Confused {
     least_distance: Option<f64>,
 }
 
-/// What is known of the effect `id`, or of all effects without it; tables and bounds are for `vehicle`.
+/// What is known of the effect that is called `id` (its identifier, or its name), or of all effects without it; tables and bounds are for `vehicle`.
 ///
 /// # Errors
 /// [`StudyError::File`] where there is no such effect.
 pub fn known_effects(id: Option<&str>, vehicle: &Vehicle) -> Result<Vec<KnownEffect>, StudyError> {
-    let chosen: Vec<&dyn Effect> =
-        ALL.iter().copied().filter(|effect| id.is_none_or(|id| effect.id() == id)).collect();
-    if let Some(id) = id.filter(|_| chosen.is_empty()) {
-        let known = ALL.iter().map(|effect| effect.id()).collect::<Vec<_>>().join(", ");
-        let why = format!("expected one of {known}, got {}", excerpt(id, 40));
-        return Err(StudyError::File { file: "effects".to_owned(), why });
-    }
+    let chosen: Vec<&'static dyn Effect> = match id {
+        Some(name) => {
+            let found = effect_of(name);
+            vec![found.map_err(|why| StudyError::File { file: "effects".to_owned(), why })?]
+        }
+        None => ALL.to_vec(),
+    };
     let measured: Measured = serde_json::from_str(MEASURED).map_err(|error| StudyError::File {
         file: "docs/measured.json".to_owned(),
         why: error.to_string(),

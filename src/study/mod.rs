@@ -10,6 +10,7 @@ mod both_logs;
 mod compare;
 mod correlation;
 mod doubts;
+mod effect_name;
 mod effects;
 mod error;
 mod explain;

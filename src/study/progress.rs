@@ -23,6 +23,17 @@ pub enum Stage {
     Designing,
 }
 
+impl Stage {
+    /// What the steps of the stage are, where it counts them ([`Progress::steps`]).
+    #[must_use]
+    pub fn counted(self) -> &'static str {
+        match self {
+            Self::Explaining | Self::ExplainingAgain | Self::Predicting => "flights",
+            Self::Reading | Self::Conditioning | Self::Identifying | Self::Designing => "steps",
+        }
+    }
+}
+
 impl fmt::Display for Stage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

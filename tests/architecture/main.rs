@@ -182,7 +182,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "plan", "diagnose", "change", "study", "fleet",
         ],
     ),
-    ("export", &["units", "text", "autopilot", "vehicle", "physics"]),
+    ("export", &["units", "text", "autopilot", "vehicle", "physics", "diagnose"]),
     ("sitl", &["units", "autopilot", "frames", "vehicle", "fence", "physics", "wire", "link", "simulate"]),
     (
         "fly",

@@ -490,7 +490,28 @@ fn a_flight_that_is_not_looked_after_holds_and_lands() {
         let outcome = flying.finish();
         assert!(matches!(outcome.cause, Some(Cause::Stalled(_))), "{}", flying.story());
         assert_eq!(outcome.ending, Ending::Landed);
+        // what a busy computer is told by: reported by the stream and by the flight, and counted once
+        let measured = &outcome.flown;
+        let before_end_s = measured.stalled_before_end_s.unwrap();
+        assert!((before_end_s - 1e-3 * f64::from(silent_ms)).abs() < 0.03, "{measured:?}");
+        assert_eq!((measured.stalls, measured.stalled_max_s), (1, before_end_s), "{measured:?}");
     }
+}
+
+/// A pilot who takes over long after a stall: the computer has nothing to do with it.
+#[test]
+fn a_stall_of_long_ago_is_no_cause_of_an_end() {
+    let mut flying = Flying::of(PX4);
+    for _ in 0..300 {
+        flying.step(true);
+    }
+    // on the ground
+    stall(&mut flying, 150);
+    flying.fly_into_the_trajectory(3.0);
+    flying.vehicle.fault(Fault::PilotTakesOver(Mode::Position));
+    let outcome = flying.finish();
+    assert!(matches!(outcome.cause, Some(Cause::Override(_))), "{}", flying.story());
+    assert_eq!((outcome.flown.stalls, outcome.flown.stalled_before_end_s), (1, None), "{}", flying.story());
 }
 
 #[test]

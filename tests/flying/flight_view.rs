@@ -158,8 +158,13 @@ fn a_tall_screen_has_an_artificial_horizon_the_path_and_the_share_of_the_limit()
 #[test]
 fn after_the_landing_the_view_shows_the_analysis_and_then_the_answer() {
     let drawn = |view: &LandedView, columns, rows| screen(columns, rows, |frame| render_landed(frame, view));
-    let stage =
-        |name: &str, elapsed_s, steps| StageView { name: name.into(), elapsed_s, steps, is_estimate: false };
+    let stage = |name: &str, elapsed_s, steps| StageView {
+        name: name.into(),
+        elapsed_s,
+        steps,
+        counted: "flights",
+        is_estimate: false,
+    };
     let mut view = LandedView {
         title: "mavid-run".into(),
         flown: vec!["landed".into(), "4 periods, 0.016 m rms off the reference".into()],
@@ -179,7 +184,7 @@ fn after_the_landing_the_view_shows_the_analysis_and_then_the_answer() {
         "reading the logs, 0 s",
         "░ about 5 s left",
         "designing the next flight ██████░",
-        "3 of 12, 9 s left",
+        "3 of 12 flights, about 9 s left",
         "no velocity is recorded",
         "Ctrl-C ends the analysis",
     ] {

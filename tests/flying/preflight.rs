@@ -504,8 +504,8 @@ fn a_path_that_leaves_the_room_is_refused_with_place_and_time() {
     scene.limits.y_max_m = Some(0.9);
     let said = scene.said("limits");
     assert_eq!(said.level, Level::Refusal);
-    assert!(said.expected.contains("y_m"), "{said}");
-    assert!(said.came.contains("1.000 at"), "{said}");
+    assert!(said.expected.contains("place along west at most"), "{said}");
+    assert!(said.came.contains("1.000 m at"), "{said}");
 }
 
 #[test]
@@ -518,7 +518,10 @@ fn stopping_takes_room() {
     scene.parameters = ardupilot(&[("WP_ACC", 0.25)]);
     let said = scene.said("stopping distance");
     assert_eq!(said.level, Level::Warning);
-    assert!(said.came.contains("x_max_m") && said.expected.contains("WP_ACC"), "{said}");
+    assert!(
+        said.came.contains("beyond the wall to the north or south if") && said.expected.contains("WP_ACC"),
+        "{said}"
+    );
 }
 
 const DIES: &str = "if setpoints end";
@@ -538,7 +541,7 @@ fn setpoints_are_sent_such_that_each_may_be_the_last() {
     assert!(narrow.came.contains("0 is expected, more than 1.25 m beyond a wall is refused"), "{narrow}");
     (scene.limits.z_max_m, scene.limits.x_max_m, scene.limits.y_max_m) = (Some(2.3), Some(1.65), Some(1.65));
     let low = scene.said(DIES);
-    assert!(low.level == Level::Warning && low.came.contains("the ceiling z_max_m"), "{low}");
+    assert!(low.level == Level::Warning && low.came.contains("the ceiling at worst"), "{low}");
     scene.limits.z_max_m = Some(6.0);
     // at 0.8 m/s in a wide room nothing has to be kept back
     (scene.limits.x_max_m, scene.limits.y_max_m) = (Some(8.0), Some(8.0));
@@ -690,7 +693,10 @@ fn no_flight_without_a_room_nor_below_its_floor_nor_from_outside() {
     scene.limits = Limits::default();
     let said = scene.said("room");
     assert!(
-        said.level == Level::Refusal && said.came.contains("x_max_m, y_max_m, z_min_m, z_max_m"),
+        said.level == Level::Refusal
+            && said.came
+                == "nothing of the wall to the north or south, the wall to the west or east, the floor, the ceiling"
+            && said.remedy.contains("give x_max_m, y_max_m, z_min_m, z_max_m in"),
         "{said}"
     );
     // whatever the limits say of it

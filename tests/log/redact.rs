@@ -83,6 +83,20 @@ fn places_serial_numbers_and_keys_are_out_of_a_telemetry_log() {
     let redacted = redact(&log).unwrap();
     let tally = redacted.tally;
     assert_eq!((tally.kept, tally.moved, tally.emptied, tally.left_out), (7, 4, 4, 2), "{tally:?}");
+    // each by its name: together they are what was counted
+    let names: Vec<(&str, u64)> =
+        redacted.emptied.iter().map(|(name, count)| (name.as_str(), *count)).collect();
+    assert_eq!(
+        names,
+        [
+            ("AUTOPILOT_VERSION.uid", 1),
+            ("AUTOPILOT_VERSION.uid2", 1),
+            ("CAL_ACC0_ID", 1),
+            ("EKF2_MAG_DECL", 1)
+        ]
+    );
+    let left_out: Vec<&str> = redacted.left_out.keys().map(String::as_str).collect();
+    assert_eq!(left_out, ["MAVLink message 256", "text that looks like a serial number, a key or a place"]);
     for told in [
         &b"SERIAL"[..],
         b"SECRET",
@@ -168,7 +182,7 @@ fn the_command_writes_the_log_and_says_what_it_did() {
     };
     let done = run(&out);
     let said = String::from_utf8(done.stdout).unwrap();
-    assert!(done.status.success() && said.contains("7 messages") && said.contains("Read back"), "{said}");
+    assert!(done.status.success() && said.contains("7 messages") && said.contains("read back"), "{said}");
     assert_eq!(std::fs::read(&out).unwrap(), redact(&telltale()).unwrap().bytes);
     // what is there stays, unless it may be replaced
     std::fs::write(&out, "mine").unwrap();
@@ -176,6 +190,15 @@ fn the_command_writes_the_log_and_says_what_it_did() {
     let said = String::from_utf8(refused.stderr).unwrap();
     assert!(refused.status.code() == Some(2) && said.contains("which exists; --force replaces it"), "{said}");
     assert_eq!(std::fs::read(&out).unwrap(), b"mine");
+    let of_folder = Command::new(env!("CARGO_BIN_EXE_mavid"))
+        .arg("redact")
+        .arg(folder.path())
+        .arg("--out")
+        .arg(folder.path().join("c.tlog"))
+        .output()
+        .unwrap();
+    let said = String::from_utf8(of_folder.stderr).unwrap();
+    assert!(of_folder.status.code() == Some(2) && said.contains("recording, got a folder"), "{said}");
     // the log itself stays
     assert_eq!(run(&log).status.code(), Some(2));
     assert_eq!(std::fs::read(&log).unwrap(), telltale());

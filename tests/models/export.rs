@@ -1,6 +1,7 @@
 //! A model for other simulators: values by hand, and every file read back.
 
 use mavid::autopilot::Autopilot;
+use mavid::diagnose::called;
 use mavid::export::{Exported, Format, PLACES, aircraft_parameters, export, places};
 use mavid::physics::ActiveEffect;
 use mavid::physics::effects::{ALL, by_id};
@@ -49,8 +50,8 @@ fn px4_has_its_frame_and_the_thrust_of_full_command() {
     for told in ["thrust_max", "12.5", "centre of mass"].map(|part| part.replace("12.5", "0.0125")) {
         assert!(exported.left_out.iter().any(|note| note.contains(&told)), "{told}: {:?}", exported.left_out);
     }
-    assert!(exported.left_out.iter().any(|note| note.contains("thrust_tilt")), "{:?}", exported.left_out);
-    assert!(exported.text.contains("# thrust_tilt"));
+    assert!(exported.left_out.iter().any(|note| note.contains("a tilted thrust axis")), "{:?}", exported.left_out);
+    assert!(exported.text.contains("# a tilted thrust axis"));
 }
 
 /// The frame file without its comments.
@@ -158,7 +159,7 @@ fn gazebo_and_mujoco_are_well_formed_and_hold_the_values() {
     let drag: f64 = between(&sdf.text, "<rotorDragCoefficient>", "<").parse().unwrap();
     assert!((drag * 4.0 * hover - 0.3).abs() < 1e-9);
     assert_eq!(between(&sdf.text, "<timeConstantUp>", "<"), "0.03");
-    assert!(sdf.left_out.iter().any(|note| note.starts_with("angular_damping")));
+    assert!(sdf.left_out.iter().any(|note| note.starts_with(called("angular_damping"))));
     // with the rotors' own mass, as points, the base is the whole vehicle again
     let base: f64 = between(&sdf.text, "<mass>", "<").parse().unwrap();
     assert!((base + 4e-3 - vehicle.body.mass_kg).abs() < 1e-12);
@@ -215,7 +216,7 @@ fn a_weak_rotor_is_weak_in_gazebo_and_mujoco_and_left_out_elsewhere() {
     for format in [Format::Px4Sih, Format::ArdupilotSitl, Format::Rotorpy] {
         let left_out = export(&vehicle, &effects, Some(&identified), format).unwrap().left_out;
         // the motor by the autopilot's number, and what it costs by the model's own figures
-        let expected = "weak_rotor cannot be represented here: motor 3 (front left), factor = 0.9; without it the \
+        let expected = "a weak rotor cannot be represented here: motor 3 (front left), factor = 0.9; without it the \
                         prediction error of the attitude grows from 0.0010 to 0.014 rad over 0.1 s, from 0.0080 to 0.33 rad \
                         over 0.5 s";
         assert!(left_out.iter().any(|note| note == expected), "{format:?}: {left_out:?}");
@@ -347,7 +348,10 @@ fn what_mujocos_file_cannot_hold_is_in_its_callback_where_that_can_make_it() {
         assert!(callback.contains(wanted), "{callback}");
     }
     let told = |id: &str, words: &str| {
-        exported.left_out.iter().any(|note| note.starts_with(&format!("{id} cannot")) && note.contains(words))
+        exported
+            .left_out
+            .iter()
+            .any(|note| note.starts_with(&format!("{} cannot", called(id))) && note.contains(words))
     };
     assert!(told("quadratic_drag", "the callback in Python"), "{:?}", exported.left_out);
     assert!(told("slung_load", "mavid explain` writes it"), "{:?}", exported.left_out);
@@ -371,7 +375,7 @@ fn the_table_says_of_every_effect_which_simulators_can_hold_it() {
             let has_place = !exported
                 .left_out
                 .iter()
-                .any(|note| note.starts_with(&format!("{id} cannot be represented")));
+                .any(|note| note.starts_with(&format!("{} cannot be represented", called(id))));
             if has_place != places.contains(&format) {
                 wrong.push(format!("{id} in {format:?}: has a place: {has_place}"));
             }
@@ -472,7 +476,7 @@ fn an_aircraft_gets_what_was_identified_and_nothing_else() {
     let strong = aircraft_parameters(&vehicle, &strong, Some(&identified), (Autopilot::Px4, None)).unwrap();
     assert!(!strong.parameters.iter().any(|parameter| parameter.name.starts_with("EKF2")));
     for id in ["linear_drag", "quadratic_drag"] {
-        let named = format!("{id} cannot be represented here: ");
+        let named = format!("{} cannot be represented here: ", called(id));
         assert!(strong.left_out.iter().any(|note| note.starts_with(&named)), "{id}: {:?}", strong.left_out);
         assert!(
             !written.left_out.iter().any(|note| note.starts_with(&named)),

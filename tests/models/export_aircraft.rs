@@ -1,6 +1,7 @@
 //! Parameters of the aircraft's own autopilot: what a model knows too little of, and at what they hold.
 
 use mavid::autopilot::Autopilot;
+use mavid::diagnose::called;
 use mavid::export::{AircraftParameters, Format, aircraft_parameters, export};
 use mavid::physics::ActiveEffect;
 use mavid::physics::effects::by_id;
@@ -40,7 +41,7 @@ fn a_drag_that_is_hardly_known_is_not_written_and_not_called_none() {
         assert!(!has(&written, name) && !has(&written, "EKF2_DRAG_CTRL"));
         let known = "not written: the drag is known to 0.40 +- 0.22 N/(m/s) only; fly again";
         assert!(told(&written, known) && written.text.contains(known), "{:?}", written.left_out);
-        for never in ["no significant drag", "contains no drag", "linear_drag cannot be represented"] {
+        for never in ["no significant drag", "contains no drag", "drag cannot be represented"] {
             assert!(!told(&written, never), "{:?}", written.left_out);
         }
         // errors that are independent of each other: 0.22 / sqrt(2) of 0.4 is 39 %
@@ -148,7 +149,10 @@ fn a_latency_that_nobody_found_is_not_lost() {
         toml::from_str("[effects.motor_lag]\ntime_constant = { value = 0.04, std = 0.01 }\n").unwrap();
     let lost = |id: &str, delay_s: f64, identified: Option<&toml::Table>| {
         let exported = export(&vehicle(), &[effect(id, &[delay_s])], identified, Format::Sdf).unwrap();
-        exported.left_out.iter().any(|note| note.starts_with(&format!("{id} cannot be represented")))
+        exported
+            .left_out
+            .iter()
+            .any(|note| note.starts_with(&format!("{} cannot be represented", called(id))))
     };
     // of 20 ms and of 1 ms in a file that names nothing, and of 20 ms in one that names another one
     assert!(lost("transport_delay", 0.02, None) && !lost("transport_delay", 0.001, None));

@@ -6,10 +6,11 @@ use crate::support::require;
 use mavid::config::{read_trajectory, read_vehicle};
 use mavid::plan::{
     Criterion, FlightPlan, PlanError, PlanRequest, Quantity, StartPlace, assess, bounds_of, check,
-    flight_path, plan,
+    flight_path, plan, search_of, work_of,
 };
 use mavid::vehicle::Vehicle;
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 fn configs() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("configs")
@@ -175,4 +176,21 @@ fn an_independent_program_finds_the_same() {
     close("condition_number", ours.condition_number);
     close("roll_deg", largest(&ours.check, Quantity::Roll).to_degrees());
     close("pitch_deg", largest(&ours.check, Quantity::Pitch).to_degrees());
+}
+
+#[test]
+fn progress_counts_the_work_after_the_search_as_well() {
+    let vehicle = vehicle("qball2.toml");
+    for rests_inside in [false, true] {
+        let request = PlanRequest { starts: 2, rests_inside, ..PlanRequest::default() };
+        let done = AtomicU64::new(0);
+        let count = || {
+            done.fetch_add(1, Ordering::Relaxed);
+        };
+        plan(&vehicle, &vehicle.limits, &request, &count).unwrap();
+        assert_eq!(done.into_inner(), work_of(&request), "{rests_inside}");
+        // with five margins of the rotors and eight distances inside the room
+        let after = if rests_inside { 13 } else { 5 };
+        assert_eq!(work_of(&request), search_of(&request).work() + after);
+    }
 }

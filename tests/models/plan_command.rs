@@ -88,6 +88,8 @@ fn a_plan_says_how_long_it_is_flown_from_hover_to_hover() {
         format!("the flight takes {:.0} s from hover to hover, 20 s of them", course.path().duration_s());
     assert!(page.contains(&said), "{said}\n{page}");
     assert!(page.contains("standard errors expected before the flight"), "{page}");
+    // in words; identifiers are for JSON
+    assert!(page.contains("  place along north, at most ") && !page.contains("_m_"), "{page}");
 }
 
 #[test]

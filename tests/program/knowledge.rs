@@ -75,9 +75,11 @@ fn one_effect_is_told_with_its_size_on_a_vehicle() {
     assert!(usual.contains("factor") && !usual.contains("rotor"), "{usual}");
     let flapping = said(&["effects", "blade_flapping"]);
     assert!(!flapping.contains("palm-sized"), "{flapping}");
-    let unknown = mavid(&["effects", "drag"]);
+    assert_eq!(said(&["effects", "Weak Rotor"]), weak, "by its name");
+    let unknown = mavid(&["effects", "weak roter"]);
     assert_eq!(unknown.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&unknown.stderr).contains("expected one of linear_drag, "));
+    assert!(String::from_utf8_lossy(&unknown.stderr).contains("the nearest is a weak rotor (weak_rotor)"));
 }
 
 /// A command that does not need the effects refuses them as well.

@@ -1,5 +1,6 @@
 //! The run of `mavid demo`: `mavid run --sitl --yes` with something concealed.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use mavid::config::parse_vehicle;
@@ -8,7 +9,7 @@ use mavid::study::effects_file;
 use crate::cli::{DemoArgs, RunArgs, ShapeArgs};
 use crate::commands::live::{self, Work};
 use crate::commands::read_once::is_read_once;
-use crate::commands::run::{CONCEALED, Recipe, kept, story};
+use crate::commands::run::{COMMANDS, CONCEALED, Folder, Recipe, kept, story};
 use crate::commands::sitl::DEFAULT_VEHICLE;
 use crate::commands::standard_error::StandardError;
 use crate::commands::{CommandError, Outcome, leftover, output};
@@ -19,6 +20,8 @@ const EFFECTS: &str = include_str!("../../../configs/demo/concealed.toml");
 const LIMITS: &str = include_str!("../../../configs/demo/limits.toml");
 /// The folder where none is given.
 const FOLDER: &str = "mavid-demo";
+/// The last file of a demo.
+const LAST: &str = "export/px4-aircraft.params";
 
 /// Runs the verb.
 pub fn run(json: bool, stderr: &StandardError, args: &DemoArgs) -> Result<Outcome, CommandError> {
@@ -66,11 +69,44 @@ fn run_demo(out: (bool, &StandardError), args: &DemoArgs, work: &Work) -> Result
     story(out, (&run, Recipe { is_demo: true }), work)
 }
 
-/// Creates the folder of the arguments, or the first that is free: no demo is taken up again.
+/// Whether a demo was begun in this folder and did not come to its end: it is taken up.
+fn is_unfinished(folder: &Path) -> bool {
+    let limits = fs::read_to_string(folder.join("limits.toml")).unwrap_or_default();
+    folder.join(COMMANDS).is_file() && limits.starts_with(LIMITS.trim_end()) && !folder.join(LAST).exists()
+}
+
+/// Creates the folder of the arguments, or the first that is free; one that is named and holds a demo that did not come to its end is
+/// taken up again.
 fn folder(args: &DemoArgs) -> Result<PathBuf, CommandError> {
     let numbered = (2_u32..).map(|number| PathBuf::from(format!("{FOLDER}-{number}")));
     let free = || std::iter::once(PathBuf::from(FOLDER)).chain(numbered).find(|path| !path.exists());
     let folder = args.out.clone().or_else(free).unwrap_or_else(|| PathBuf::from(FOLDER));
+    Folder::at(folder.clone())?;
+    if is_unfinished(&folder) {
+        return Ok(folder);
+    }
     leftover::make_way(Path::new(&folder.join("flight1")), leftover::STATION)?;
     Ok(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_demo_that_did_not_come_to_its_end_is_taken_up_and_nothing_else() {
+        let folder = std::env::temp_dir().join(format!("mavid-demo-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        assert!(!is_unfinished(&folder));
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join(COMMANDS), "mavid sitl\n").unwrap();
+        fs::write(folder.join("limits.toml"), "[limits]\nx_max_m = 3.0\n").unwrap();
+        assert!(!is_unfinished(&folder), "a run of somebody's own room");
+        fs::write(folder.join("limits.toml"), LIMITS).unwrap();
+        assert!(is_unfinished(&folder));
+        fs::create_dir_all(folder.join("export")).unwrap();
+        fs::write(folder.join(LAST), "").unwrap();
+        assert!(!is_unfinished(&folder));
+        fs::remove_dir_all(folder).unwrap();
+    }
 }

@@ -53,7 +53,7 @@ pub fn run(json: bool, stderr: &StandardError, args: &FleetRunArgs) -> Result<Ou
         part_logs: usize::try_from(args.part_logs).unwrap_or(1),
     };
     let tally = {
-        let steps = Steps::new(stderr, "{bar:30} {pos} of {len} logs, {eta} left");
+        let steps = Steps::new(stderr, "{bar:30} {pos} of {len} logs, about {eta} left");
         work.run(&own, &lists, &steps)?
     };
     if json {

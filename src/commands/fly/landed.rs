@@ -114,7 +114,11 @@ impl Progress for Landed {
     fn stage(&self, stage: Stage) {
         let mut shared = self.shared();
         shared.ends_stage();
-        shared.view.stages.push(StageView { name: stage.to_string(), ..StageView::default() });
+        shared.view.stages.push(StageView {
+            name: stage.to_string(),
+            counted: stage.counted(),
+            ..StageView::default()
+        });
     }
 
     fn steps(&self, count: u64) {

@@ -132,7 +132,7 @@ fn draw(
         drop(away);
         return tell((true, how.has_page), pictures, pressed);
     };
-    let mut keys = Keys::default();
+    let mut keys = Keys::before(how.has_page);
     // what was typed before there was a view is for nothing in it
     take_keys(pressed, Keys::press_early);
     loop {
@@ -146,6 +146,7 @@ fn draw(
                     keys.page(page.lines(usize::from(columns)).len(), page_rows(rows));
                     model.page_from = keys.from();
                 }
+                model.keys_wait = keys.wait();
                 model.typed = keys.typed().map(str::to_owned);
                 model.refused = keys.refused().map(str::to_owned);
                 if screen.draw(&model).is_err() {

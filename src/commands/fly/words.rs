@@ -1,5 +1,6 @@
 //! What is said of a flight that is over.
 
+use super::busy::busy;
 use crate::commands::words::Word;
 use mavid::fly::{self, Ending, Outcome as FlightOutcome, Record};
 
@@ -41,7 +42,8 @@ pub fn words(record: &Record) -> Vec<Word> {
             stream.sent, stream.late, stream.overtaken, stream.refused
         )));
     }
-    let mut warnings: Vec<String> = losses.iter().map(ToString::to_string).collect();
+    let mut warnings: Vec<String> = busy(&record.outcome, stream, None).into_iter().collect();
+    warnings.extend(losses.iter().map(ToString::to_string));
     warnings.extend(record.events_failure.iter().map(|failure| format!("{}: {failure}", fly::EVENTS)));
     let recording = record.recorder.failure.iter();
     warnings.extend(recording.map(|failure| format!("{}: cannot write: {failure}", fly::TLOG)));

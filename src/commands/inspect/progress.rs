@@ -14,7 +14,7 @@ pub fn of_file(path: &Path) -> ProgressBar {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(bytes);
-    match ProgressStyle::with_template("reading {wide_bar} {bytes}/{total_bytes} {eta}") {
+    match ProgressStyle::with_template("reading {wide_bar} {bytes} of {total_bytes}, about {eta} left") {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
     }

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 
+use super::again::again;
 use super::ask::Ask;
 use super::folder::Folder;
 use super::step::Step;
@@ -74,6 +75,11 @@ impl<'a> Context<'a> {
         if self.is_brief() {
             self.steps.borrow().iter().for_each(|line| output::message(&format!("$ {line}")));
         }
+    }
+
+    /// The command that takes this run up again.
+    pub fn again(&self) -> String {
+        again(std::env::args_os().skip(1), self.folder.path())
     }
 
     /// The heading of a stage.

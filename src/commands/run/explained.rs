@@ -84,8 +84,9 @@ pub fn alone(context: &Context<'_>, log: &Path, out: &Path) -> Result<ExplainStu
 fn made(context: &Context<'_>, step: &Step, progress: &dyn Progress) -> Result<ExplainStudy, CommandError> {
     explain::make(progress, &step.explain()?).map_err(|error| match error {
         CommandError::Input(why) => CommandError::Input(format!(
-            "{why}; to leave a flight out, move its folder out of {} and run the same command again",
-            text::path(context.folder.path())
+            "{why}; to leave a flight out, move its folder out of {}, then: {}",
+            text::path(context.folder.path()),
+            context.again()
         )),
         other => other,
     })

@@ -6,7 +6,8 @@ use mavid::fly::{Ending, Outcome, Record};
 use mavid::text;
 
 use super::context::Context;
-use super::folder::Recorded;
+use super::embedded::Embedded;
+use super::folder::{Recorded, set_aside};
 use super::logging::Logging;
 use super::progress::Progress;
 use super::step::Step;
@@ -57,6 +58,9 @@ pub fn step_of(
 pub fn fly(context: &Context<'_>, target: &Target, step: &Step) -> Result<Flight, CommandError> {
     context.tell(step);
     let args = step.fly()?;
+    // what was before is none of this flight's
+    let stood = || target.embedded.as_ref().map(Embedded::stood);
+    stood();
     // whoever watches a vehicle of the program has nothing to decide
     let brief = args.yes && target.embedded.is_some();
     let bar = brief.then(|| Progress::new(context.stderr, !args.plain && context.stderr.can_draw()));
@@ -72,8 +76,20 @@ pub fn fly(context: &Context<'_>, target: &Target, step: &Step) -> Result<Flight
     bar.iter().for_each(Progress::end);
     let FlightRun { record, onboard, .. } = flown?;
     context.work.waits();
-    match unfinished(&record.outcome, (target.is_twin, &args.out), args.arm) {
-        Some(why) => Err(why),
+    let busy = target.embedded.as_ref().and_then(|_| fly::busy(&record.outcome, &record.stream, stood()));
+    let again = context.again();
+    if let Some(why) = &busy
+        && !target.is_twin
+    {
+        // half a flight of a vehicle that can be flown again at once
+        set_aside(&args.out, why)?;
+    }
+    match unfinished(&record.outcome, (target.is_twin, &args.out), (args.arm, &again)) {
+        Some(why) => Err(with_busy(why, busy, &again)),
+        None if busy.is_some() => {
+            let cause = record.outcome.cause.as_ref().map_or_else(String::new, ToString::to_string);
+            Err(with_busy(CommandError::Failure(format!("the flight ended early: {cause}")), busy, &again))
+        }
         None => {
             let recorded = Recorded { radio: args.out.join(mavid::fly::TLOG), onboard };
             Ok(Flight { record, recorded })
@@ -81,13 +97,25 @@ pub fn fly(context: &Context<'_>, target: &Target, step: &Step) -> Result<Flight
     }
 }
 
-/// Why there is no flight to explain; `None` where it came down. `arms` as it was said.
-fn unfinished(outcome: &Outcome, (is_twin, out): (bool, &Path), arms: bool) -> Option<CommandError> {
+/// The same with what was measured of a busy computer, and the command with which it is flown again.
+fn with_busy(why: CommandError, busy: Option<String>, again: &str) -> CommandError {
+    match (why, busy) {
+        (CommandError::Failure(why), Some(busy)) => CommandError::Failure(format!("{why}; {busy}: {again}")),
+        (why, _) => why,
+    }
+}
+
+/// Why there is no flight to explain; `None` where it came down. `arms` as it was said; `again` continues a run that was interrupted.
+fn unfinished(
+    outcome: &Outcome,
+    (is_twin, out): (bool, &Path),
+    (arms, again): (bool, &str),
+) -> Option<CommandError> {
     let why = || outcome.cause.as_ref().map_or_else(String::new, |cause| format!(": {cause}"));
     match &outcome.ending {
         Ending::Landed | Ending::Fell => None,
         Ending::NotFlown if outcome.is_interrupted() => {
-            Some(CommandError::Ended(format!("not flown{}; run the same command again to continue", why())))
+            Some(CommandError::Ended(format!("not flown{}; to continue: {again}", why())))
         }
         Ending::NotFlown => {
             let arm = if arms { "" } else { "; everything was checked: --arm beside --yes flies" };
@@ -121,7 +149,7 @@ mod tests {
     /// The exit status of a run whose flight ended so, and what is said; none of one that is explained.
     fn status(cause: Option<Cause>, ending: Ending, is_twin: bool) -> Option<(u8, String)> {
         let outcome = Outcome { cause, ending, flown: FlightStatistics::default(), losses: Vec::new() };
-        let why = unfinished(&outcome, (is_twin, Path::new("run/flight1")), true)?;
+        let why = unfinished(&outcome, (is_twin, Path::new("run/flight1")), (true, "mavid run --out run"))?;
         Some((why.status(), why.to_string()))
     }
 
@@ -131,7 +159,7 @@ mod tests {
         let (of_ground, said) = status(signal(), Ending::NotFlown, false).unwrap();
         assert_eq!(
             (of_ground, said.as_str()),
-            (3, "not flown: ended by Ctrl-C; run the same command again to continue")
+            (3, "not flown: ended by Ctrl-C; to continue: mavid run --out run")
         );
         for cause in [signal(), Some(Cause::Override("the pilot".to_owned()))] {
             assert_eq!(status(cause, Ending::InTheAir("hold".to_owned()), false).unwrap().0, 3);
@@ -141,6 +169,19 @@ mod tests {
         assert_eq!(status(refused, Ending::NotFlown, false).unwrap().0, 1);
         assert_eq!(status(Some(Cause::Reboot), Ending::InTheAir("hold".to_owned()), true).unwrap().0, 1);
         assert_eq!(status(signal(), Ending::Landed, false), None);
+    }
+
+    #[test]
+    fn a_busy_computer_is_said_with_the_command_that_flies_again() {
+        let busy = || Some("this computer was too busy for the flight: measured; fly again".to_owned());
+        let said =
+            with_busy(CommandError::Failure("not flown: lost".to_owned()), busy(), "mavid demo --out d");
+        assert_eq!(
+            said.to_string(),
+            "not flown: lost; this computer was too busy for the flight: measured; fly again: mavid demo --out d"
+        );
+        let none = with_busy(CommandError::Failure("not flown: lost".to_owned()), None, "mavid demo --out d");
+        assert_eq!(none.to_string(), "not flown: lost");
     }
 
     #[test]

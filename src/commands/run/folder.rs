@@ -12,6 +12,8 @@ use crate::commands::{CommandError, leftover, output};
 
 /// Every step as it is typed, in the order in which they were done.
 pub const COMMANDS: &str = "commands.txt";
+/// The file in the folder of a flight that says why it does not count.
+const NOT_COUNTED: &str = "not_counted.txt";
 /// Endings of the logs that a vehicle writes itself.
 const ONBOARD: [&str; 2] = ["ulg", "bin"];
 /// Endings of logs of which only a part is there.
@@ -170,7 +172,18 @@ fn has_ending(folder: &Path, endings: &[&str]) -> bool {
     !with_ending(folder, endings).is_empty()
 }
 
+/// The flight in this folder is not explained, and is flown again: a file in it says why.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn set_aside(folder: &Path, why: &str) -> Result<(), CommandError> {
+    output::file(&folder.join(NOT_COUNTED), &format!("{why}\n"))
+}
+
 fn extent_of(folder: &Path) -> Extent {
+    if folder.join(NOT_COUNTED).exists() {
+        return Extent::Before;
+    }
     let phases: Vec<String> = phases(folder).into_iter().map(|begun| begun.name).collect();
     let reached =
         phases.iter().rposition(|phase| phase == TRAJECTORY).filter(|_| folder.join(TLOG).is_file());
@@ -238,6 +251,17 @@ mod tests {
         flown(&folder.of("flight3"), &["take off", "trajectory", "hold", "land", "over"]);
         assert_eq!((folder.flights().len(), folder.cut_off().len()), (1, 2));
         assert_eq!(folder.new_flight(), folder.of("flight4"));
+        fs::remove_dir_all(folder.path()).unwrap();
+    }
+
+    #[test]
+    fn a_flight_that_was_set_aside_does_not_count_and_is_flown_again() {
+        let folder = made("aside");
+        flown(&folder.of("flight1"), &["take off", "trajectory", "hands off", "over"]);
+        assert_eq!(folder.flights().len(), 1);
+        set_aside(&folder.of("flight1"), "this computer was too busy").unwrap();
+        assert_eq!((folder.flights(), folder.cut_off()), (vec![], vec![]));
+        assert_eq!(folder.new_flight(), folder.of("flight2"));
         fs::remove_dir_all(folder.path()).unwrap();
     }
 

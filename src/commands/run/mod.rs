@@ -17,6 +17,7 @@
 //!
 //! What was done is told by the files in the folder: a run is taken up where it was left.
 
+mod again;
 mod altitude;
 mod ask;
 mod concealed;
@@ -43,4 +44,5 @@ mod verb;
 
 pub use concealed::{CONCEALED, kept};
 pub use context::Recipe;
+pub use folder::{COMMANDS, Folder};
 pub use verb::{run, story};

@@ -101,8 +101,8 @@ pub fn asked(context: &Context<'_>, target: &mut Target, given: &Given) -> Resul
     };
     let link = target.link();
     context.work.ends_itself();
-    let waiting = format!("waiting for a vehicle at {}", target.connect);
-    output::message(&format!("{waiting}, at most {} s", PATIENCE.as_secs()));
+    let waiting = format!("waiting at most {} s for a vehicle at {}", PATIENCE.as_secs(), target.connect);
+    output::message(&waiting);
     let shown = Spinner::of(context.stderr, waiting);
     let heard = |system: SystemId, autopilot: Autopilot| {
         let name = autopilot.stack().map_or("an unknown autopilot", |stack| stack.name);

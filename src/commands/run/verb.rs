@@ -55,33 +55,51 @@ pub fn story(
     let ask = Ask::new(args.yes)?;
     let folder = folder_of(args)?;
     let context = Context::new((args, recipe), (folder, ask), (stderr, work));
+    work.continues_by(context.again());
     let flown = all_flights(&context).inspect_err(|_| context.tell_kept())?;
-    let FlownFlights { explained: Explained { study, logs }, record, flights } = &flown;
-    context.stage("Model and report");
-    finish::rigid_body(&context, logs);
-    let exports = finish::exports(&context);
-    let system = record.as_ref().and_then(|record| record.system);
-    let parameters = finish::aircraft(&context, vehicle::autopilot_flown(&context, logs), system);
+    let FlownFlights { explained: Explained { study, logs }, record, flights, is_told } = &flown;
     // the verdict is written: only now is it read what was concealed
     let concealed = match &args.effects {
         Some(file) => compare(&acting(file, &flying_vehicle(args)?)?, &study.effects),
         None => Vec::new(),
     };
+    if !json {
+        // before all that is made of it, which takes a while
+        let answer = (!is_told).then(|| answer(study));
+        let shown = (!concealed.is_empty()).then(|| table(&concealed, study.vehicle()));
+        tell_first(&context, &[answer, shown].into_iter().flatten().collect::<Vec<_>>())?;
+    }
+    context.stage("Model and report");
+    finish::rigid_body(&context, logs);
+    let exports = finish::exports(&context);
+    let system = record.as_ref().and_then(|record| record.system);
+    let parameters = finish::aircraft(&context, vehicle::autopilot_flown(&context, logs), system);
     let took_s = since.elapsed().as_secs_f64();
     let made =
         Made { study, record: record.as_ref(), flights: *flights, exports, parameters, concealed, took_s };
     if json {
         output::json(&Document::new(&context, made))?;
     } else {
-        output::message("");
-        let shown = (!made.concealed.is_empty()).then(|| table(&made.concealed, study.vehicle()));
-        let parts = [Some(answer(study)), shown, Some(places(&context, &made))];
-        output::text(&parts.into_iter().flatten().collect::<Vec<_>>().join("\n\n"))?;
+        output::text(&format!("\n{}", places(&context, &made)))?;
     }
     match record {
         Some(record) => fly::outcome(record, Some(Ok(explain::outcome(study)))),
         None => Ok(explain::outcome(study)),
     }
+}
+
+/// Says the answer, and what was concealed beside it, with a line free before and after.
+fn tell_first(context: &Context<'_>, parts: &[String]) -> Result<(), CommandError> {
+    if parts.is_empty() {
+        return Ok(());
+    }
+    output::message("");
+    output::text(&parts.join("\n\n"))?;
+    if context.is_brief() {
+        // elsewhere the next heading has one before it
+        output::message("");
+    }
+    Ok(())
 }
 
 fn folder_of(args: &RunArgs) -> Result<Folder, CommandError> {
@@ -138,6 +156,8 @@ struct FlownFlights {
     /// of the last flight, where one was flown now
     record: Option<Record>,
     flights: usize,
+    /// the answer stands on the terminal already, above the question whether to fly on
+    is_told: bool,
 }
 
 /// Flies until a further flight would bring nothing that is needed, or nobody wants one.
@@ -174,6 +194,7 @@ fn fly_all(
 ) -> Result<FlownFlights, CommandError> {
     let mut record = None;
     let mut done = None;
+    let mut is_told;
     if flights.is_empty() {
         let trajectory = planned::first(context, vehicle)?;
         let Some(target) = target.as_deref_mut() else { return Err(nothing_flown()) };
@@ -187,19 +208,24 @@ fn fly_all(
     loop {
         context.stage(if flights.len() == 1 { "Explanation" } else { "Explanation of all flights together" });
         let study = &done.insert(explained(context, &flights, record.as_ref())?).study;
+        is_told = false;
         let goes_on = record.as_ref().is_none_or(|record: &Record| record.outcome.is_whole());
         let Some(target) = target.as_deref().filter(|_| goes_on && flights.len() < context.flights_max())
         else {
             break;
         };
-        if !study.would_gain() || !wants_next_flight(context, study)? {
+        if !study.would_gain() {
+            break;
+        }
+        is_told = output::is_one_terminal() && !context.stderr.is_quiet();
+        if !wants_next_flight(context, study)? {
             break;
         }
         context.stage("Next flight");
         let trajectory = planned::further(context, vehicle, flights.len() + 1)?;
         record = Some(fly_one(context, target, (&trajectory, logging), &mut flights)?);
     }
-    Ok(FlownFlights { explained: done.ok_or_else(nothing_flown)?, record, flights: flights.len() })
+    Ok(FlownFlights { explained: done.ok_or_else(nothing_flown)?, record, flights: flights.len(), is_told })
 }
 
 fn nothing_flown() -> CommandError {

@@ -77,8 +77,12 @@ impl Flight {
         self.guide.held_back = held_back;
     }
 
-    /// Remembers a stall for the display; a longer one stays while it is shown.
+    /// Counts a stall, and remembers it for the display; a longer one stays while it is shown.
     fn note_stall(&mut self, now: Duration, gap: Duration) {
+        let began = now.saturating_sub(gap);
+        self.flown.stalls += u32::from(self.stalls_until.is_none_or(|ended| began >= ended));
+        self.flown.stalled_max_s = self.flown.stalled_max_s.max(gap.as_secs_f64());
+        self.stalls_until = Some(now);
         let is_shown = |(ended, longer): &(Duration, Duration)| {
             now.saturating_sub(*ended) < STALL_SHOWN && *longer > gap
         };

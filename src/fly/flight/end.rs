@@ -26,6 +26,9 @@ impl Flight {
         }
         tracing::error!(%cause, ?response, phase = self.phase.name(), "flight aborted");
         self.note(now, Level::Error, "abort", cause.to_string());
+        if self.cause.is_none() {
+            self.flown.stalled_before_end_s = self.late_stall_s(now);
+        }
         self.cause.get_or_insert(cause);
         if !self.phase.is_airborne() && !self.is_armed() && !self.arm_ordered {
             self.finish(now, Ending::NotFlown);

@@ -42,6 +42,8 @@ pub struct Flight {
     pub(super) stepped: Option<Duration>,
     /// the last stall of this program or its computer: when it ended, and how long it was
     pub(super) stall: Option<(Duration, Duration)>,
+    /// when the last stall ended that was counted: the stream and the flight itself report one and the same
+    pub(super) stalls_until: Option<Duration>,
     pub(super) phase: Phase,
     /// when the phase was entered
     pub(super) entered: Duration,
@@ -100,6 +102,7 @@ impl Flight {
             unread: false,
             stepped: None,
             stall: None,
+            stalls_until: None,
             phase: Phase::Connect,
             entered: Duration::ZERO,
             found: None,

@@ -75,10 +75,7 @@ impl Flight {
             period: (self.flown.periods, self.sortie.course.repeats()),
             tracking_m: self.watch.tracking.latest_m(),
             link_age_s: telemetry.map(|telemetry| now.saturating_sub(telemetry.heard).as_secs_f64()),
-            stall_s: self
-                .stall
-                .filter(|(ended, _)| now.saturating_sub(*ended) < STALL_SHOWN)
-                .map(|(_, gap)| gap.as_secs_f64()),
+            stall_s: self.late_stall_s(now),
             battery_is_low: self.battery_level() > BatteryLevel::Good,
             battery_percent: telemetry.and_then(|telemetry| telemetry.battery?.value.1),
             battery_v: telemetry.and_then(|telemetry| telemetry.battery_v),
@@ -95,6 +92,12 @@ impl Flight {
             awaits_word: self.awaits_word(),
             unhealthy: system.map(|system| system.unhealthy.clone()).unwrap_or_default(),
         }
+    }
+
+    /// The longest stall that ended within the last seconds, s.
+    pub(super) fn late_stall_s(&self, now: Duration) -> Option<f64> {
+        let late = self.stall.filter(|(ended, _)| now.saturating_sub(*ended) < STALL_SHOWN);
+        late.map(|(_, gap)| gap.as_secs_f64())
     }
 
     fn progress_s(&self, now: Duration) -> Option<(f64, f64)> {

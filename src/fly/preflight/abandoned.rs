@@ -13,7 +13,7 @@ use crate::fly::course::reference_at;
 use crate::fly::finding::Finding;
 use crate::fly::law::{FollowLaw, Motion, STEP_S};
 use crate::fly::safety::{Feeding, SetpointBounds};
-use crate::plan::Reach;
+use crate::plan::{Reach, Wall};
 use crate::trajectory::FlightPath;
 
 /// Steps of the model between two tried instants: 0.1 s.
@@ -241,16 +241,16 @@ fn borders(
 ) {
     let limits = situation.limits;
     let inside = place_m - situation.origin_m;
-    let mut wall = |beyond_m: Option<f64>, name| {
+    let mut wall = |beyond_m: Option<f64>, wall: Wall| {
         if let Some(beyond_m) = beyond_m {
-            at(Border { beyond_m, is_hard: false, name });
+            at(Border { beyond_m, is_hard: false, name: wall.words() });
         }
     };
-    wall(limits.x_max_m.map(|max| inside.x.abs() + reach.side_m - max), "the wall x_max_m");
-    wall(limits.y_max_m.map(|max| inside.y.abs() + reach.side_m - max), "the wall y_max_m");
-    wall(limits.z_max_m.map(|max| inside.z + reach.up_m - max), "the ceiling z_max_m");
+    wall(limits.x_max_m.map(|max| inside.x.abs() + reach.side_m - max), Wall::NorthOrSouth);
+    wall(limits.y_max_m.map(|max| inside.y.abs() + reach.side_m - max), Wall::WestOrEast);
+    wall(limits.z_max_m.map(|max| inside.z + reach.up_m - max), Wall::Ceiling);
     if !leg.from_ground {
-        wall(limits.z_min_m.map(|min| min - inside.z), "the floor z_min_m");
+        wall(limits.z_min_m.map(|min| min - inside.z), Wall::Floor);
         at(Border { beyond_m: reach.down_m - inside.z, is_hard: true, name: "the ground" });
     }
     if let Some(home_m) = situation.home_m {
@@ -260,7 +260,7 @@ fn borders(
     }
 }
 
-/// `0.12 m short of the wall x_max_m at worst, if they end at 3.1 s of the trajectory`.
+/// `0.12 m short of the wall to the north or south at worst, if they end at 3.1 s of the trajectory`.
 fn in_words(tried: &Tried) -> String {
     tried.worst_reported().map_or_else(
         || "nothing to hit".to_owned(),

@@ -4,7 +4,8 @@ use super::stopping::place_and_velocity;
 use super::{Situation, Stopping};
 use crate::fly::finding::Finding;
 use crate::plan::{
-    Dynamics, HEIGHT_ERROR_M, Margin, Quantity, Reach, bounds_of, check, floor_m, path_samples, too_narrow,
+    Dynamics, HEIGHT_ERROR_M, Margin, Quantity, Reach, Wall, bounds_of, check, floor_m, path_samples,
+    too_narrow,
 };
 use crate::vehicle::Limits;
 use nalgebra::Vector3;
@@ -29,10 +30,10 @@ pub(super) fn findings(situation: &Situation<'_>, stopping: &Stopping) -> Vec<Fi
                 "limits",
                 format!("{} bounds of room and vehicle kept", margins.len()),
                 format!(
-                    "the nearest is {}: {:.3} of {:.3} at {:.1} s",
-                    margin.quantity.name(),
-                    margin.value,
-                    margin.limit,
+                    "the nearest is {}: {} of {} at {:.1} s",
+                    margin.quantity.words(),
+                    margin.quantity.amount(margin.value),
+                    margin.quantity.amount(margin.limit),
                     margin.time_s
                 ),
             ),
@@ -51,17 +52,12 @@ pub(super) fn findings(situation: &Situation<'_>, stopping: &Stopping) -> Vec<Fi
 
 /// Walls, floor and ceiling that are not stated.
 fn walls(limits: &Limits) -> Option<Finding> {
-    let stated = [
-        ("x_max_m", limits.x_max_m),
-        ("y_max_m", limits.y_max_m),
-        ("z_min_m", limits.z_min_m),
-        ("z_max_m", limits.z_max_m),
-    ];
-    let missing: Vec<&str> =
-        stated.iter().filter(|(_, value)| value.is_none()).map(|(name, _)| *name).collect();
+    let missing: Vec<Wall> = Wall::ALL.into_iter().filter(|wall| wall.of(limits).is_none()).collect();
     (!missing.is_empty()).then(|| {
-        let came = format!("none for {}", missing.join(", "));
-        let remedy = "give the room in the vehicle file's or the trajectory's [limits]";
+        let each = |of: fn(Wall) -> &'static str| missing.iter().map(|wall| of(*wall)).collect::<Vec<_>>();
+        let came = format!("nothing of {}", each(Wall::words).join(", "));
+        let keys = each(Wall::key).join(", ");
+        let remedy = format!("give {keys} in the vehicle file's or the trajectory's [limits]");
         Finding::refusal("room", "walls, floor and ceiling", came, remedy)
     })
 }
@@ -82,24 +78,25 @@ fn floor(situation: &Situation<'_>) -> Option<Finding> {
 
 /// Checks the rotors along the path, which the bounds of the position do not include.
 fn rotors(situation: &Situation<'_>) -> Option<Finding> {
-    let expected =
-        |reach_m, name, max| format!("the rotors, which reach {reach_m:.2} m, inside {name} = {max:.2} m");
-    if let Some((name, wall_m, reach_m)) = too_narrow(situation.limits, situation.vehicle) {
+    let expected = |reach_m, wall: Wall, max| {
+        format!("the rotors, which reach {reach_m:.2} m, inside {} at {max:.2} m", wall.words())
+    };
+    if let Some((wall, wall_m, reach_m)) = too_narrow(situation.limits, situation.vehicle) {
         let came = "a room that is narrower than the vehicle";
-        return Some(Finding::refusal("room", expected(reach_m, name, wall_m), came, "correct the room"));
+        return Some(Finding::refusal("room", expected(reach_m, wall, wall_m), came, "correct the room"));
     }
     let reach = Reach::of(situation.vehicle);
     let walls = [
-        (0, "x_max_m", situation.limits.x_max_m, reach.side_m),
-        (1, "y_max_m", situation.limits.y_max_m, reach.side_m),
-        (2, "z_max_m", situation.limits.z_max_m, reach.up_m),
+        (0, Wall::NorthOrSouth, reach.side_m),
+        (1, Wall::WestOrEast, reach.side_m),
+        (2, Wall::Ceiling, reach.up_m),
     ];
-    let beyond = |(axis, name, max, reach_m): (usize, &'static str, Option<f64>, f64)| {
-        let max = max?;
+    let beyond = |(axis, wall, reach_m): (usize, Wall, f64)| {
+        let max = wall.of(situation.limits)?;
         let place_m = |value: f64| if axis < 2 { value.abs() } else { value };
         let farthest_m =
             path_samples(situation.path).map(|(_, axes)| place_m(axes[axis][0])).fold(0.0, f64::max);
-        Some((farthest_m + reach_m - max, expected(reach_m, name, max)))
+        Some((farthest_m + reach_m - max, expected(reach_m, wall, max)))
     };
     let (beyond_m, expected) = walls.into_iter().filter_map(beyond).max_by(|a, b| a.0.total_cmp(&b.0))?;
     (beyond_m > TOUCH).then(|| {
@@ -113,14 +110,15 @@ fn rotors(situation: &Situation<'_>) -> Option<Finding> {
 fn stand(situation: &Situation<'_>) -> Option<Finding> {
     let inside = situation.stand_m? - situation.origin_m;
     let limits = situation.limits;
-    let walls = [("x", inside.x, limits.x_max_m), ("y", inside.y, limits.y_max_m)];
-    let (name, value, max) = walls
-        .into_iter()
-        .find_map(|(name, value, max)| max.filter(|max| value.abs() > *max).map(|max| (name, value, max)))?;
+    let walls = [("north", "south", inside.x, limits.x_max_m), ("west", "east", inside.y, limits.y_max_m)];
+    let (ahead, behind, value, max) = walls.into_iter().find_map(|(ahead, behind, value, max)| {
+        max.filter(|max| value.abs() > *max).map(|max| (ahead, behind, value, max))
+    })?;
+    let side = if value > 0.0 { ahead } else { behind };
     Some(Finding::refusal(
         "room",
-        format!("the vehicle inside it, |{name}| at most {max:.2} m"),
-        format!("{name} = {value:.2} m from the trajectory's zero"),
+        format!("the vehicle inside it, at most {max:.2} m {ahead} or {behind}"),
+        format!("{:.2} m {side} of the trajectory's zero", value.abs()),
         "put it there, or fly from where it stands (--origin here)",
     ))
 }
@@ -146,8 +144,8 @@ fn refusal(margin: &Margin) -> Finding {
     };
     Finding::refusal(
         "limits",
-        format!("{} {side} {:.3}", margin.quantity.name(), margin.limit),
-        format!("{:.3} at {:.1} s", margin.value, margin.time_s),
+        format!("{} {side} {}", margin.quantity.words(), margin.quantity.amount(margin.limit)),
+        format!("{} at {:.1} s", margin.quantity.amount(margin.value), margin.time_s),
         remedy,
     )
 }
@@ -155,7 +153,7 @@ fn refusal(margin: &Margin) -> Finding {
 /// Checks that the vehicle, if it is ordered to stop anywhere on the path, comes to rest inside the room.
 fn braking(situation: &Situation<'_>, stopping: &Stopping) -> Option<Finding> {
     let limits = situation.limits;
-    let mut worst: Option<(f64, f64, &'static str)> = None;
+    let mut worst: Option<(f64, f64, Wall)> = None;
     for (time_s, entry) in path_samples(situation.path) {
         let (place, velocity) = place_and_velocity(&entry);
         for (beyond_m, wall) in beyond(&stopping.rest(&place, &velocity), limits) {
@@ -170,7 +168,7 @@ fn braking(situation: &Situation<'_>, stopping: &Stopping) -> Option<Finding> {
         Some((beyond_m, time_s, wall)) => Some(Finding::warning(
             "stopping distance",
             expected,
-            format!("{beyond_m:.2} m beyond {wall} if stopped at {time_s:.1} s"),
+            format!("{beyond_m:.2} m beyond {} if stopped at {time_s:.1} s", wall.words()),
             "leave that much room behind the wall, or plan a slower trajectory",
         )),
         None => has_walls.then(|| Finding::ok("stopping distance", expected, "inside at every point")),
@@ -178,14 +176,15 @@ fn braking(situation: &Situation<'_>, stopping: &Stopping) -> Option<Finding> {
 }
 
 /// Distance of a position beyond each wall of the room, m; negative inside.
-fn beyond(place_m: &Vector3<f64>, limits: &Limits) -> Vec<(f64, &'static str)> {
-    [
-        (limits.x_max_m.map(|max| place_m.x.abs() - max), "x_max_m"),
-        (limits.y_max_m.map(|max| place_m.y.abs() - max), "y_max_m"),
-        (limits.z_max_m.map(|max| place_m.z - max), "z_max_m"),
-        (limits.z_min_m.map(|min| min - place_m.z), "z_min_m"),
-    ]
-    .into_iter()
-    .filter_map(|(beyond_m, wall)| beyond_m.map(|beyond_m| (beyond_m, wall)))
-    .collect()
+fn beyond(place_m: &Vector3<f64>, limits: &Limits) -> Vec<(f64, Wall)> {
+    let beyond_m = |wall: Wall| {
+        let at_m = wall.of(limits)?;
+        Some(match wall {
+            Wall::NorthOrSouth => place_m.x.abs() - at_m,
+            Wall::WestOrEast => place_m.y.abs() - at_m,
+            Wall::Ceiling => place_m.z - at_m,
+            Wall::Floor => at_m - place_m.z,
+        })
+    };
+    Wall::ALL.into_iter().filter_map(|wall| Some((beyond_m(wall)?, wall))).collect()
 }

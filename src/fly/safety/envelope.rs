@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use super::Sustained;
 use crate::fly::outcome::Cause;
 use crate::frames::Attitude;
+use crate::plan::Wall;
 use crate::units::deg_from_rad;
 use crate::vehicle::Limits;
 
@@ -45,18 +46,21 @@ impl Envelope {
     /// Checks the present position in the plan's frame, m. The floor is not checked: takeoff and landing are below it.
     pub fn check_room(&mut self, now: Duration, place_m: &Vector3<f64>) -> Option<Cause> {
         let sides = [
-            ("x_m", place_m.x.abs(), self.limits.x_max_m),
-            ("y_m", place_m.y.abs(), self.limits.y_max_m),
-            ("z_m", place_m.z, self.limits.z_max_m),
+            (Wall::NorthOrSouth, place_m.x.abs()),
+            (Wall::WestOrEast, place_m.y.abs()),
+            (Wall::Ceiling, place_m.z),
         ];
         let margin_m = self.margin_m;
-        let broken = sides.into_iter().find_map(|(name, value, limit)| {
-            limit.filter(|limit| value > limit + margin_m).map(|limit| (name, value, limit))
+        let broken = sides.into_iter().find_map(|(wall, value)| {
+            let limit = wall.of(&self.limits)?;
+            (value > limit + margin_m).then_some((wall, value, limit))
         });
         let lasts = self.outside.update(now, broken.is_some());
-        broken.filter(|_| lasts >= PATIENCE).map(|(name, value, limit)| {
+        broken.filter(|_| lasts >= PATIENCE).map(|(wall, value, limit)| {
             Cause::Room(format!(
-                "|{name}| is {value:.2}, the room ends at {limit:.2} plus a margin of {margin_m:.2} m"
+                "{:.2} m beyond {}, a margin of {margin_m:.2} m is allowed",
+                value - limit,
+                wall.words()
             ))
         })
     }
@@ -96,6 +100,9 @@ mod tests {
         }
         assert!(envelope.check_room(ms(600), &Vector3::new(0.0, -2.6, 0.0)).is_none());
         let cause = envelope.check_room(ms(900), &Vector3::new(0.0, -2.6, 0.0)).unwrap();
-        assert!(cause.to_string().contains("|y_m| is 2.60"), "{cause}");
+        assert!(
+            cause.to_string().contains("0.60 m beyond the wall to the west or east, a margin of 0.50 m"),
+            "{cause}"
+        );
     }
 }

@@ -45,6 +45,8 @@ impl KeyCommand {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Keys {
     word: Option<String>,
+    /// a page is to come, and no key but Ctrl-C counts before it: the `r` of a word for arming that comes too early is no order to return
+    early: bool,
     /// the word for arming is waited for: letters are its letters
     asks: bool,
     /// the line of the page from which on it is read, and the last one from which it is seen to its end
@@ -60,10 +62,17 @@ pub struct Keys {
 const LEAF: usize = 10;
 
 impl Keys {
+    /// Of a flight that has a page before it, or has none.
+    #[must_use]
+    pub fn before(has_page: bool) -> Self {
+        Self { early: has_page, ..Self::default() }
+    }
+
     /// Sets whether the word for arming is awaited. Whether it is from now on: what was typed before the question is on the screen is
     /// for [`Self::press_early`].
     pub fn ask(&mut self, asks: bool) -> bool {
         let is_new = asks && !self.asks;
+        self.early &= !asks;
         if asks != self.asks {
             (self.asks, self.word, self.refused) = (asks, None, None);
         }
@@ -80,6 +89,12 @@ impl Keys {
     #[must_use]
     pub fn from(&self) -> usize {
         self.from
+    }
+
+    /// Whether no key but Ctrl-C counts yet.
+    #[must_use]
+    pub fn wait(&self) -> bool {
+        self.early
     }
 
     fn turn(&mut self, from: usize) {
@@ -99,7 +114,7 @@ impl Keys {
         if event.kind == KeyEventKind::Release {
             return None;
         }
-        if event.modifiers.contains(KeyModifiers::CONTROL) {
+        if self.early || event.modifiers.contains(KeyModifiers::CONTROL) {
             return Self::press_early(event);
         }
         if self.asks && self.read && event.code == KeyCode::Enter {
@@ -235,6 +250,20 @@ mod tests {
         assert_eq!(press(&mut keys, "arm\n"), [KeyCommand::Arm]);
         // asked anew
         assert!(!keys.ask(false) && keys.ask(true));
+    }
+
+    #[test]
+    fn before_the_page_the_letters_of_a_word_order_nothing() {
+        let mut keys = Keys::before(true);
+        assert_eq!(press(&mut keys, "arm\nhlr :kill\n"), []);
+        let end = KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL);
+        assert_eq!(keys.press(end), Some(KeyCommand::Quit));
+        assert!(keys.ask(true));
+        keys.page(20, 23);
+        assert_eq!(press(&mut keys, "arm\n"), [KeyCommand::Arm]);
+        assert!(!keys.ask(false));
+        assert_eq!(press(&mut keys, "r"), [KeyCommand::Return], "in the air it is one");
+        assert_eq!(press(&mut Keys::before(false), "r"), [KeyCommand::Return]);
     }
 
     #[test]

@@ -20,6 +20,8 @@ pub struct StageView {
     pub elapsed_s: f64,
     /// steps that are done, and all of them, where they are counted
     pub steps: Option<(u64, u64)>,
+    /// what the steps are, in the plural
+    pub counted: &'static str,
     /// how many steps there are is an estimate
     pub is_estimate: bool,
 }
@@ -33,13 +35,13 @@ impl StageView {
     }
 
     fn line(&self) -> String {
-        let Self { name, elapsed_s, .. } = self;
+        let Self { name, elapsed_s, counted, .. } = self;
         match (self.steps, self.left_s()) {
             (Some((done, all)), Some(left_s)) if done < all => {
                 let bar = bar(done as f64 / all.max(1) as f64, BAR_COLUMNS);
                 match self.is_estimate {
                     true => format!("{name}  {bar} about {left_s:.0} s left"),
-                    false => format!("{name}  {bar} {done} of {all}, {left_s:.0} s left"),
+                    false => format!("{name}  {bar} {done} of {all} {counted}, about {left_s:.0} s left"),
                 }
             }
             _ => format!("{name}, {elapsed_s:.0} s"),

@@ -146,6 +146,8 @@ pub struct ViewModel {
     pub page_from: usize,
     /// the word for arming is waited for
     pub awaits_word: bool,
+    /// the page before the flight is yet to come: of all keys only Ctrl-C counts
+    pub keys_wait: bool,
     /// how long this program or its computer stood still, s; `None` if it did not lately
     pub stall_s: Option<f64>,
     /// s since the connection

@@ -296,6 +296,9 @@ fn help(model: &ViewModel) -> Line<'_> {
             format!("type {KILL_WORD} and Enter to stop the motors NOW, Esc to leave: {typed}_"),
             Style::new().fg(Color::Red).add_modifier(Modifier::BOLD),
         ),
+        None if model.keys_wait => {
+            Line::raw("Ctrl-C end   other keys count from the page before the flight on")
+        }
         None => Line::raw(format!(
             "h hold   l land   r return   :{KILL_WORD} Enter stops the motors   Ctrl-C end"
         )),

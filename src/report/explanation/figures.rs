@@ -1,5 +1,6 @@
 //! The charts of the report.
 
+use super::whereabouts::channel_in_words;
 use crate::diagnose::locate::{Bin, Followed as State, Portrait};
 use crate::diagnose::{CHANNEL_NAMES, Line as HarmonicLine, called};
 use crate::report::chart::{Band, Bars, Line, POINTS, Panel, Path3, PathValue, Strip, Stroke};
@@ -63,7 +64,7 @@ pub(super) fn recorded_and_simulated(of: &RecordedAndSimulated, after: &str) -> 
 
 /// What one effect does over the state on which it depends: recorded, and by the model found.
 pub(super) fn portrait(of: &Portrait, vehicle: &Vehicle) -> Panel {
-    let (axis, state) = (in_words(CHANNEL_NAMES[of.channel]), state_in_words(of.state, vehicle));
+    let (axis, state) = (channel_in_words(CHANNEL_NAMES[of.channel]), state_in_words(of.state, vehicle));
     let is_late = matches!(of.state, State::TorqueRate(_));
     let xy = |bins: &[Bin]| bins.iter().map(|bin| (bin.center, bin.mean)).unzip();
     let (x, y): (Vec<f64>, Vec<f64>) = xy(&of.recorded);
@@ -94,11 +95,6 @@ pub(super) fn portrait(of: &Portrait, vehicle: &Vehicle) -> Panel {
         }],
         ..Panel::default()
     }
-}
-
-/// `force_x` as `force along body x`.
-fn in_words(axis: &str) -> String {
-    axis.replace("force_", "force along body ").replace("torque_", "torque about body ")
 }
 
 fn state_in_words(state: State, vehicle: &Vehicle) -> String {

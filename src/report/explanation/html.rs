@@ -95,7 +95,7 @@ fn effect(study: &ExplainStudy, effect: &Named) -> Markup {
         .collect();
     let caption = format!(
         "{}: z {:.1}, chance {}, {}, change of BIC {}",
-        effect.id,
+        called(effect.id),
         effect.strength.z,
         chance(study.p_value(effect)),
         shown_by(effect),
@@ -215,8 +215,8 @@ fn evidence(study: &ExplainStudy) -> Markup {
                     TriedAs::Left => "in the end: not named".to_owned(),
                 }),
                 text(match tried.form.as_str() {
-                    "" => tried.id.to_owned(),
-                    form => format!("{} ({form})", tried.id),
+                    "" => called(tried.id).to_owned(),
+                    form => format!("{} ({form})", called(tried.id)),
                 }),
                 number(format!("{:.1}", tried.z)),
                 number(significant(100.0 * tried.gain, 2)),

@@ -9,7 +9,7 @@ pub(super) fn rival(study: &ExplainStudy, other: &Confusable) -> String {
 }
 
 fn words(other: &Confusable, these_flights: &str) -> String {
-    let name = format!("{} ({})", called(other.id), other.id);
+    let name = called(other.id);
     let apart = other.distinguishability.map_or_else(String::new, |distance| {
         format!(": {distance:.1} standard deviations apart in {these_flights}")
     });
@@ -29,7 +29,7 @@ mod tests {
         let said = |distinguishability| {
             words(&Confusable { id: "transport_delay", distinguishability }, "this flight")
         };
-        let name = format!("{} (transport_delay)", called("transport_delay"));
+        let name = called("transport_delay");
         assert_eq!(said(None), format!("confusable with {name}"));
         assert_eq!(
             said(Some(4.14)),

@@ -7,7 +7,8 @@ use super::motor::{motor, sizes};
 use super::no_model::no_model_line;
 use super::rivals::rival;
 use super::shown_by::shown_by;
-use crate::diagnose::{NO_LATENCY, Named, Verdict, clause};
+use super::whereabouts::{channel_in_words, spoken_state};
+use crate::diagnose::{NO_LATENCY, Named, Verdict, called, clause};
 use crate::estimate::{Finding, ThrustScale};
 use crate::note::Note;
 use crate::report::number::{chance, percent, significant, with_error};
@@ -29,7 +30,7 @@ pub fn explanation_text(study: &ExplainStudy) -> String {
 #[must_use]
 pub fn explanation_page(study: &ExplainStudy) -> String {
     let mut page = format!("{}\n\n", answer(study));
-    let _ = writeln!(page, "  verdict: {}", study.verdict().name());
+    let _ = writeln!(page, "  verdict: {}", study.verdict().name().replace('_', " "));
     for effect in study.effects.iter().chain(&study.closest) {
         effect_lines(&mut page, study, effect);
     }
@@ -60,13 +61,13 @@ fn trace_lines(page: &mut String, study: &ExplainStudy) {
     }
     page.push_str("\n  significant, but too small to get a name: another cause is possible\n");
     for effect in slight.iter().map(|of| &of.effect) {
-        let _ = writeln!(page, "    {:<16} {}", effect.id, sizes(study, effect));
+        let _ = writeln!(page, "    {}: {}", called(effect.id), sizes(study, effect));
     }
 }
 
 fn effect_lines(page: &mut String, study: &ExplainStudy, effect: &Named) {
     let mark = if study.verdict() == Verdict::Unexplained { " (closest, not named)" } else { "" };
-    let _ = writeln!(page, "\n  {}{mark}: {}", effect.id, clause(effect, study.vehicle()));
+    let _ = writeln!(page, "\n  {}{mark}: {}", called(effect.id), clause(effect, study.vehicle()));
     for p in &effect.parameters {
         let (value, unit) = match motor(study, effect, p.name) {
             Some(motor) => (motor, ""),
@@ -95,7 +96,7 @@ fn located_lines(page: &mut String, study: &ExplainStudy) {
         .axes
         .iter()
         .take(4)
-        .map(|axis| format!("{} {:.0} %", axis.axis, axis.share_percent))
+        .map(|axis| format!("{} {:.0} %", channel_in_words(axis.axis), axis.share_percent))
         .collect();
     let _ = writeln!(page, "\n  where: {}", axes.join(", "));
     if !located.state.is_empty() {
@@ -104,8 +105,8 @@ fn located_lines(page: &mut String, study: &ExplainStudy) {
             .iter()
             .take(4)
             .map(|state| {
-                let variable = state.variable.replace("rotor_", "motor_");
-                format!("{} with {variable} {:.0} %", state.axis, state.share_percent)
+                let (axis, state_words) = (channel_in_words(state.axis), spoken_state(&state.variable));
+                format!("{axis} with {state_words} {:.0} %", state.share_percent)
             })
             .collect();
         let _ = writeln!(page, "  following: {}", state.join(", "));
@@ -213,11 +214,12 @@ fn body_lines(page: &mut String, study: &ExplainStudy) {
     } else {
         writeln!(page, "    from command to rotor: not determined: {NO_LATENCY}")
     };
-    let _ = writeln!(page, "\n  residual, rms{:>13}{:>12}", "alone", "after");
+    let _ = writeln!(page, "\n  {:<22}{:>13}{:>12}", "residual, rms", "alone", "after");
     for AxisFit { name, unit, before, after } in study.residual() {
         let _ = writeln!(
             page,
-            "    {name:<10}{:>13}{:>12}  {unit}",
+            "    {:<20}{:>13}{:>12}  {unit}",
+            channel_in_words(name),
             significant(before, 3),
             significant(after, 3)
         );
@@ -265,8 +267,10 @@ fn limit_lines(page: &mut String, study: &ExplainStudy) {
         return;
     }
     let _ = writeln!(page, "\n  what would have been named in {}", study.these_flights());
-    for (id, from) in named_from(&study.explanation.limits) {
-        let _ = writeln!(page, "    {id:<20} from {from}");
+    let named = named_from(&study.explanation.limits);
+    let width = named.iter().map(|(id, _)| called(id).chars().count()).max().unwrap_or(0);
+    for (id, from) in named {
+        let _ = writeln!(page, "    {:<width$}  from {from}", called(id));
     }
     if let Some(unseen) = not_possible(&study.explanation.limits) {
         let _ = writeln!(page, "    {unseen}");

@@ -20,8 +20,7 @@ pub(super) fn whereabouts(located: &Located) -> String {
             significant(field.extent_m, 1)
         ));
     } else if let Some(axis) = located.axes.first() {
-        let what =
-            axis.axis.replace("force_", "a force along body ").replace("torque_", "a torque about body ");
+        let what = format!("a {}", channel_in_words(axis.axis));
         let most =
             if axis.share_percent >= MAINLY_PERCENT { "mainly" } else { "spread over several axes, at most" };
         let mut words = format!("{most} {what} ({:.0} %)", axis.share_percent);
@@ -36,8 +35,13 @@ pub(super) fn whereabouts(located: &Located) -> String {
     if parts.is_empty() { "spread over all axes, times and states".to_owned() } else { parts.join(", ") }
 }
 
+/// `force_x` as `force along body x`.
+pub(super) fn channel_in_words(channel: &str) -> String {
+    channel.replace("force_", "force along body ").replace("torque_", "torque about body ")
+}
+
 /// The displayed name of a state.
-fn spoken_state(variable: &str) -> String {
+pub(super) fn spoken_state(variable: &str) -> String {
     match variable {
         "rate_x" => "the roll rate".to_owned(),
         "rate_y" => "the pitch rate".to_owned(),

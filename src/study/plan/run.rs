@@ -6,7 +6,7 @@ use crate::config::{StoredTransitions, read_limits, read_trajectory};
 use crate::note::{About, Note};
 use crate::plan::{
     Dynamics, FlightPlan, PlanError, RestInside, Roomed, assess, bounds_of, flight_path, floor_m, plan,
-    search_of, too_narrow, with_room,
+    too_narrow, with_room, work_of,
 };
 use crate::study::flights::file_notes;
 use crate::study::{Progress, StudyError};
@@ -34,8 +34,8 @@ pub fn plan_flight(request: &PlanningRequest, progress: &dyn Progress) -> Result
     notes.iter().for_each(|note| progress.note(note));
     let (mut study, rest) = planned(request, (&vehicle, &limits), (notes, progress))?;
     let flight = around(&study.series, request, study.repeats);
-    let narrow = too_narrow(&limits, &vehicle).map(|(name, wall_m, reach_m)| {
-        format!("the rotors reach {reach_m:.2} m to each side, the wall {name} is at {wall_m:.2} m")
+    let narrow = too_narrow(&limits, &vehicle).map(|(wall, wall_m, reach_m)| {
+        format!("the rotors reach {reach_m:.2} m to each side, {} is at {wall_m:.2} m", wall.words())
     });
     if let Some(violation) = narrow.or_else(|| below_floor(&flight, &vehicle)) {
         study.first_violation.get_or_insert(violation);
@@ -98,7 +98,7 @@ fn planned(
     let bounds = bounds_of(limits, vehicle);
     let (series, assessment, criterion_value, rest) = match &request.series {
         PlannedSeries::Searched => {
-            progress.steps(search_of(&search).work());
+            progress.steps(work_of(&search));
             let plan = plan(vehicle, limits, &search, &|| progress.step())?;
             (plan.trajectory, plan.assessment, Some(plan.criterion_value), plan.rest)
         }
