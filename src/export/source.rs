@@ -3,11 +3,8 @@
 use super::cost::Costs;
 use super::error::ExportError;
 use super::program::EffectsProgram;
-<<<<<<< HEAD
-use crate::physics::effects::by_id;
-=======
 use crate::diagnose::called;
->>>>>>> m26-in
+use crate::physics::effects::by_id;
 use crate::physics::{ActiveEffect, Airframe, Parameter};
 use crate::text::compact;
 use crate::vehicle::{ThrustLaw, Vehicle};

@@ -98,7 +98,7 @@ fn a_flight_along_a_trajectory_is_not_limited() {
 #[test]
 fn identify_keeps_the_effects_that_explain_finds_in_the_part_that_shows_them() {
     let (Some(log), Some(vehicle)) = (sitl("px08.ulg"), sitl("px4-v1.toml")) else { return };
-    let explained = study(&[log.clone()], &vehicle);
+    let explained = study(std::slice::from_ref(&log), &vehicle);
     let request = IdentifyRequest {
         logs: vec![log],
         vehicle: VehicleGiven::File(vehicle.clone()),

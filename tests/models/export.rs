@@ -50,7 +50,11 @@ fn px4_has_its_frame_and_the_thrust_of_full_command() {
     for told in ["thrust_max", "12.5", "centre of mass"].map(|part| part.replace("12.5", "0.0125")) {
         assert!(exported.left_out.iter().any(|note| note.contains(&told)), "{told}: {:?}", exported.left_out);
     }
-    assert!(exported.left_out.iter().any(|note| note.contains("a tilted thrust axis")), "{:?}", exported.left_out);
+    assert!(
+        exported.left_out.iter().any(|note| note.contains("a tilted thrust axis")),
+        "{:?}",
+        exported.left_out
+    );
     assert!(exported.text.contains("# a tilted thrust axis"));
 }
 

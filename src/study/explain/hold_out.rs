@@ -1,8 +1,8 @@
 //! What the better model is shown on, and how it does there.
 
 use super::left_out::{of_others, shown_only_by};
-use super::refuted::{BetterBy, Refuted, Worthless};
 use super::left_out_force::{LeftOutForce, WORSE_PERCENT};
+use super::refuted::{BetterBy, Refuted, Worthless};
 use super::result::ExplainStudy;
 use super::validation_data::ValidationData;
 use crate::diagnose::holdout::{
