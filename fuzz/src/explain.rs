@@ -44,6 +44,7 @@ pub fn run(data: &[u8], seeded: bool) {
         contradicting: contradicting_flights(&flights, &flight.vehicle),
         settings,
         transient_s: TRANSIENT_S,
+        limited: Vec::new(),
         own_load: false,
     };
     let study = ExplainStudy::new(given, explanation);
