@@ -183,8 +183,8 @@ fn after_the_landing_the_view_shows_the_analysis_and_then_the_answer() {
         "4 periods",
         "reading the logs, 0 s",
         "░ about 5 s left",
-        "designing the next flight ██████░",
-        "3 of 12 flights, about 9 s left",
+        "designing the next flight █████░",
+        "3 of 12 flights, 9 s left",
         "no velocity is recorded",
         "Ctrl-C ends the analysis",
     ] {

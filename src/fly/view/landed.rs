@@ -9,7 +9,7 @@ use ratatui::text::Line;
 use ratatui::widgets::{Block, Paragraph};
 
 /// Columns of the bar of counted steps.
-const BAR_COLUMNS: usize = 24;
+const BAR_COLUMNS: usize = 20;
 
 /// A stage of the analysis.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -41,7 +41,7 @@ impl StageView {
                 let bar = bar(done as f64 / all.max(1) as f64, BAR_COLUMNS);
                 match self.is_estimate {
                     true => format!("{name}  {bar} about {left_s:.0} s left"),
-                    false => format!("{name}  {bar} {done} of {all} {counted}, about {left_s:.0} s left"),
+                    false => format!("{name}  {bar} {done} of {all} {counted}, {left_s:.0} s left"),
                 }
             }
             _ => format!("{name}, {elapsed_s:.0} s"),
