@@ -118,6 +118,7 @@ pub struct AutopilotCascade {
     velocity: Pid,
     rates: Pid,
     inner: InnerLoopSetpoint,
+    hover_scale: f64,
 }
 
 /// Cosine of the lean beyond which no more thrust makes up for it (-).
@@ -140,7 +141,14 @@ impl AutopilotCascade {
                 rates_rad_s: Vector3::zeros(),
                 thrust_n: 0.0,
             },
+            hover_scale: 1.0,
         })
+    }
+
+    /// Takes a hover's thrust for so many times the weight of the vehicle that it believes: an autopilot has it as a parameter, and turns
+    /// accelerations into thrust by it. 1 at first.
+    pub fn set_hover_scale(&mut self, scale: f64) {
+        self.hover_scale = scale;
     }
 
     /// What the last call of [`Self::commands`] or [`Self::turn`] asked of the inner loops.
@@ -161,7 +169,7 @@ impl AutopilotCascade {
         let attitude = attitude_of_thrust(&acceleration, setpoint.yaw_rad);
         let up = estimate.attitude * Vector3::z();
         let rates = self.rates_wanted(&attitude, estimate, setpoint.yaw_rate_rad_s);
-        let thrust_n = self.body.mass_kg * acceleration.dot(&up);
+        let thrust_n = self.hover_scale * self.body.mass_kg * acceleration.dot(&up);
         self.inner = InnerLoopSetpoint { attitude, rates_rad_s: rates, thrust_n };
         self.rate_commands(estimate, period_s)
     }
@@ -199,7 +207,8 @@ impl AutopilotCascade {
         let up_m_s2 = self.acceleration(&setpoint, estimate, period_s).z;
         self.velocity.integral = level(&Vector3::zeros(), &self.velocity.integral);
         let leaning = (estimate.attitude * Vector3::z()).z.max(LEANING_MIN);
-        self.turned(attitude, rates_rad_s, self.body.mass_kg * up_m_s2 / leaning, (estimate, period_s))
+        let thrust_n = self.hover_scale * self.body.mass_kg * up_m_s2 / leaning;
+        self.turned(attitude, rates_rad_s, thrust_n, (estimate, period_s))
     }
 
     fn turned(

@@ -11,6 +11,7 @@ use super::demand::{AttitudeDemand, Lift};
 use super::estimator::Estimator;
 use super::fence::Fence;
 use super::guidance::{Guidance, Leg, Task};
+use super::parameters::hover_share;
 use super::safety::Safety;
 use super::tuning::Tuning;
 use super::{Firmware, Mode, Settings, SitlError};
@@ -47,6 +48,8 @@ pub(super) struct Autopilot {
     pub(super) weight_n: f64,
     /// full thrust, N
     pub(super) thrust_max_n: f64,
+    /// thrust of a hover over full thrust, of the vehicle that it believes
+    hover_share: f64,
     origin_altitude_m: f64,
     pub(super) armed_since: Option<Duration>,
     /// left the ground since it was armed
@@ -85,6 +88,7 @@ impl Autopilot {
             cascade: AutopilotCascade::new(vehicle, gains, COMMAND_MIN)?,
             weight_n: vehicle.body.mass_kg * vehicle.gravity_m_s2,
             thrust_max_n: vehicle.propulsion.thrust_from_command_n(1.0) * vehicle.rotors.len() as f64,
+            hover_share: hover_share(vehicle),
             origin_altitude_m: settings.origin.altitude_m,
             armed_since: None,
             has_flown: false,
@@ -154,6 +158,8 @@ impl Autopilot {
             self.estimator.align_at(state.position_m.z - home_m.z);
         }
         self.setpoint = self.guidance.setpoint(&state, &home_m, (&self.tuning, now), period_s);
+        // an acceleration becomes a thrust by the thrust of a hover that the parameters say
+        self.cascade.set_hover_scale(self.tuning.hover_share.map_or(1.0, |share| share / self.hover_share));
         let outputs = match self.guidance.turn_wanted(&self.tuning, now) {
             Some(AttitudeDemand { attitude, rates_rad_s, lift: Lift::Thrust(thrust) }) => {
                 let thrust_n = thrust * self.thrust_max_n;

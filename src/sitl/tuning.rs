@@ -16,6 +16,8 @@ use crate::units::rad_from_deg;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Tuning {
     pub(super) limits: ShaperLimits,
+    /// thrust of a hover over full thrust, as the parameters say it; none where they do not
+    pub(super) hover_share: Option<f64>,
     pub(super) takeoff_speed_m_s: f64,
     pub(super) land_speed_m_s: f64,
     pub(super) takeoff_height_m: f64,
@@ -88,6 +90,7 @@ fn px4(p: &Parameters) -> Tuning {
             vertical_jerk_m_s3: at_least("MPC_JERK_AUTO"),
             law: ShaperLaw::default(),
         },
+        hover_share: Some(p.value("MPC_THR_HOVER")).filter(|share| *share > 0.0),
         takeoff_speed_m_s: at_least("MPC_TKO_SPEED"),
         land_speed_m_s: at_least("MPC_LAND_SPEED"),
         takeoff_height_m: p.value("MIS_TAKEOFF_ALT"),
@@ -164,6 +167,7 @@ fn ardupilot(release: Release, p: &Parameters) -> Tuning {
     let unchecked = p.find("ARMING_CHECK").is_some() && p.value("ARMING_CHECK") == 0.0;
     Tuning {
         limits: ardupilot_limits(release, p),
+        hover_share: Some(p.value("MOT_THST_HOVER")).filter(|share| *share > 0.0),
         takeoff_speed_m_s: limit("WPNAV_SPEED_UP"),
         land_speed_m_s: limit("LAND_SPEED"),
         takeoff_height_m: 0.0,

@@ -5,9 +5,11 @@ use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
-use mavid::wire::Splitter;
+use mavid::sitl::{Firmware, Settings};
+use mavid::wire::{Frame, Splitter};
 use serde_json::Value;
 
+use crate::ground::{Ground, settings};
 use crate::processes::{config, folder, planned};
 
 const MAVID: &str = env!("CARGO_BIN_EXE_mavid");
@@ -381,4 +383,58 @@ pub fn parameters_of_a_file_are_set_read_back_and_undone() {
     assert_eq!((status, undone["restored"].as_array().unwrap().len()), (Some(0), 1), "{said}");
     let (_, last, _) = load(&[&wanted]);
     assert_eq!(last["parameters"][1]["found"], 1.0);
+}
+
+/// The height of a vehicle that takes off and then hovers, with this thrust of a hover: how far it gets above where it was sent, m.
+fn overshoot_m(kind: Firmware, name: &str, share: f64) -> f64 {
+    const HEIGHT_M: f64 = 3.0;
+    let parameters = vec![(name.to_owned(), share)];
+    let mut ground = Ground::new(Settings { parameters, ..settings(kind) });
+    ground.set_interval(32, 50.0);
+    ground.take_off(HEIGHT_M);
+    ground.wait(10.0);
+    let heights = ground.received.iter().filter(|(_, id, _)| *id == 32);
+    let down = heights.filter_map(|(_, _, bytes)| Some(Frame::at_start(bytes)?.payload().f32(12)));
+    down.fold(0.0, |most: f64, down| most.max(-down - HEIGHT_M))
+}
+
+/// An aircraft whose thrust of a hover is wrong jumps when it takes off. What the export of its model says of it is loaded, read back, and
+/// flown.
+pub fn a_vehicle_hovers_better_with_what_its_model_says() {
+    let folder = folder("hover");
+    std::fs::create_dir_all(&folder).unwrap();
+    let model = folder.join("model.toml");
+    let vehicle = std::fs::read_to_string(config("x500.toml")).unwrap();
+    std::fs::write(&model, format!("{vehicle}\n[identified]\nmass = {{ value = 2.0643, std = 0.02 }}\n"))
+        .unwrap();
+    for (autopilot, kind, name) in
+        [("px4", Firmware::PX4, "MPC_THR_HOVER"), ("ardupilot", Firmware::ARDUPILOT_4_7, "MOT_THST_HOVER")]
+    {
+        let file = folder.join(format!("{autopilot}.params"));
+        let path = file.to_str().unwrap();
+        let to = format!("{autopilot}-params");
+        let exported = Command::new(MAVID)
+            .args(["export", model.to_str().unwrap(), "--to", &to, "--out", path])
+            .output()
+            .unwrap();
+        assert!(exported.status.success(), "{}", String::from_utf8_lossy(&exported.stderr));
+        let sitl = Sitl::start(autopilot, &[&format!("{name}=0.8")]);
+        let loaded = Command::new(MAVID)
+            .args(["--json", "vehicle", "load", "--connect", &sitl.1, path, "--yes"])
+            .env("MAVID_STATE_DIR", &folder)
+            .output()
+            .unwrap();
+        assert!(loaded.status.success(), "{}", String::from_utf8_lossy(&loaded.stderr));
+        let document: Value = serde_json::from_slice(&loaded.stdout).unwrap();
+        let hover =
+            document["parameters"].as_array().unwrap().iter().find(|of| of["parameter"] == name).unwrap();
+        let [before, after] =
+            ["found", "wanted"].map(|value| overshoot_m(kind, name, hover[value].as_f64().unwrap()));
+        assert!(
+            before > 0.2 && after < 0.2 * before,
+            "{autopilot}: {before} m with {}, {after} m with {}",
+            hover["found"],
+            hover["wanted"]
+        );
+    }
 }

@@ -5,6 +5,9 @@
 #[path = "../support/flying.rs"]
 mod flying;
 #[cfg(target_os = "linux")]
+#[path = "../support/ground.rs"]
+mod ground;
+#[cfg(target_os = "linux")]
 #[path = "../support/lossy.rs"]
 mod lossy;
 #[cfg(target_os = "linux")]
@@ -108,6 +111,7 @@ fn main() {
         demo::what_cannot_be_concealed_is_refused_before_anything_flies,
         log_commands::an_autopilot_is_restarted_where_that_is_said,
         log_commands::a_host_that_refuses_is_not_waited_for,
+        log_commands::a_vehicle_hovers_better_with_what_its_model_says,
         log_commands::a_vehicle_without_a_file_is_checked_by_its_own_parameters,
         log_commands::logging_is_not_set_where_the_vehicle_does_not_answer_for_it,
         log_commands::parameters_of_a_file_are_set_read_back_and_undone,

@@ -9,3 +9,4 @@ mod thrust;
 
 pub(super) use parameter_set::Parameters;
 pub(super) use pulses::Pulses;
+pub(super) use thrust::hover_share;

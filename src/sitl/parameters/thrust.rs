@@ -11,7 +11,7 @@ pub(super) fn expo(vehicle: &Description) -> f64 {
 }
 
 /// Thrust of hover over full thrust.
-pub(super) fn hover_share(vehicle: &Description) -> f64 {
+pub(in crate::sitl) fn hover_share(vehicle: &Description) -> f64 {
     let hover_n = vehicle.body.mass_kg * vehicle.gravity_m_s2 / vehicle.rotors.len() as f64;
     hover_n / vehicle.propulsion.thrust_from_command_n(1.0)
 }
