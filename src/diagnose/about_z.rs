@@ -16,45 +16,32 @@ use crate::vehicle::Vehicle;
 impl Explanation {
     /// The same with izz as the vehicle file states it, where the flights tell only its ratio to the torque per thrust; that torque, and
     /// all that the motion tells as ratios to it, follow. No body has an izz above the sum of ixx and iyy: where the stated one is beyond
-    /// that, it is the nearest one that is not.
+    /// that, it is the nearest one that is not. The last step before a model is told: the rows of the fits stay those of the stated torque.
     #[must_use]
     pub fn keeping_about_z(mut self, stated: &Vehicle) -> Self {
         if self.torque_law.is_none() {
             return self;
         }
-        let theta = theta_of(&self.serving().base.vehicle.body);
-        let factor = nearest_about_z(&theta, theta_of(&stated.body)[ABOUT_Z]) / theta[ABOUT_Z];
-        if factor.is_finite() && factor > 0.0 {
-            self.turn_about_z(factor);
+        let stated = theta_of(&stated.body)[ABOUT_Z];
+        let [before, after] = [&self.search.before, &self.search.after].map(|fit| factor_of(fit, stated));
+        turn(&mut self.search.before, before);
+        turn(&mut self.search.after, after);
+        let serving = if self.verdict == Verdict::Unexplained { before } else { after };
+        let slight = self.slight.iter_mut().map(|slight| &mut slight.effect);
+        self.named.iter_mut().chain(slight).for_each(|named| turn_named(named, serving));
+        self.closest.iter_mut().for_each(|named| turn_named(named, after));
+        for limit in self.limits.iter_mut().filter(|limit| turns_about_z(limit.parameter, limit.unit)) {
+            (limit.limit, limit.certain) = (limit.limit * serving, limit.certain * serving);
         }
         self
     }
+}
 
-    /// Gives izz and the torque per thrust back as the flights were explained with.
-    pub(super) fn give_about_z_back(&mut self) {
-        let factor = self.turned_about_z.recip();
-        self.turn_about_z(factor);
-    }
-
-    /// The fit of the model that serves.
-    fn serving(&self) -> &Fitted {
-        if self.verdict == Verdict::Unexplained { &self.search.before } else { &self.search.after }
-    }
-
-    fn turn_about_z(&mut self, factor: f64) {
-        turn(&mut self.search.before, factor);
-        turn(&mut self.search.after, factor);
-        let slight = self.slight.iter_mut().map(|slight| &mut slight.effect);
-        self.named
-            .iter_mut()
-            .chain(&mut self.closest)
-            .chain(slight)
-            .for_each(|named| turn_named(named, factor));
-        for limit in self.limits.iter_mut().filter(|limit| turns_about_z(limit.parameter, limit.unit)) {
-            (limit.limit, limit.certain) = (limit.limit * factor, limit.certain * factor);
-        }
-        self.turned_about_z *= factor;
-    }
+/// What takes izz of a fit to the stated one, or near it.
+fn factor_of(fit: &Fitted, stated: f64) -> f64 {
+    let theta = theta_of(&fit.base.vehicle.body);
+    let factor = nearest_about_z(&theta, stated) / theta[ABOUT_Z];
+    if factor.is_finite() && factor > 0.0 { factor } else { 1.0 }
 }
 
 fn turn_named(named: &mut Named, factor: f64) {

@@ -277,7 +277,6 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
         airspeed_m_s: mean_airspeed_m_s(traces, &found.after.base),
         torque_law,
         torque_law_alone,
-        turned_about_z: 1.0,
         search: found,
     }
 }

@@ -53,10 +53,6 @@ impl Explanation {
         let alone = finding_of(&self.search.before);
         self.search.latency = LatencyFinding { std_s: alone.std_s.max(unsure_s), ..alone };
         self.search.steps.clear();
-        // the rigid body alone turns as the flights tell it, unless it has a law of the torque itself
-        if self.torque_law_alone.is_none() {
-            self.give_about_z_back();
-        }
         self.torque_law = self.torque_law_alone;
         self
     }
@@ -147,9 +143,6 @@ pub struct Explanation {
     pub torque_law: Option<TorqueLaw>,
     /// the same by the rigid body alone
     pub torque_law_alone: Option<TorqueLaw>,
-    /// izz and torque per thrust of the models over those by the stated torque per thrust, see [`Self::keeping_about_z`]; one where they
-    /// stay
-    pub turned_about_z: f64,
     /// the search with its fits and evidence
     pub search: Search,
 }

@@ -166,7 +166,7 @@ fn a_model_that_keeps_izz_has_the_ratio_that_the_flight_tells() {
     let before = explanation.search.after.base.vehicle.clone();
     let kept = explanation.keeping_about_z(&vehicle);
     assert_eq!(kept.search.after.base.vehicle.body, before.body);
-    assert_eq!(kept.turned_about_z, 1.0);
+    assert_eq!(kept.search.after.base.vehicle.propulsion, before.propulsion);
 }
 
 #[test]

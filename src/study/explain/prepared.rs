@@ -203,7 +203,6 @@ impl Task<'_> {
         let tell = |done, of| self.progress.about(done, of);
         let found = crate::diagnose::explain_watched(&flights.signals, self.asked.vehicle, settings, &tell)
             .map_err(|source| self.unexplained(flights, source))?;
-        let found = found.keeping_about_z(self.asked.vehicle);
         Ok(without_gust_of_none(found, &flights.signals, self.alone, (self.asked.vehicle, settings)))
     }
 

@@ -152,6 +152,17 @@ impl ExplainStudy {
         }
     }
 
+    /// The same with izz as the vehicle file states it, see [`Explanation::keeping_about_z`]: what is written and told.
+    pub(super) fn keeping_about_z(self) -> Self {
+        let explanation = self.explanation.keeping_about_z(&self.given.vehicle);
+        Self {
+            effects: for_readers(&explanation.named, explanation.airspeed_m_s),
+            closest: for_readers(&explanation.closest, explanation.airspeed_m_s),
+            explanation,
+            ..self
+        }
+    }
+
     /// In one word.
     #[must_use]
     pub fn verdict(&self) -> Verdict {

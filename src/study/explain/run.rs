@@ -86,7 +86,7 @@ pub fn explain(request: &ExplainRequest, progress: &dyn Progress) -> Result<Expl
         let step = || progress.step();
         study.next_flight = Some(design(&study.explanation, &flights.signals, &inside, &settings, &step));
     }
-    Ok(study)
+    Ok(study.keeping_about_z())
 }
 
 /// Takes the vehicle that the motion allows, also into a draft. Returns what is to be said of it; a warning is among those of the recordings.

@@ -100,7 +100,8 @@ pub(super) fn found_beside(
         signals.iter().flat_map(|one| one.usable.iter()).filter(|usable| **usable).count()
     };
     if usable(&flights.signals) == usable(&whole) {
-        return Ok(Found { flights: flights.signals, explanation: study.explanation, of_part: false });
+        let explanation = study.explanation.keeping_about_z(asked.vehicle);
+        return Ok(Found { flights: flights.signals, explanation, of_part: false });
     }
     let of_part = &study.explanation;
     let (unexplained, terms) = (of_part.verdict == Verdict::Unexplained, &of_part.search.after.base.effects);
@@ -118,7 +119,8 @@ pub(super) fn found_beside(
     let has = |of: &Explanation, id: &str| of.search.after.base.effects.iter().any(|term| term.id() == id);
     let is_lost = |id: &str| has(of_part, id) && !has(&explanation, id);
     if !unexplained && of_part.named.iter().any(|named| is_lost(named.id)) {
-        return Ok(Found { flights: flights.signals, explanation: study.explanation, of_part: true });
+        let explanation = study.explanation.keeping_about_z(asked.vehicle);
+        return Ok(Found { flights: flights.signals, explanation, of_part: true });
     }
     Ok(Found { flights: whole, explanation: explanation.keeping_about_z(asked.vehicle), of_part: false })
 }
