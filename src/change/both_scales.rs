@@ -33,7 +33,6 @@ pub fn judge_at_both_scales(
     Some(ParameterChange {
         changed: less.changed && !is_between,
         undecided: less.undecided.filter(|_| !is_between),
-        same_way: !is_between,
         least,
         ..less
     })

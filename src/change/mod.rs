@@ -9,7 +9,6 @@ mod groups;
 mod history;
 mod parameter;
 mod pooled;
-mod together;
 
 pub use balance_change::{BalanceChange, BalanceFound, LOADED, Least, NAMED, NAMED_SIGMAS, judge_balance};
 pub use beside_rotor::left_beside_rotor;
@@ -19,4 +18,3 @@ pub use groups::{Groups, Moved, interval_95};
 pub use history::{Step, find_returns, steps};
 pub use parameter::{ParameterChange, Spread, UNDECIDED, Undecided, judge_parameter};
 pub use pooled::{pooled_mean, with_scatter};
-pub use together::{Together, judge_together};

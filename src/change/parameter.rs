@@ -26,12 +26,6 @@ pub struct ParameterChange {
     pub least: f64,
     /// later flights that each show it alone
     pub carried_by: Vec<usize>,
-    /// flights before and after that determine it
-    pub flights: [usize; 2],
-    /// most of the error is the spread between flights of one vehicle, and not that of the flights themselves
-    pub by_spread: bool,
-    /// it moved the same way whatever moved the scale that it goes with
-    pub same_way: bool,
 }
 
 /// A difference that chance hardly explains, and that is not certain.
@@ -94,35 +88,25 @@ pub(super) fn judged(
     };
     let changed = moved.sigmas().powi(2) >= NAMED;
     let tells = !changed && moved.sigmas().abs() >= UNDECIDED;
-    let flights = [before.len(), after.len()];
-    let by_spread = is_by_spread(&moved, [&before, &after], (values, scale));
-    let undecided =
-        || Undecided { flights: flights_needed(moved.sigmas(), flights[0].max(flights[1])), by_spread };
     Some(ParameterChange {
         changed,
-        undecided: tells.then(undecided),
+        undecided: tells.then(|| undecided(&moved, [&before, &after], (values, scale))),
         least: NAMED.sqrt() * by.1,
         carried_by: after.iter().filter_map(alone).collect(),
-        flights,
-        by_spread,
-        same_way: true,
         moved,
     })
 }
 
-/// Flights on each side that would decide a difference that is not certain, where there are now at most `most`.
-pub(super) fn flights_needed(sigmas: f64, most: usize) -> usize {
-    // errors of so many times the flights are smaller by the root of it
-    let needed = (NAMED_SIGMAS / sigmas).powi(2) * most.max(1) as f64;
-    (1..).find(|flights| *flights as f64 >= needed).unwrap_or(usize::MAX)
-}
-
-/// Whether most of the error of a difference is the spread between flights of one vehicle.
-fn is_by_spread(
+/// What would decide a difference that is not certain.
+fn undecided(
     moved: &Moved,
     groups: [&[(usize, f64, f64)]; 2],
     (values, scale): (&[Option<(f64, f64)>], f64),
-) -> bool {
+) -> Undecided {
+    // errors of so many times the flights are smaller by the root of it
+    let most = groups.map(<[_]>::len).into_iter().fold(1, usize::max);
+    let needed = (NAMED_SIGMAS / moved.sigmas()).powi(2);
+    let flights = (1..).find(|flights| *flights as f64 >= needed * most as f64).unwrap_or(usize::MAX);
     let own = |group: &[(usize, f64, f64)]| {
         let weights: f64 = group.iter().map(|(.., variance)| variance.recip()).sum();
         let of = |(flight, _, variance): &(usize, f64, f64)| {
@@ -131,7 +115,7 @@ fn is_by_spread(
         };
         scale * scale * group.iter().map(of).sum::<f64>()
     };
-    2.0 * groups.map(own).iter().sum::<f64>() < moved.by.1.powi(2)
+    Undecided { flights, by_spread: 2.0 * groups.map(own).iter().sum::<f64>() < moved.by.1.powi(2) }
 }
 
 /// Mean of the values' sizes, where a group has any.

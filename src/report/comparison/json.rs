@@ -126,8 +126,6 @@ struct ChangeEntry {
     unit: &'static str,
     /// size of the difference in its standard errors; of a balance without a name in standard deviations of what unchanged flights show
     sigmas: f64,
-    /// axes of the body whose parameters moved by the same factor, and of which `sigmas` is together; 1: by itself
-    axes: usize,
     /// places of the later flights that each show it alone
     carried_by: Vec<usize>,
     /// what else it may be
@@ -309,7 +307,6 @@ fn entry(study: &CompareStudy, change: &Change) -> ChangeEntry {
         by: part(|moved| moved.by),
         unit: change.unit,
         sigmas: change.sigmas,
-        axes: change.axes,
         carried_by: change.carried_by.clone(),
         may_be: change.rivals.iter().map(|rival| rival_name(study, *rival)).collect(),
     }

@@ -4,10 +4,10 @@ use super::cells::{ByFlight, OWN_HEADS, balance_cells, group, own_cells};
 use super::columns::columns;
 use super::flight_name::{flight_names, with_names};
 use super::words::{
-    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, deviations, name, open, returned, sentence, since_files, size,
+    FLIGHTS_OWN_ERRORS, OF_MEAN_ROTOR, answer, name, open, returned, sentence, since_files, size,
     smallest_heading, spaced,
 };
-use crate::report::number::with_error;
+use crate::report::number::{significant, with_error};
 use crate::study::{Change, CompareStudy, Compared};
 use std::fmt::Write;
 
@@ -72,7 +72,7 @@ fn change_line(page: &mut String, study: &CompareStudy, change: &Change) {
             " of what unchanged flights would show"
         }
     };
-    let _ = writeln!(page, "{}{against}", deviations(change));
+    let _ = writeln!(page, "{} standard deviations{against}", significant(change.sigmas, 2));
     let say = flight_names(study, &change.carried_by);
     let _ = writeln!(page, "      shown alone by: {}", if say.is_empty() { "none" } else { &say });
 }

@@ -228,16 +228,12 @@ fn open_along(study: &CompareStudy) -> String {
 /// By how much something moved, as a clause.
 fn by_how_much(study: &CompareStudy, change: &Change) -> String {
     let by = change.moved.map_or_else(String::new, |moved| with_error(moved.by.0, moved.by.1));
-    format!("{} moved by {by}{} ({})", said(study, change.what), spaced(change.unit), deviations(change))
-}
-
-/// How certain a change is.
-pub(super) fn deviations(change: &Change) -> String {
     let sigmas = significant(change.sigmas, 2);
-    match change.axes {
-        1 => format!("{sigmas} standard deviations"),
-        axes => format!("with the other axes, {axes} together, {sigmas} standard deviations"),
-    }
+    format!(
+        "{} moved by {by}{} ({sigmas} standard deviations)",
+        said(study, change.what),
+        spaced(change.unit)
+    )
 }
 
 /// A parameter that moved by more than chance and less than is certain, and what decides it, as a sentence.
@@ -260,10 +256,10 @@ pub(super) fn open(study: &CompareStudy, (change, why): &(Change, Undecided)) ->
     let decide =
         if is_one { format!(" Fly {} on each side to decide.", flights(why.flights)) } else { String::new() };
     format!(
-        "{} moved by {by}{}, {}: below the {NAMED_SIGMAS} that make a change; {because}.{decide}",
+        "{} moved by {by}{}, {} standard deviations: below the {NAMED_SIGMAS} that make a change; {because}.{decide}",
         capital(&said(study, change.what)),
         spaced(change.unit),
-        deviations(change)
+        significant(change.sigmas, 2)
     )
 }
 

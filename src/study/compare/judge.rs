@@ -115,10 +115,26 @@ impl Judge<'_> {
             changes.push(of_rotor(moved));
         }
         let mut least = self.least_of_balance(&balance);
-        let of_parameters = self.of_parameters(groups);
-        changes.extend(of_parameters.changes);
-        least.extend(of_parameters.least);
-        let mut undecided = of_parameters.undecided;
+        let mut undecided = Vec::new();
+        let scale = ScaleMoved::between(self.balance, groups);
+        for (place, track) in self.tracks.iter().enumerate().filter(|(_, track)| is_of_vehicle(track)) {
+            let Some(judged) = self.judged(track, groups, scale) else { continue };
+            let (what, unit) = (Changed::Parameter(place), track.unit);
+            least.push(LeastChange { what, size: judged.least, unit });
+            let change = Change {
+                what,
+                moved: Some(judged.moved),
+                unit,
+                sigmas: judged.moved.sigmas().abs(),
+                carried_by: judged.carried_by,
+                rivals: Vec::new(),
+            };
+            match judged.undecided {
+                _ if judged.changed => changes.push(change),
+                Some(why) => undecided.push((change, why)),
+                None => {}
+            }
+        }
         changes.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
         undecided.sort_by(|(a, _), (b, _)| b.sigmas.total_cmp(&a.sigmas));
         let mut compared = Compared { balance, changes, undecided, least, other_vehicle: None };
@@ -204,7 +220,6 @@ impl Judge<'_> {
             moved,
             unit,
             sigmas,
-            axes: 1,
             carried_by: found.carried_by.clone(),
             rivals: found.rivals.clone(),
         };
@@ -251,7 +266,6 @@ fn of_rotor(RotorMoved { rotor, moved, carried_by }: RotorMoved) -> Change {
         moved: Some(moved),
         unit: "-",
         sigmas: moved.sigmas().abs(),
-        axes: 1,
         carried_by,
         rivals: Vec::new(),
     }

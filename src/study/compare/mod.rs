@@ -7,7 +7,6 @@ mod judge;
 mod lifts;
 mod motion;
 mod order;
-mod parameters;
 mod request;
 mod result;
 mod run;

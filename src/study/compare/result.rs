@@ -150,8 +150,6 @@ pub struct Change {
     pub unit: &'static str,
     /// size of the difference in its standard errors; of the whole balance standard deviations of what unchanged flights would show
     pub sigmas: f64,
-    /// axes of the body along which parameters of one effect moved by the same factor, and of which [`Self::sigmas`] is together; 1: by itself
-    pub axes: usize,
     /// later flights that each show it alone
     pub carried_by: Vec<usize>,
     /// what else it may be
