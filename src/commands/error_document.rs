@@ -1,18 +1,11 @@
 //! The document of a command that failed, for a script that asked for one with `--json`.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
-
 use serde::Serialize;
 
 use super::CommandError;
 use super::last_word::last_word;
-use super::output;
+use super::{output, said};
 
-/// A document was printed: a failure after it adds none.
-static PRINTED: AtomicBool = AtomicBool::new(false);
-/// What was said of the failure on standard error, line by line.
-static SAID: Mutex<Vec<String>> = Mutex::new(Vec::new());
 /// What a line of the program begins with on standard error.
 const PROGRAM: &str = "mavid: ";
 
@@ -28,22 +21,12 @@ struct ErrorValue {
     exit_status: u8,
 }
 
-/// A document goes to standard output.
-pub fn is_printed() {
-    PRINTED.store(true, Ordering::SeqCst);
-}
-
-/// A line about the failure goes to standard error.
-pub fn is_said(line: &str) {
-    SAID.lock().unwrap_or_else(PoisonError::into_inner).push(line.to_owned());
-}
-
 /// Says on standard error why a command failed and, with `json`, on standard output as a document, unless one is there. Returns the
 /// exit status.
 pub fn failed(error: &CommandError, json: bool) -> u8 {
     let status = error.report();
     if json {
-        let said = SAID.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let said = said::lines();
         print(if said.is_empty() { vec![error.to_string()] } else { said }, status);
     }
     status
@@ -51,7 +34,7 @@ pub fn failed(error: &CommandError, json: bool) -> u8 {
 
 /// Prints the document of a failure that these lines tell. A reader that takes nothing does not keep the program from ending.
 pub fn print(lines: Vec<String>, exit_status: u8) {
-    if PRINTED.load(Ordering::SeqCst) {
+    if said::is_document_printed() {
         return;
     }
     let lines: Vec<&str> = lines.iter().map(|line| line.strip_prefix(PROGRAM).unwrap_or(line)).collect();

@@ -38,6 +38,7 @@ mod redact;
 mod replay;
 mod report;
 mod run;
+mod said;
 mod simulate;
 mod sitl;
 mod standard_error;

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use super::columns::{of_terminal, size_of_terminal};
 use super::standard_error::MESSAGE;
-use super::{CommandError, NOT_ALL, error_document};
+use super::{CommandError, NOT_ALL, said};
 
 /// A result for people; ends the line. On a terminal lines that are longer than it is wide are broken between words.
 pub fn text(text: &str) -> Result<(), CommandError> {
@@ -69,7 +69,7 @@ pub fn json(document: &impl Serialize) -> Result<(), CommandError> {
 
 /// A document that is text already.
 pub fn document(text: &str) -> Result<(), CommandError> {
-    error_document::is_printed();
+    said::document_is_printed();
     line(io::stdout().lock(), text)
 }
 
@@ -115,7 +115,7 @@ impl Said {
 
 /// Why the work is not done: a message also where it is to be quiet.
 pub fn error(text: &str) {
-    error_document::is_said(text);
+    said::line_is_said(text);
     tracing::error!(target: MESSAGE, message = text);
 }
 

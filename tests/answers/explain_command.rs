@@ -21,10 +21,6 @@ fn temporary(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("explain_command-{name}"))
 }
 
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
 fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
@@ -164,7 +160,9 @@ fn bad_input_is_refused_with_what_was_expected_and_what_came() {
         all.extend(["--vehicle", vehicle.as_str(), "--json"]);
         let output = mavid(&all);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
-        assert_eq!(stdout(&output), "", "{arguments:?}");
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let message = document["error"]["message"].as_str().unwrap();
+        assert!(message.contains(words), "{arguments:?}: {message}");
         assert!(stderr(&output).contains(words), "{arguments:?}: {}", stderr(&output));
     }
 }
@@ -330,12 +328,13 @@ fn a_thrust_that_drifts_with_the_height_is_no_line_to_the_ground() {
     let Some(shared) = support::shared() else { return };
     let log = shared.join("onboard/logs/copter_368_indoor_quad.bin").display().to_string();
     let output = mavid(&["explain", &log, "--mass", "1.0", "--size", "0.45", "--json"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
     let document: Value = serde_json::from_slice(&output.stdout).unwrap();
     let effects = document["effects"].as_array().unwrap();
     assert!(effects.is_empty(), "{effects:?}");
     let said = document["warnings"].to_string();
-    assert!(said.contains("A line leads down to the ground") && said.contains("so it gets none"), "{said}");
+    assert!(said.contains("a name to a tether") && said.contains("so it gets none"), "{said}");
+    assert!(document["answer"].as_str().unwrap().contains("do not confirm it"), "{}", document["answer"]);
 }
 
 /// The squares change the thrust of this drone four times as much as its random flight, and leave as much more of it. It is the same drone.

@@ -504,7 +504,7 @@ fn a_path_that_leaves_the_room_is_refused_with_place_and_time() {
     scene.limits.y_max_m = Some(0.9);
     let said = scene.said("limits");
     assert_eq!(said.level, Level::Refusal);
-    assert!(said.expected.contains("place along west at most"), "{said}");
+    assert!(said.expected.contains("place along west at least -0.900 m"), "{said}");
     assert!(said.came.contains("1.000 m at"), "{said}");
 }
 

@@ -106,7 +106,9 @@ fn put_together(
     };
     (estimated, estimated_before) =
         (in_errors(estimated, torque_law), in_errors(estimated_before, law_before));
+    let as_flown = estimated.theta[ABOUT_Z];
     let physical = made_physical(&mut estimated, &nominal);
+    let as_flown_share = as_flown / estimated.theta[ABOUT_Z];
     let result = |estimated: &Estimated| MethodResult::new(Method::Weak, estimated, &nominal);
     let (mut body, mut body_before) = (result(&estimated), result(&estimated_before));
     let mut scale = None;
@@ -136,10 +138,7 @@ fn put_together(
         let about_z = estimated.theta[ABOUT_Z];
         identified.body.inertia_kg_m2[(2, 2)] = about_z;
         if let Finding::NotDetermined { reason } = &mut body.parameters[ABOUT_Z].finding {
-            reason.push_str(&format!(
-                "; in the model izz is {} kg m^2, which turns the vehicle as it flew with the stated torque per thrust",
-                significant(about_z, 3)
-            ));
+            reason.push_str(&told_about_z(about_z, as_flown_share, physical));
         }
     }
     JointEstimate {
@@ -155,6 +154,23 @@ fn put_together(
         latency,
         physical,
         torque_law,
+    }
+}
+
+/// What izz (kg m^2) the model has, of a flight that tells only its ratio to the torque per thrust: a clause. `as_flown` is that by the stated torque
+/// per thrust over it.
+fn told_about_z(about_z: f64, as_flown: f64, physical: Physical) -> String {
+    let words = significant(about_z, 3);
+    if physical == Physical::Moved {
+        let flown = significant(as_flown * about_z, 3);
+        format!(
+            "; in the model izz is {words} kg m^2, the nearest that a body can have. With the stated torque per thrust the vehicle turned as with \
+             {flown} kg m^2"
+        )
+    } else {
+        format!(
+            "; in the model izz is {words} kg m^2, which turns the vehicle as it flew with the stated torque per thrust"
+        )
     }
 }
 

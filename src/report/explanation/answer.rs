@@ -13,19 +13,17 @@ use crate::text::{list, list_or};
 /// Largest number of effects that are listed with their sizes.
 const SIZED: usize = 4;
 
-/// The answer in one sentence; what limits the flights and what makes it doubtful come first, or last where that concerns no name.
+/// The answer in one sentence; what makes it doubtful and what limits the flights come first, or last where that concerns no name.
 #[must_use]
 pub fn answer(study: &ExplainStudy) -> String {
-    let clauses: Vec<String> = study.limited().iter().map(FlightLimit::words).collect();
-    let unsure = if study.effects.is_empty() { "" } else { "; no name is certain" };
-    match clauses.as_slice() {
-        [] => with_doubts(study),
-        clauses => format!("Limited: {}{unsure}. {}", clauses.join("; "), with_doubts(study)),
-    }
-}
-
-fn with_doubts(study: &ExplainStudy) -> String {
-    let found = format!("{}{}{}{}", found(study), withdrawn(study), left_out_force(study), no_model(study));
+    let found = format!(
+        "{}{}{}{}{}",
+        limits(study),
+        found(study),
+        withdrawn(study),
+        left_out_force(study),
+        no_model(study)
+    );
     match study.doubts().as_slice() {
         [] => found,
         [doubt] if study.doubts_torques_alone() => {
@@ -36,6 +34,13 @@ fn with_doubts(study: &ExplainStudy) -> String {
         }
         doubts => format!("Doubtful: {}. {found}", doubts.join("; ")),
     }
+}
+
+/// What limits the flights by the way they were flown.
+fn limits(study: &ExplainStudy) -> String {
+    let clauses: Vec<String> = study.limited().iter().map(FlightLimit::words).collect();
+    let unsure = if study.effects.is_empty() { "" } else { "; no name is certain" };
+    if clauses.is_empty() { String::new() } else { format!("Limited: {}{unsure}. ", clauses.join("; ")) }
 }
 
 fn found(study: &ExplainStudy) -> String {

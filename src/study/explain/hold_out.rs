@@ -173,7 +173,7 @@ impl ExplainStudy {
     /// A named effect that follows the height alone, where a baseline predicts the hold-out better than the model. A thrust that drifts
     /// during a flight follows its height by chance, and what is outside the vehicle needs more than the flight in which it was found.
     fn drifts_with_height(&self) -> Option<Worthless> {
-        let better_percent = -self.holdout.as_ref()?.improvement()?;
+        let better_percent = -self.holdout.as_ref()?.improvement_in_motion()?;
         let by_height = |named: &&Named| {
             signature_of(named.id).is_some_and(|of| of.naming.by_height) && self.judges(named.id)
         };

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 /// Part of a flight that is slower, and turned less, than a hover is at most. Set by judgement.
 const MOST: (usize, usize) = (9, 10);
-/// Horizontal speed of a hover over the root of the arm, m/s per root of a metre: 0.3 m/s with an arm of 0.25 m. Lengths and speeds of
+/// Speed of a hover over the root of the arm, m/s per root of a metre: 0.3 m/s with an arm of 0.25 m. Lengths and speeds of
 /// vehicles of different sizes go so together (Froude). Set by judgement: hovers of simulated and recorded flights stay below 0.15 m/s,
 /// and flights along a trajectory exceed 0.4 m/s.
 const HOVER_SPEED: f64 = 0.6;
@@ -16,7 +16,11 @@ const HOVER_SPEED: f64 = 0.6;
 /// Set by judgement.
 const HOVER_ANGLE: f64 = 0.08;
 /// Share of the speed that nineteen twentieths of a flight are below from which on it moves: a climb, a hover before and after do not.
-const MOVES: f64 = 0.25;
+const MOVES: f64 = 0.1;
+/// Body rate (rad/s) that half of a flight exceeds which turns all the time. Set by judgement: a hover in wind stays below.
+const TURNS_RAD_S: f64 = 0.4;
+/// The middle of a flight's values.
+const TYPICAL: (usize, usize) = (1, 2);
 /// Shortest period of a trajectory for identification, s.
 const PERIOD_S: f64 = 8.0;
 /// Fewest periods: what is seen once is not told from what happened once.
@@ -97,7 +101,7 @@ fn limits_of(signals: &Signals, vehicle: &Vehicle) -> Vec<FlightLimit> {
 /// Nine tenths of the flight are slow, and about one attitude. Without velocity or attitude nothing is said.
 fn hovers(signals: &Signals, used: &[usize], hover_m_s: f64) -> bool {
     let (Some(velocity), Some(attitude)) = (&signals.velocity, &signals.attitude) else { return false };
-    let speeds = used.iter().map(|&index| velocity[index].xy().norm()).collect();
+    let speeds = used.iter().map(|&index| velocity[index].norm()).collect();
     let below = |values: Vec<f64>, most: f64| at(values, MOST).is_some_and(|value| value < most);
     let steady = [Vector3::x(), Vector3::z()].into_iter().all(|axis| {
         let directions: Vec<Vector3<f64>> = used.iter().map(|&index| attitude[index] * axis).collect();
@@ -107,10 +111,15 @@ fn hovers(signals: &Signals, used: &[usize], hover_m_s: f64) -> bool {
     below(speeds, hover_m_s) && steady
 }
 
-/// The flight moves for less than two periods: of its own trajectory, where that is known, otherwise of the shortest.
+/// The flight moves for less than two periods: of its own trajectory, where that is known, otherwise of the shortest. Nothing is said of one
+/// that turns all the time.
 fn few_periods(signals: &Signals, used: &[usize], hover_m_s: f64) -> Option<FlightLimit> {
-    let velocity = signals.velocity.as_ref()?;
-    let speeds: Vec<f64> = used.iter().map(|&index| velocity[index].xy().norm()).collect();
+    let (velocity, rate) = (signals.velocity.as_ref()?, signals.rate.as_ref());
+    let turning = rate.and_then(|rate| at(used.iter().map(|&index| rate[index].norm()).collect(), TYPICAL));
+    if turning.is_some_and(|rate_rad_s| rate_rad_s > TURNS_RAD_S) {
+        return None;
+    }
+    let speeds: Vec<f64> = used.iter().map(|&index| velocity[index].norm()).collect();
     let least = hover_m_s.max(MOVES * at(speeds.clone(), (19, 20))?);
     let moving_s = speeds.iter().filter(|speed| **speed > least).count() as f64 * signals.grid.step_s;
     let period_s = flown_period_s(signals, used);
@@ -156,8 +165,8 @@ mod tests {
     #[test]
     fn a_hover_and_a_flight_that_ends_early_are_limited_and_a_whole_one_is_not() {
         assert_eq!(limits(40.0, 30.0), [FlightLimit::Hover]);
-        let [FlightLimit::FewPeriods { moving_s, .. }] = limits(4.0, 18.0)[..] else { panic!("not limited") };
-        assert!((5.0..14.0).contains(&moving_s), "{moving_s}");
+        let [FlightLimit::FewPeriods { moving_s, .. }] = limits(4.0, 14.0)[..] else { panic!("not limited") };
+        assert!((3.0..14.0).contains(&moving_s), "{moving_s}");
         assert_eq!(limits(4.0, 54.0), []);
     }
 

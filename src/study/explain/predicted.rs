@@ -123,8 +123,17 @@ impl Predicted {
     /// Mean improvement over the quantities, percent.
     #[must_use]
     pub fn improvement(&self) -> Option<f64> {
-        let each: Vec<f64> =
-            self.half_second().into_iter().flatten().map(|of| of.improvement_percent.value).collect();
+        Self::mean_improvement(&self.half_second())
+    }
+
+    /// The same of how the vehicle moves: position and velocity.
+    pub(super) fn improvement_in_motion(&self) -> Option<f64> {
+        let all = self.half_second();
+        Self::mean_improvement(&all[..all.len() / 2])
+    }
+
+    fn mean_improvement(quantities: &[Option<Compared>]) -> Option<f64> {
+        let each: Vec<f64> = quantities.iter().flatten().map(|of| of.improvement_percent.value).collect();
         (!each.is_empty()).then(|| each.iter().sum::<f64>() / each.len() as f64)
     }
 }
