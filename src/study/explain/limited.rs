@@ -98,17 +98,20 @@ fn limits_of(signals: &Signals, vehicle: &Vehicle) -> Vec<FlightLimit> {
     by_motion.into_iter().chain(saturated(&signals.quality)).collect()
 }
 
-/// Nine tenths of the flight are slow, and about one attitude. Without velocity or attitude nothing is said.
+/// Nine tenths of the flight are slow across, half of it up and down (a take-off and a landing are no motion), and nine tenths about one
+/// attitude. Without velocity or attitude nothing is said.
 fn hovers(signals: &Signals, used: &[usize], hover_m_s: f64) -> bool {
     let (Some(velocity), Some(attitude)) = (&signals.velocity, &signals.attitude) else { return false };
-    let speeds = used.iter().map(|&index| velocity[index].norm()).collect();
+    let speeds = used.iter().map(|&index| velocity[index].xy().norm()).collect();
+    let climbs = used.iter().map(|&index| velocity[index].z.abs()).collect();
+    let climbs = at(climbs, TYPICAL).is_none_or(|climb_m_s| climb_m_s > hover_m_s);
     let below = |values: Vec<f64>, most: f64| at(values, MOST).is_some_and(|value| value < most);
     let steady = [Vector3::x(), Vector3::z()].into_iter().all(|axis| {
         let directions: Vec<Vector3<f64>> = used.iter().map(|&index| attitude[index] * axis).collect();
         let mean = directions.iter().sum::<Vector3<f64>>();
         below(directions.iter().map(|direction| direction.angle(&mean)).collect(), HOVER_ANGLE)
     });
-    below(speeds, hover_m_s) && steady
+    !climbs && below(speeds, hover_m_s) && steady
 }
 
 /// The flight moves for less than two periods: of its own trajectory, where that is known, otherwise of the shortest. Nothing is said of one
@@ -122,7 +125,8 @@ fn few_periods(signals: &Signals, used: &[usize], hover_m_s: f64) -> Option<Flig
     let speeds: Vec<f64> = used.iter().map(|&index| velocity[index].norm()).collect();
     let least = hover_m_s.max(MOVES * at(speeds.clone(), (19, 20))?);
     let moving_s = speeds.iter().filter(|speed| **speed > least).count() as f64 * signals.grid.step_s;
-    let period_s = flown_period_s(signals, used);
+    // a shorter one is that of a harmonic, or of a turn
+    let period_s = flown_period_s(signals, used).filter(|period_s| *period_s >= PERIOD_S);
     let is_few = moving_s < PERIODS * period_s.unwrap_or(PERIOD_S);
     is_few.then_some(FlightLimit::FewPeriods { moving_s, period_s })
 }
