@@ -501,7 +501,9 @@ fn a_flight_that_is_not_looked_after_holds_and_lands() {
 /// A pilot who takes over long after a stall: the computer has nothing to do with it.
 #[test]
 fn a_stall_of_long_ago_is_no_cause_of_an_end() {
-    let mut flying = Flying::of(PX4);
+    let mut flying = Flying::new(vehicle_settings(PX4), |sortie| {
+        sortie.settings.watch_max = Duration::from_secs(20);
+    });
     for _ in 0..300 {
         flying.step(true);
     }
