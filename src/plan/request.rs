@@ -55,7 +55,7 @@ pub struct Assessment {
     pub condition_number: f64,
     /// cond(W) with columns of unit norm
     pub scaled_condition_number: f64,
-    /// standard errors of the parameters in the order of `Theta`, relative to [`parameter_scale`]; `None` if the flight
+    /// standard errors of the parameters in the order of `Theta`, relative to [`parameter_scale`](super::parameter_scale); `None` if the flight
     /// does not determine all of them
     pub standard_errors: Option<[f64; 7]>,
     /// the flight time for the standard errors, s
