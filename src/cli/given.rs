@@ -71,7 +71,8 @@ pub(super) fn metres(text: &str) -> Result<f64, String> {
 }
 
 fn measure(text: &str, unit: &str) -> Result<f64, String> {
-    let number = text.trim().trim_end_matches(unit).trim_end().replace(',', ".");
+    let text = text.trim();
+    let number = text.strip_suffix(unit).unwrap_or(text).trim_end().replace(',', ".");
     number.parse().map_err(|_| format!("expected a number of {unit}, for example 0.45"))
 }
 
@@ -105,6 +106,7 @@ mod tests {
             let why = kilograms(text).unwrap_err();
             assert!(why.starts_with("expected a number of kg"), "{text}: {why}");
         }
+        assert!(metres("450mm").is_err());
         assert!(metres("45 cm").unwrap_err().starts_with("expected a number of m"));
     }
 }
