@@ -92,20 +92,10 @@ fn put_together(
 ) -> JointEstimate {
     let Fits { before, after, settled, split, first, laws: [law_before, torque_law] } = fits;
     let nominal = Nominal::of(vehicle);
-    let guessed = |estimated: Estimated, by: Option<MovedByCurve>| {
-        let moved = by.map(|by| by.on(&estimated.theta));
-        estimated.with_guessed_curve(moved)
-    };
     // a curve that the flight tells is no guess any more
     let left = by_curve.filter(|_| !wanted.bend_thrust());
     let (mut estimated, mut estimated_before) =
-        (guessed(after.rigid_body(), left), guessed(before.rigid_body(), by_curve));
-    let in_errors = |estimated, law: Option<TorqueLaw>| match law {
-        Some(law) => law.in_errors_of(estimated),
-        None => estimated,
-    };
-    (estimated, estimated_before) =
-        (in_errors(estimated, torque_law), in_errors(estimated_before, law_before));
+        (estimate_of(&after, left, torque_law), estimate_of(&before, by_curve, law_before));
     let as_flown = estimated.theta[ABOUT_Z];
     let physical = made_physical(&mut estimated, &nominal);
     let as_flown_share = as_flown / estimated.theta[ABOUT_Z];
@@ -154,6 +144,17 @@ fn put_together(
         latency,
         physical,
         torque_law,
+    }
+}
+
+/// Mass and inertia of a fit, with the errors of a guessed thrust curve and of a torque that does not go with the thrust.
+fn estimate_of(fitted: &Fitted, by_curve: Option<MovedByCurve>, law: Option<TorqueLaw>) -> Estimated {
+    let estimated = fitted.rigid_body();
+    let moved = by_curve.map(|by| by.on(&estimated.theta));
+    let estimated = estimated.with_guessed_curve(moved);
+    match law {
+        Some(law) => law.in_errors_of(estimated),
+        None => estimated,
     }
 }
 

@@ -138,11 +138,7 @@ impl IdentifyStudy {
             }
             Err(why) => rigid_body_alone(&mut identification, &vehicle, why),
         }
-        let thrust_differs = effects.iter().any(|id| signature_of(id).is_some_and(Signature::alters_thrust));
-        let apart = || identification.apart.iter().filter(|flight| !flight.is_about_z_alone());
-        let disagree = apart().any(|flight| flight.is_other_vehicle(thrust_differs));
-        let told: Vec<Note> = apart().map(|flight| flight.note(thrust_differs)).collect();
-        identification.notes.extend(told);
+        let disagree = tell_flights_apart(&mut identification, &effects);
         identification.best.result.emit();
         let scale = apply_anchor(&mut identification, &vehicle);
         let joint = |result: &&mut MethodResult| result.method == Method::Joint;
@@ -216,4 +212,15 @@ impl IdentifyStudy {
         doubts.extend(self.disagree.then(|| TWO_VEHICLES.to_owned()));
         doubts
     }
+}
+
+/// Notes the flights whose mass or moments contradict those of the first one, with these effects in the model. Returns whether one may be of another
+/// vehicle.
+fn tell_flights_apart(identification: &mut Identification, effects: &[&'static str]) -> bool {
+    let thrust_differs = effects.iter().any(|id| signature_of(id).is_some_and(Signature::alters_thrust));
+    let apart = || identification.apart.iter().filter(|flight| !flight.is_about_z_alone());
+    let disagree = apart().any(|flight| flight.is_other_vehicle(thrust_differs));
+    let told: Vec<Note> = apart().map(|flight| flight.note(thrust_differs)).collect();
+    identification.notes.extend(told);
+    disagree
 }
