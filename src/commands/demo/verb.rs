@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use mavid::config::parse_vehicle;
 use mavid::study::effects_file;
+use mavid::text;
 
 use crate::cli::{DemoArgs, RunArgs, ShapeArgs};
 use crate::commands::live::{self, Work};
@@ -36,15 +37,8 @@ fn run_demo(out: (bool, &StandardError), args: &DemoArgs, work: &Work) -> Result
         effects_file(file, &vehicle)?;
     }
     let folder = folder(args)?;
+    let effects = concealed(args.effects.as_deref(), &folder)?;
     output::file(&folder.join("limits.toml"), LIMITS)?;
-    let effects = match &args.effects {
-        Some(file) => kept(file, &folder)?,
-        None => {
-            let file = folder.join(CONCEALED);
-            output::file(&file, EFFECTS)?;
-            file
-        }
-    };
     output::message("a simulated X500 is flown by PX4; something about it is concealed");
     let run = RunArgs {
         connect: None,
@@ -67,6 +61,31 @@ fn run_demo(out: (bool, &StandardError), args: &DemoArgs, work: &Work) -> Result
         plain: args.plain,
     };
     story(out, (&run, Recipe { is_demo: true }), work)
+}
+
+/// The file of what is concealed, of which the folder keeps a copy. A demo that is taken up conceals what it was begun with: its flights do
+/// not show anything else.
+fn concealed(given: Option<&Path>, folder: &Path) -> Result<PathBuf, CommandError> {
+    let copy = folder.join(CONCEALED);
+    let begun_with = if is_unfinished(folder) { fs::read_to_string(&copy).ok() } else { None };
+    let file = given.map_or_else(|| Ok(copy.clone()), |file| kept(file, folder))?;
+    if given.is_none() {
+        output::file(&copy, EFFECTS)?;
+    } else if file != copy {
+        let content = fs::read_to_string(&file)
+            .map_err(|error| CommandError::Input(format!("cannot read {}: {error}", text::path(&file))))?;
+        output::file(&copy, &content)?;
+    }
+    match begun_with {
+        Some(before) if fs::read_to_string(&copy).ok().as_ref() != Some(&before) => {
+            output::file(&copy, &before)?;
+            let copy = text::path(&copy);
+            Err(CommandError::Input(format!(
+                "expected the effects with which this demo was begun, those of {copy}, got others: give --effects {copy}, or another --out"
+            )))
+        }
+        _ => Ok(file),
+    }
 }
 
 /// Whether a demo was begun in this folder and did not come to its end: it is taken up.
@@ -104,9 +123,18 @@ mod tests {
         assert!(!is_unfinished(&folder), "a run of somebody's own room");
         fs::write(folder.join("limits.toml"), LIMITS).unwrap();
         assert!(is_unfinished(&folder));
+        // what it was begun with stays concealed
+        let copy = concealed(None, &folder).unwrap();
+        let other = folder.join("other.toml");
+        fs::write(&other, "[[effect]]\nid = \"motor_lag\"\ntime_constant = 0.05\n").unwrap();
+        let why = concealed(Some(&other), &folder).unwrap_err().to_string();
+        assert!(why.starts_with("expected the effects with which this demo was begun"), "{why}");
+        assert_eq!(fs::read_to_string(&copy).unwrap(), EFFECTS);
+        assert_eq!(concealed(Some(&copy), &folder).unwrap(), copy);
         fs::create_dir_all(folder.join("export")).unwrap();
         fs::write(folder.join(LAST), "").unwrap();
         assert!(!is_unfinished(&folder));
+        assert_eq!(concealed(Some(&other), &folder).unwrap(), other);
         fs::remove_dir_all(folder).unwrap();
     }
 }
