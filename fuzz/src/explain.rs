@@ -46,6 +46,7 @@ pub fn run(data: &[u8], seeded: bool) {
         transient_s: TRANSIENT_S,
         limited: Vec::new(),
         own_load: false,
+        own_wind: false,
     };
     let study = ExplainStudy::new(given, explanation);
     is_readable(&explanation_text(&study));

@@ -34,6 +34,8 @@ pub struct Base {
     pub weighed_kg: Option<f64>,
     /// a simulator flew, and it leaves the gyroscopic torque out: the share that acts is estimated
     pub estimates_gyroscopic: bool,
+    /// the accelerometer is taken to be without bias, because the bias that fitted best is no accelerometer's
+    pub is_unbiased: bool,
     /// inertia of the vehicle that the base began with, kg m^2: about its products lies what is known of them
     pub begun_kg_m2: Matrix3<f64>,
 }
@@ -57,7 +59,7 @@ impl Base {
     }
 
     /// Steady wind of the model in the world frame (NWU), m/s; zero where it has none.
-    pub(super) fn wind_m_s(&self) -> Vector3<f64> {
+    pub(crate) fn wind_m_s(&self) -> Vector3<f64> {
         let wind = self.effects.iter().find(|term| term.signature.role.wind.is_some());
         wind.map_or(Vector3::zeros(), |wind| Vector3::from_row_slice(&wind.values[..3]))
     }
@@ -72,6 +74,7 @@ impl Base {
             effects: Vec::new(),
             weighed_kg: None,
             estimates_gyroscopic: false,
+            is_unbiased: false,
             begun_kg_m2: vehicle.body.inertia_kg_m2,
         }
     }
@@ -91,6 +94,7 @@ impl Base {
     pub(super) fn turning_as(mut self, other: &Self) -> Self {
         self.vehicle.body.gyroscopic = other.vehicle.body.gyroscopic;
         self.estimates_gyroscopic = other.estimates_gyroscopic;
+        self.is_unbiased = other.is_unbiased;
         self
     }
 

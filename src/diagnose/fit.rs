@@ -166,7 +166,29 @@ pub enum Newton {
 ///
 /// # Errors
 /// [`PhysicsError`] where the estimate leaves what is physical.
-pub fn fit(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted, PhysicsError> {
+pub fn fit(flights: &[Trace], base: Base, newton: Newton) -> Result<Fitted, PhysicsError> {
+    let begun = base.clone();
+    let fitted = converged(flights, base, newton)?;
+    if fitted.base.is_unbiased || !is_no_bias(&fitted) {
+        return Ok(fitted);
+    }
+    converged(flights, Base { is_unbiased: true, ..begun }, newton)
+}
+
+/// Standard deviations of its prior from which on the bias that fits best is no accelerometer's. What is wrong with the thrust along z is
+/// then taken for a bias, and the mass, which its mean tells, comes out wrong.
+const NO_BIAS: f64 = 5.0;
+
+/// Whether a bias with a prior is far from it.
+fn is_no_bias(fitted: &Fitted) -> bool {
+    let of = |(column, value): (&NuisanceColumn, &f64)| {
+        let is_bias = matches!(column.nuisance, Nuisance::AccelerometerBias(_));
+        is_bias && column.prior_std.is_some_and(|std| value.abs() > NO_BIAS * std)
+    };
+    fitted.rows.nuisances.iter().zip(fitted.coefficients.iter()).any(of)
+}
+
+fn converged(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted, PhysicsError> {
     let mut fitted = evaluate(flights, base.clone())?;
     for pass in 1..=PASSES {
         let moves = step(&mut base, &fitted.rows, &fitted.coefficients, newton);

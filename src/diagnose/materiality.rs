@@ -33,6 +33,17 @@ pub(super) const UNNAMED_SIDEWAYS: f64 = 0.025;
 /// Force that wanders by itself and follows neither place nor motion that matters, as a share of the weight. Real thrust wanders
 /// about its command and real wind about its mean, together by up to 0.041: see `docs/src/figures-diagnosis.md`.
 pub(super) const UNNAMED_WANDERING: f64 = 0.05;
+/// The same of a force along body z that follows the commands, where these are too far apart to tell the torques or the thrust curve is a
+/// guess: what the commands do between two samples is noise of the thrust, and follows it. Of 19 logs of real quadrotors at 10 to 25 Hz it
+/// made up to 0.05, and 0.25 in one.
+pub(super) const UNNAMED_OF_UNSURE_THRUST: f64 = 0.1;
+/// Outdoors, the same of a horizontal force that belongs to a place: of 15 flights of one quadrotor the wind over 3 to 7 m of height made up
+/// to 0.06, and that over 10 m along the ground as much. A wind that is 3 m/s stronger is 0.09 at a usual drag of 0.3 1/s.
+pub(super) const UNNAMED_WIND: f64 = 0.1;
+/// Outdoors, the same of a horizontal force that changes over the flight: a wind that rises by 5 m/s.
+pub(super) const UNNAMED_CHANGE_OF_WIND: f64 = 0.15;
+/// The same of a thrust that becomes less over the flight: a battery that empties, and motors that become warm, make as much.
+pub(super) const UNNAMED_LOSS_OF_THRUST: f64 = 0.1;
 /// The same of a torque, as a share of the weight on a mean arm: real ones wander by up to 0.032.
 pub(super) const WANDERING_ON_ARM: f64 = 0.04;
 /// The same of a torque, also as a share of the rms of the torque that the motion needs: between two samples of telemetry the commands

@@ -118,7 +118,7 @@ pub use materiality::Materiality;
 pub use model_wrench::wrench_along;
 pub use named::{Confusable, DetectionLimit, Named, NamedParameter, Strength};
 pub use own_of_flights::{Apart, apart};
-pub use own_wind::{drift_m, own_wind, relative_to_air};
+pub use own_wind::{drift_m, own_air, own_wind, relative_to_air};
 pub use pace::Pace;
 pub use physical::MOMENT_STD;
 pub use recorded::{Need, Recorded};

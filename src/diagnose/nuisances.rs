@@ -88,7 +88,7 @@ pub(super) fn nuisances(
     if !trace.torques {
         out.extend(guessed_balance(trace, &base.vehicle));
     }
-    out.extend(sensor_nuisances(trace, mass_kg, base.stands_for(Nuisance::Level(0))));
+    out.extend(sensor_nuisances(trace, mass_kg, base));
     out
 }
 
@@ -222,9 +222,10 @@ fn lateral_latency(trace: &Trace, thrust_n: &[f64]) -> NuisanceColumn {
 }
 
 /// The accelerometer's bias, and the level of the attitude for the kinematics, unless the base has an effect for it.
-fn sensor_nuisances(trace: &Trace, mass_kg: f64, leans: bool) -> Vec<NuisanceColumn> {
+fn sensor_nuisances(trace: &Trace, mass_kg: f64, base: &Base) -> Vec<NuisanceColumn> {
+    let leans = base.stands_for(Nuisance::Level(0));
     let mut out = Vec::new();
-    if trace.has_accelerometer() {
+    if trace.has_accelerometer() && (trace.reads_force_twice() || !base.is_unbiased) {
         let prior_std = if trace.reads_force_twice() { None } else { Some(BIAS_STD_M_S2) };
         for axis in 0..3 {
             let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);

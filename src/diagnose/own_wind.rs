@@ -54,6 +54,18 @@ pub fn own_wind(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings
     if is_near { Some(wind_m_s) } else { told_alone(signals, vehicle, settings) }
 }
 
+/// The same, and zero where the flight explained alone has a drag and no wind; `None` where it does not tell.
+#[must_use]
+pub fn own_air(signals: &Signals, vehicle: &Vehicle, settings: &ExplainSettings) -> Option<Vector3<f64>> {
+    own_wind(signals, vehicle, settings).or_else(|| {
+        let alone = explain(std::slice::from_ref(signals), vehicle, settings).ok()?;
+        let terms = &alone.search.after.base.effects;
+        let is_dragged = terms.iter().any(|term| term.signature.role.of_air);
+        let is_told = is_dragged && alone.verdict != Verdict::Unexplained;
+        is_told.then(|| alone.search.after.base.wind_m_s())
+    })
+}
+
 /// A wind and the drag that it acts through, as a fit shows them.
 #[derive(Debug)]
 struct Shown {
@@ -129,6 +141,7 @@ pub fn drift_m(wind: &Vector3<f64>, step_s: f64, count: usize) -> Vector3<f64> {
 #[must_use]
 pub fn relative_to_air(signals: &Signals, wind: &Vector3<f64>) -> Signals {
     let mut seen = signals.clone();
+    seen.air_m_s += wind;
     let moving =
         |velocity: &Arc<Vec<Vector3<f64>>>| Arc::new(velocity.iter().map(|v| v - wind).collect::<Vec<_>>());
     seen.velocity = seen.velocity.as_ref().map(moving);

@@ -74,6 +74,7 @@ pub(in super::super) fn turning_on_the_spot() -> Signals {
         as_recorded: AsRecorded::default(),
         reference: None,
         own: OwnOfFlight::default(),
+        air_m_s: Vector3::zeros(),
         quality: Quality {
             sources: vec![(Quantity::ActuatorCommand, "by hand", 1.0 / STEP_S)],
             thrust_source: ThrustSource::Command,

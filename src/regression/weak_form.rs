@@ -270,6 +270,7 @@ mod tests {
             as_recorded: AsRecorded::default(),
             reference: None,
             own: OwnOfFlight::default(),
+            air_m_s: Vector3::zeros(),
             quality: Quality {
                 sources: vec![(Quantity::ActuatorCommand, "by hand", 1.0 / STEP_S)],
                 thrust_source: ThrustSource::Command,

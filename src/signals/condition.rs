@@ -130,6 +130,7 @@ pub fn condition(
         as_recorded: chosen.as_recorded(),
         reference: reference(recording, &grid),
         own: OwnOfFlight::default(),
+        air_m_s: Vector3::zeros(),
         quality: Quality {
             sources: sources(&chosen, &actuation),
             thrust_source: actuation.source(),

@@ -51,6 +51,9 @@ pub struct Signals {
     pub reference: Option<Reference>,
     /// what it has beside the vehicle's other flights
     pub own: OwnOfFlight,
+    /// m/s, world: position and velocity are as seen by who moves with it, which is a flight's own wind or the part of it that a model
+    /// has not; zero where they are those over the ground
+    pub air_m_s: Vector3<f64>,
     /// sources and corrections
     pub quality: Quality,
 }
@@ -164,6 +167,7 @@ mod tests {
             as_recorded: AsRecorded::default(),
             reference: None,
             own: OwnOfFlight::default(),
+            air_m_s: Vector3::zeros(),
             quality: Quality {
                 sources: vec![(Quantity::AngularRate, "by hand", rate_hz)],
                 thrust_source: ThrustSource::Command,

@@ -50,6 +50,7 @@ impl Signals {
                 message: reference.message,
             }),
             own: self.own.clone(),
+            air_m_s: self.air_m_s,
             quality,
         }
     }

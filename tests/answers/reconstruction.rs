@@ -105,6 +105,7 @@ fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
         battery_voltage_v: None,
         reference: None,
         own: OwnOfFlight::default(),
+        air_m_s: Vector3::zeros(),
         quality: Quality {
             sources: vec![(Quantity::ActuatorCommand, "by hand", 1.0 / STEP_S)],
             thrust_source: ThrustSource::Command,

@@ -22,7 +22,16 @@ pub fn unchanged_windows(
     settings: &PlaybackSettings,
 ) -> Result<Vec<WindowErrors>, CompareError> {
     let windows = Windows::of(signals, settings)?;
-    let unchanged = |&start: &usize| windows.errors(start, &vec![windows.states.at(start); windows.window]);
+    // over the ground, which seems to move to who moves with the air
+    let per_step_m = signals.air_m_s * signals.grid.step_s;
+    let at = |start: usize, count: usize| {
+        let state = windows.states.at(start);
+        State { position_m: state.position_m - per_step_m * count as f64, ..state }
+    };
+    let unchanged = |&start: &usize| {
+        let states: Vec<State> = (1..=windows.window).map(|count| at(start, count)).collect();
+        windows.errors(start, &states)
+    };
     Ok(windows.starts.iter().map(unchanged).collect())
 }
 

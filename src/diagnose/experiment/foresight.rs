@@ -231,6 +231,7 @@ impl SimulatedSeries {
             as_recorded: AsRecorded::default(),
             reference: None,
             own: OwnOfFlight::default(),
+            air_m_s: Vector3::zeros(),
             quality: Quality {
                 sources: vec![(Quantity::ActuatorCommand, "imagined", rate_hz)],
                 thrust_source: ThrustSource::Command,

@@ -131,7 +131,7 @@ pub(super) fn carried_over(
     let has = |what: fn(&EffectTerm) -> bool| pair.after.effects.iter().any(what);
     let of_the_day = has(|term| term.signature.role.of_the_day);
     let by_voltage = has(|term| term.signature.needs.contains(&Need::Voltage));
-    if of_the_day && !settings.same_flight {
+    if of_the_day && !(settings.same_flight || settings.own_wind) {
         pair.notes.push(Note::warning(
             about(),
             "predicted with the wind of the identification flights; another day's wind would show as a difference in the table of \

@@ -22,6 +22,8 @@ pub struct HoldoutSettings {
     pub same_flight: bool,
     /// each flight has its own mass, by its beginning: of flights that were explained together
     pub own_mass: bool,
+    /// the flights are seen with their own wind beside that of the model
+    pub own_wind: bool,
 }
 
 impl Default for HoldoutSettings {
@@ -33,6 +35,7 @@ impl Default for HoldoutSettings {
             seed: 1,
             same_flight: false,
             own_mass: false,
+            own_wind: false,
         }
     }
 }

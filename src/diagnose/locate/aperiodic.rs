@@ -10,10 +10,11 @@ use super::super::trace::Trace;
 use super::gust::{GustFound, gust};
 use super::localisation::Localisation;
 use super::redness::{
-    Quantity, Redness, beside_harmonics, least_trend, red_fit, red_quantities, redness, scale,
+    Quantity, Redness, are_outdoors, beside_harmonics, least_trend, least_unnamed, red_fit, red_quantities,
+    redness, scale,
 };
 use super::view::View;
-use crate::diagnose::materiality::{UNNAMED_SIDEWAYS, UNNAMED_TORQUE};
+use crate::diagnose::materiality::{UNNAMED_OF_UNSURE_THRUST, UNNAMED_SIDEWAYS, UNNAMED_TORQUE};
 use crate::stats::median;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -83,12 +84,13 @@ impl Aperiodic {
         self.redness.iter().filter(move |red| red.certain && !red.is_lacking() && !is_gust(red.of))
     }
 
-    /// A horizontal force that changes over the flight, certain, and too little to count as missing.
+    /// A horizontal force that changes over the flight, or a thrust that becomes less, certain, and too little to count as missing.
     #[must_use]
     pub fn drifting(&self) -> Option<&Trend> {
         let is_told = |trend: &&Trend| {
-            let matters = trend.z > TREND_Z && trend.relative > UNNAMED_SIDEWAYS;
-            matters && !trend.certain && matches!(trend.of, Quantity::World(_))
+            let matters = trend.z > TREND_Z && trend.relative > least_unnamed(trend.of);
+            let is_less = trend.of == Quantity::Lift && trend.per_min < 0.0;
+            matters && !trend.certain && (is_less || matches!(trend.of, Quantity::World(_)))
         };
         self.trend.as_ref().filter(is_told)
     }
@@ -299,8 +301,8 @@ fn trend(traces: &[Trace], fitted: &Fitted, view: &View) -> Option<Trend> {
             let evidence = fitted.weighted.test(&column)?;
             let per_min = evidence.theta[0];
             let relative = per_min.abs() * longest_s / 60.0 / scale(fitted, of).max(f64::MIN_POSITIVE);
-            let certain =
-                evidence.z > TREND_Z && relative > least_trend(of) && may_feel(fitted, &column, &evidence);
+            let least = least_trend(of, per_min < 0.0, are_outdoors(traces));
+            let certain = evidence.z > TREND_Z && relative > least && may_feel(fitted, &column, &evidence);
             Some(Trend { of, per_min, std_per_min: evidence.std(0), z: evidence.z, relative, certain })
         })
         .max_by(|a, b| a.certain.cmp(&b.certain).then(a.z.total_cmp(&b.z)))
@@ -357,13 +359,13 @@ fn state_lack(
         })
         .collect();
     let count = tested.len() as f64;
-    let least = |channel: usize| {
-        // along body z as across it: no thrust law holds to a hundredth
-        if channel < 3 {
-            UNNAMED_SIDEWAYS * fitted.weight_n()
-        } else {
-            UNNAMED_TORQUE * fitted.rows.torque_rms[channel - 3]
+    let least = |channel: usize, state: Followed| match channel.checked_sub(3) {
+        Some(axis) => UNNAMED_TORQUE * fitted.rows.torque_rms[axis],
+        None if channel == 2 && state.is_commanded() && view.thrust_is_unsure => {
+            UNNAMED_OF_UNSURE_THRUST * fitted.weight_n()
         }
+        // along body z as across it: no thrust law holds to a hundredth
+        None => UNNAMED_SIDEWAYS * fitted.weight_n(),
     };
     let wanders = |channel: usize| {
         let of_channel = |of: Quantity| match of {
@@ -380,7 +382,7 @@ fn state_lack(
             let rms = follow.share.sqrt() * located.axes[follow.channel % AXES].rms;
             let p_value = (follow.p_value * count).min(1.0);
             let is_most = follow.share > MOST_OF_IT || !wanders(follow.channel);
-            let certain = p_value < STATE_P && rms > least(follow.channel) && is_most;
+            let certain = p_value < STATE_P && rms > least(follow.channel, follow.state) && is_most;
             StateLack { channel: follow.channel, state: follow.state, p_value, rms, certain }
         })
         .max_by(|a, b| a.certain.cmp(&b.certain).then(b.p_value.total_cmp(&a.p_value)))

@@ -8,9 +8,9 @@ use super::super::channels::{AXES, Channels, channels};
 use super::super::fit::Fitted;
 use super::super::measured_force::may_feel;
 use super::super::trace::Trace;
-use super::redness::Redness;
+use super::redness::{Redness, are_outdoors};
 use super::visits::{Visits, all_along, wanders_s};
-use crate::diagnose::materiality::UNNAMED_SIDEWAYS;
+use crate::diagnose::materiality::{UNNAMED_SIDEWAYS, UNNAMED_WIND};
 use crate::stats::quantile;
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
@@ -64,9 +64,6 @@ const HATS: usize = 7;
 /// Least normal deviate of a field. It is above that of a name, because eight directions and places of six columns each
 /// are tried, and the largest deviate reaches four on flights without a field.
 const FIELD_Z: f64 = 5.5;
-/// Least horizontal force over height outdoors, as a share of the weight: of 15 flights of one quadrotor the wind over 3 to 7 m of height
-/// made up to 0.06.
-const WIND_OVER_HEIGHT: f64 = 0.1;
 /// Pairs of the force's axis and the axis along which it changes. A vertical force that changes with height is left
 /// out, because ground, ceiling and tether cause it.
 const TRIED: [(usize, usize); 8] = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1), (0, 2), (1, 2)];
@@ -91,8 +88,6 @@ pub fn field_test(
     if traces.is_empty() || !traces.iter().all(|trace| trace.known.position && trace.known.attitude) {
         return None;
     }
-    // where satellite receivers are, wind blows, and it grows with height
-    let outdoors = traces.iter().all(|trace| trace.velocity_error_m_s.is_some());
     let ranges: Vec<(f64, f64)> = (0..3).map(|axis| position_range(traces, axis)).collect();
     let tested: Vec<_> = TRIED
         .par_iter()
@@ -108,7 +103,7 @@ pub fn field_test(
     })?;
     let (where_m, extent_m, force_n) =
         bump(traces, after, (component, along), ranges[along]).unwrap_or((0.0, 0.0, 0.0));
-    let least = if outdoors && along == 2 { WIND_OVER_HEIGHT } else { UNNAMED_SIDEWAYS };
+    let least = if component < 2 && are_outdoors(traces) { UNNAMED_WIND } else { UNNAMED_SIDEWAYS };
     let certain = evidence.z > FIELD_Z
         && evidence.gain >= FIELD_GAIN
         && force_n.abs() >= least * after.weight_n()

@@ -1,11 +1,13 @@
 //! Noise with more low-frequency power than a sensor's (red noise): a force or torque that drifts by itself.
 
 use super::super::fit::Fitted;
+use super::super::trace::Trace;
 use super::lateral_drag::{axial_drag_n_s_m, lateral_drag};
 use super::spectrum::{Ordinate, VELOCITY_SCALE_S2, noise_shapes, periodogram};
 use super::view::View;
 use crate::diagnose::materiality::{
-    UNNAMED_FORCE, UNNAMED_SIDEWAYS, UNNAMED_TORQUE, UNNAMED_WANDERING, WANDERING_ON_ARM, WANDERING_TORQUE,
+    UNNAMED_CHANGE_OF_WIND, UNNAMED_FORCE, UNNAMED_LOSS_OF_THRUST, UNNAMED_OF_UNSURE_THRUST,
+    UNNAMED_SIDEWAYS, UNNAMED_TORQUE, UNNAMED_WANDERING, WANDERING_ON_ARM, WANDERING_TORQUE,
 };
 use crate::stats::{Whittle, whittle};
 use crate::text::significant;
@@ -41,6 +43,8 @@ pub struct Redness {
     pub relative: f64,
     /// rms over the weight; of a torque, over the weight on a mean arm (about z: over the weight times the torque per thrust)
     pub of_lift: f64,
+    /// the same from which on something is missing: less is made by wind and by rotors
+    pub least_of_lift: f64,
     /// N, what the velocity's own slow error makes of the drag (rms)
     pub of_velocity_n: f64,
     /// certain, large enough to be told, and more than the velocity's error makes
@@ -71,10 +75,10 @@ impl Redness {
     #[must_use]
     pub fn is_lacking(&self) -> bool {
         let is_lacking = match self.of {
-            Quantity::Torque(_) => self.of_lift > WANDERING_ON_ARM && self.relative > WANDERING_TORQUE,
-            Quantity::Lift | Quantity::BodyZ | Quantity::World(_) => self.of_lift > UNNAMED_WANDERING,
+            Quantity::Torque(_) => self.relative > WANDERING_TORQUE,
+            Quantity::Lift | Quantity::BodyZ | Quantity::World(_) => true,
         };
-        self.certain && is_lacking
+        self.certain && is_lacking && self.of_lift > self.least_of_lift
     }
 }
 
@@ -87,13 +91,24 @@ pub(super) fn red_quantities(view: &View) -> Vec<(Quantity, Vec<f64>)> {
     out
 }
 
-/// Least trend over a flight that matters without a name, as a share of what the quantity is measured by: the mean wind may change.
-pub(super) fn least_trend(of: Quantity) -> f64 {
-    if matches!(of, Quantity::World(_)) { UNNAMED_WANDERING } else { least_unnamed(of) }
+/// Whether wind blows: where satellite receivers are.
+pub(super) fn are_outdoors(traces: &[Trace]) -> bool {
+    traces.iter().all(|trace| trace.velocity_error_m_s.is_some())
+}
+
+/// Least trend over a flight that matters without a name, as a share of what the quantity is measured by: the mean wind may change, and a
+/// thrust `becomes_less`.
+pub(super) fn least_trend(of: Quantity, becomes_less: bool, outdoors: bool) -> f64 {
+    match of {
+        Quantity::World(_) if outdoors => UNNAMED_CHANGE_OF_WIND,
+        Quantity::World(_) => UNNAMED_WANDERING,
+        Quantity::Lift if becomes_less => UNNAMED_LOSS_OF_THRUST,
+        _ => least_unnamed(of),
+    }
 }
 
 /// Least size that is told without a name, as a share of what the quantity is measured by.
-fn least_unnamed(of: Quantity) -> f64 {
+pub(super) fn least_unnamed(of: Quantity) -> f64 {
     match of {
         Quantity::Torque(_) => UNNAMED_TORQUE,
         Quantity::World(_) => UNNAMED_SIDEWAYS,
@@ -117,7 +132,22 @@ pub(super) fn redness(view: &View, fitted: &Fitted, of: Quantity, series: &[f64]
         && rms > CONTRADICTED * of_velocity_n
         && !of_jitter;
     let of_lift = rms / lift_scale(fitted, of);
-    Some(Redness { of, statistic, rms, correlation_s, relative, of_lift, of_velocity_n, certain })
+    let least_of_lift = match of {
+        Quantity::Torque(_) => WANDERING_ON_ARM,
+        Quantity::Lift | Quantity::BodyZ if view.thrust_is_unsure => UNNAMED_OF_UNSURE_THRUST,
+        Quantity::Lift | Quantity::BodyZ | Quantity::World(_) => UNNAMED_WANDERING,
+    };
+    Some(Redness {
+        of,
+        statistic,
+        rms,
+        correlation_s,
+        relative,
+        of_lift,
+        least_of_lift,
+        of_velocity_n,
+        certain,
+    })
 }
 
 /// The correlation time that explains most, its fit, and the likelihood ratio against noise alone.

@@ -7,6 +7,7 @@ use super::super::harmonics::flown_period_s;
 use super::super::trace::Trace;
 use crate::signals::{WeakKernel, central_difference};
 use crate::stats::median_step;
+use crate::vehicle::Guessed;
 use nalgebra::Vector3;
 use std::ops::Range;
 
@@ -42,6 +43,9 @@ pub(super) struct View {
     pub(super) contradiction_n: Option<[Vec<f64>; 3]>,
     /// m/s rms, slow error of the horizontal velocity by satellite receivers: that of the flight with the greatest; 0 without one
     pub(super) velocity_error_m_s: f64,
+    /// the commands are too far apart to tell torques, the shape of the thrust curve is a guess, or no velocity tells an error of the
+    /// accelerometer from one of the thrust
+    pub(super) thrust_is_unsure: bool,
     /// weak form's test function
     pub(super) kernel: WeakKernel,
     /// s, of the recordings' grid
@@ -74,6 +78,8 @@ impl View {
             world_force_n: None,
             contradiction_n: None,
             velocity_error_m_s: traces.iter().filter_map(|of| of.velocity_error_m_s).fold(0.0, f64::max),
+            thrust_is_unsure: traces.iter().any(|trace| !(trace.torques && trace.known.velocity))
+                || fitted.base.vehicle.guessed(Guessed::Expo) > 0.0,
             kernel: first.kernel.clone(),
             grid_step_s: first.grid.step_s,
         };
@@ -255,6 +261,7 @@ pub(super) mod tests {
             world_force_n: None,
             contradiction_n: None,
             velocity_error_m_s: 0.0,
+            thrust_is_unsure: false,
             kernel,
             grid_step_s,
             time_s,

@@ -2,7 +2,7 @@
 
 use crate::diagnose::{Along, Verdict};
 use crate::report::number::significant;
-use crate::study::{ExplainStudy, Predicted};
+use crate::study::{ExplainStudy, Predicted, ValidationData};
 use crate::text::list;
 use crate::vehicle::AXIS_NAMES;
 
@@ -22,7 +22,12 @@ pub(super) fn no_model(study: &ExplainStudy) -> String {
         None => (study.identify.as_ref(), "the flights that were explained"),
     };
     let told = predicted.filter(|predicted| predicted.is_no_model()).and_then(not_predicted);
-    let other = if study.other_vehicle().is_some() { ", which is not of this vehicle," } else { "" };
+    let other = match (study.other_vehicle(), &study.shown_on) {
+        (None, _) => "",
+        // the vehicle is one throughout a flight
+        (Some(_), ValidationData::HeldBack { .. }) => ", in which something changed,",
+        (Some(_), _) => ", which is not of this vehicle,",
+    };
     told.map_or_else(String::new, |what| {
         format!(
             " On {on}{other} the model is not usable for prediction of {what}: a state that does not change has smaller errors."

@@ -8,10 +8,10 @@ use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::{is_irregular, signature_of};
 use crate::diagnose::{
     Apart, ExplainSettings, Explanation, NAME_Z, Named, Owner, Verdict, apart, called,
-    each_with_model_of_all, explain, own_wind, relative_to_air,
+    each_with_model_of_all, explain, own_air, own_wind, relative_to_air,
 };
 use crate::note::{About, Note};
-use crate::recording::Quantity;
+use crate::recording::{Quantity, Recording};
 use crate::signals::Signals;
 use crate::study::Track;
 use crate::study::compare::are_apart;
@@ -35,6 +35,24 @@ pub(super) fn with_own_winds(flights: &mut Prepared, vehicle: &Vehicle) -> Vec<O
     }
     flights.drift = found.iter().map(Option::is_some).collect();
     found.into_iter().map(|wind| wind.map(|wind| [wind.x, wind.y])).collect()
+}
+
+/// The wind that each flight shows, world, m/s: none at all where its drag tells that the air stands. `None` unless every one tells it.
+pub(super) fn airs(flights: &Prepared, vehicle: &Vehicle) -> Option<Vec<Vector3<f64>>> {
+    let settings = ExplainSettings::default();
+    flights.signals.par_iter().map(|signals| own_air(signals, vehicle, &settings)).collect()
+}
+
+/// Flights as they are seen with the difference of their winds from that of a model, world, m/s: with the model's wind, each then has its
+/// own.
+pub(super) fn beside_wind(flights: &Prepared, airs: &[Vector3<f64>], model_m_s: &Vector3<f64>) -> Prepared {
+    let each = flights.signals.iter().zip(airs);
+    Prepared {
+        recordings: vec![Recording::default(); flights.signals.len()],
+        signals: each.map(|(signals, air)| relative_to_air(signals, &(air - model_m_s))).collect(),
+        inputs: flights.inputs.clone(),
+        drift: vec![true; flights.signals.len()],
+    }
 }
 
 /// Each flight with what it has its own: payload, and what one of them alone has or lacks. Returns what each shows alone, where the flights

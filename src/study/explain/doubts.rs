@@ -4,13 +4,14 @@ use super::body::BodyParameter;
 use super::limited::FlightLimit;
 use super::result::ExplainStudy;
 use super::short::Short;
-use crate::diagnose::locate::Redness;
+use crate::diagnose::locate::{Quantity, Redness};
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{Named, Verdict};
 use crate::estimate::{Contradiction, Finding, FlightApart, NAMES, ThrustScale, stated};
 use crate::note::{About, Note};
 use crate::study::doubts::{TWO_VEHICLES, doubts};
+use crate::text::significant;
 use crate::vehicle::Guessed;
 
 /// Largest ratio of an estimated mass to that of the vehicle file, or its inverse, without a note: a battery or a small payload.
@@ -90,14 +91,16 @@ impl ExplainStudy {
         let aperiodic = &self.explanation.aperiodic;
         let mut told: Vec<String> = aperiodic.wandering().map(Redness::words).collect();
         told.extend(aperiodic.drifting().map(|trend| {
-            format!(
-                "a horizontal force that changes by {:.1} % of the weight over the flight",
-                100.0 * trend.relative
-            )
+            let what = match trend.of {
+                Quantity::Lift => "a thrust that becomes less by",
+                _ => "a horizontal force that changes by",
+            };
+            format!("{what} {:.1} % of the weight over the flight", 100.0 * trend.relative)
         }));
         if !told.is_empty() {
             let text = format!(
-                "something is left that does not repeat: {}. Wind and real rotors make as much, so it does not count as missing",
+                "something is left that does not repeat: {}. Wind, a battery that empties and real rotors make as much, so it does not \
+                 count as missing",
                 told.join(", ")
             );
             self.notes.push(Note::remark(About::Estimate, text));
@@ -149,4 +152,15 @@ impl ExplainStudy {
             |limit: &FlightLimit| self.short.is_some() && matches!(limit, FlightLimit::FewPeriods { .. });
         self.given.limited.iter().copied().filter(|limit| !is_told(limit)).chain(more).collect()
     }
+}
+
+/// The voltage at which the stated thrust is taken to hold, where the thrust falls with the battery.
+pub(in crate::study) fn of_voltage(named: &Named) -> Option<Note> {
+    let full_v = named.get("full_voltage")?.value;
+    let text = format!(
+        "the thrust falls with the battery. The mass rests on the stated thrust at {} V, the highest voltage that was used. If the stated thrust \
+         is that of another voltage, the mass is wrong by the same factor as the thrust (`mavid explain` gives the power of the voltage)",
+        significant(full_v, 3)
+    );
+    Some(Note::remark(About::Estimate, text))
 }

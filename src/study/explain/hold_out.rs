@@ -144,7 +144,8 @@ impl ExplainStudy {
         let same_flight = matches!(self.shown_on, ValidationData::HeldBack { .. });
         let terms = &self.explanation.search.after.base.effects;
         if self.other_vehicle().is_some()
-            || !same_flight && terms.iter().any(|term| term.signature.role.of_the_day)
+            || !(same_flight || self.given.own_wind)
+                && terms.iter().any(|term| term.signature.role.of_the_day)
         {
             return None;
         }
@@ -253,8 +254,8 @@ impl ExplainStudy {
 
     fn evaluate_on(&mut self, flights: &[HeldOut], shown_on: ValidationData) -> Result<(), HoldoutError> {
         let same_flight = matches!(shown_on, ValidationData::HeldBack { .. });
-        let own_mass = self.given.own_load;
-        let settings = HoldoutSettings { same_flight, own_mass, ..HoldoutSettings::default() };
+        let (own_mass, own_wind) = (self.given.own_load, self.given.own_wind);
+        let settings = HoldoutSettings { same_flight, own_mass, own_wind, ..HoldoutSettings::default() };
         let shown = on_holdout(self.explained(), flights, &self.given.vehicle, &settings)?;
         self.take_prediction(shown, shown_on);
         self.measure_worth(flights, false, &settings);

@@ -1,6 +1,7 @@
 //! What flights cannot tell by the way they were flown. It is said before anything else.
 
 use crate::diagnose::holdout::flown_period_s;
+use crate::note::{About, Note};
 use crate::signals::{Quality, Signals, Usable};
 use crate::stats::quantile;
 use crate::vehicle::Vehicle;
@@ -52,6 +53,12 @@ pub enum FlightLimit {
 }
 
 impl FlightLimit {
+    /// A warning.
+    #[must_use]
+    pub fn note(&self) -> Note {
+        Note::warning(About::Estimate, format!("limited: {}", self.words()))
+    }
+
     /// A clause.
     #[must_use]
     pub fn words(&self) -> String {
@@ -77,7 +84,7 @@ impl FlightLimit {
 }
 
 /// Why flights tell little: each of them has such a reason, and those of the longest one are told. None where one flight has none.
-pub(super) fn limits_of_flights(flights: &[Signals], vehicle: &Vehicle) -> Vec<FlightLimit> {
+pub(in crate::study) fn limits_of_flights(flights: &[Signals], vehicle: &Vehicle) -> Vec<FlightLimit> {
     let each: Vec<Vec<FlightLimit>> = flights.iter().map(|signals| limits_of(signals, vehicle)).collect();
     if each.iter().any(Vec::is_empty) {
         return Vec::new();

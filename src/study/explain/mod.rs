@@ -32,10 +32,12 @@ mod worth_measured;
 
 pub use along_flights::AlongFlights;
 pub use body::{BodyParameter, Estimate};
+pub(super) use doubts::of_voltage;
 pub use evidence::{Tried, TriedAs};
 pub use figures::{AxisResidual, Figures, Followed, Harmonics, Heat, LeftAlongTime, RecordedAndSimulated};
 pub use left_out_force::LeftOutForce;
 pub use limited::FlightLimit;
+pub(super) use limited::limits_of_flights;
 pub use located::{AxisShare, Field, Located, StateShare};
 pub use next_flight::stored_trajectory;
 pub(super) use not_determined::{BY_CONTROL, KEPT, kept_about_z};

@@ -1,6 +1,7 @@
 //! Flights that are ready: held out, explained, shown, and explained again where that is called for.
 
-use super::along::{with_own, with_own_winds, without_gust_of_none};
+use super::along::{airs, beside_wind, with_own, with_own_winds, without_gust_of_none};
+use super::doubts::of_voltage;
 use super::hold_out::hold_back;
 use super::limited::{FlightLimit, limits_of_flights};
 use super::result::{ExplainStudy, Given};
@@ -20,6 +21,8 @@ use crate::signals::{Signals, airborne_voltage_v, hover_command};
 use crate::study::flights::{Prepared, names};
 use crate::study::{Progress, Stage, StudyError};
 use crate::vehicle::Vehicle;
+use nalgebra::Vector3;
+use std::cell::OnceCell;
 use std::path::PathBuf;
 
 /// Why a whole flight is explained.
@@ -66,9 +69,17 @@ pub(in crate::study) fn explain_prepared(
     let is_short = matches!(shown_on, ValidationData::Nothing { .. });
     let usable_s = flights.signals.iter().map(|signals| signals.quality.usable.usable_s).sum();
     let short = is_short.then_some(Short { usable_s, unsure: Vec::new() });
-    let own_load = false;
-    let mut task =
-        Task { asked, winds_m_s: &winds_m_s, flown_hover, limited, alone: &alone, short, own_load, progress };
+    let mut task = Task {
+        asked,
+        winds_m_s: &winds_m_s,
+        flown_hover,
+        limited,
+        alone: &alone,
+        short,
+        own_load: false,
+        held_airs: OnceCell::new(),
+        progress,
+    };
     progress.stage(Stage::Explaining);
     let (mut study, refused) = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
     // payload and wind of another day make no other vehicle; the names stay as they were found
@@ -81,7 +92,9 @@ pub(in crate::study) fn explain_prepared(
         let own_winds = if day { with_own_winds(held, asked.vehicle) } else { Vec::new() };
         progress.stage(Stage::Predicting);
         let ExplainStudy { given, explanation, .. } = &study;
-        let given = task.given(flights, given.settings.clone());
+        let in_own_wind = task.in_own_wind(held, explanation);
+        let (held, own_wind) = (in_own_wind.as_ref().unwrap_or(held), in_own_wind.is_some());
+        let given = Given { own_wind, ..task.given(flights, given.settings.clone()) };
         let own = task.evaluated(given, explanation.clone(), flights, (held, None, shown_on));
         if own.predicts() && own.other_vehicle().is_none() {
             study = own;
@@ -90,6 +103,9 @@ pub(in crate::study) fn explain_prepared(
     }
     study.notes.extend(refused);
     study.tell_winds(&held.inputs, &held_winds_m_s);
+    if let Some(airs) = task.held_airs.get().and_then(Option::as_ref).filter(|_| study.given.own_wind) {
+        study.tell_winds(&held.inputs, &airs.iter().map(|air| Some([air.x, air.y])).collect::<Vec<_>>());
+    }
     // what changed in the part held back, or shortly before it, is nowhere in the part explained
     match whole.filter(|_| back.is_some() && changes_late(&study)) {
         Some(whole) => task.explained_again(study, flights, whole),
@@ -112,6 +128,8 @@ struct Task<'a> {
     short: Option<Short>,
     /// hold-outs with a mass of their own
     own_load: bool,
+    /// wind of each hold-out, world, m/s, once it was asked for; `None` where they do not tell
+    held_airs: OnceCell<Option<Vec<Vector3<f64>>>>,
     progress: &'a dyn Progress,
 }
 
@@ -139,7 +157,10 @@ impl Task<'_> {
                 explanation = explanation.of_unsure_cause();
             }
             self.progress.stage(Stage::Predicting);
-            let given = self.given(flights, settings.clone());
+            let in_own_wind = self.in_own_wind(held, &explanation);
+            let own_wind = in_own_wind.is_some();
+            let held = in_own_wind.as_ref().unwrap_or(held);
+            let given = Given { own_wind, ..self.given(flights, settings.clone()) };
             let study = self.evaluated(given, explanation, flights, (held, back, shown_on.clone()));
             let mut study = self.with_own_mass(study, flights, (held, &shown_on));
             if let Some(refuted) = study.refuted_by_holdout() {
@@ -194,9 +215,20 @@ impl Task<'_> {
         if !begins_so || !matches!(shown_on, ValidationData::Flights(_)) {
             return study;
         }
-        let given = Given { own_load: true, ..self.given(flights, study.given.settings.clone()) };
+        let (own_wind, settings) = (study.given.own_wind, study.given.settings.clone());
+        let given = Given { own_load: true, own_wind, ..self.given(flights, settings) };
         let own = self.evaluated(given, study.explanation.clone(), flights, (held, None, shown_on.clone()));
         if own.predicts() && own.other_vehicle().is_none() { own } else { study }
+    }
+
+    /// The hold-outs with their own wind, where the model has that of the one flight that was explained, and they tell theirs.
+    fn in_own_wind(&self, held: &Prepared, explanation: &Explanation) -> Option<Prepared> {
+        let base = &explanation.search.after.base;
+        if held.is_empty() || !base.effects.iter().any(|term| term.signature.role.of_the_day) {
+            return None;
+        }
+        let airs = self.held_airs.get_or_init(|| airs(held, self.asked.vehicle)).as_ref()?;
+        Some(beside_wind(held, airs, &base.wind_m_s()))
     }
 
     fn explanation(&self, flights: &Prepared, settings: &ExplainSettings) -> Result<Explanation, StudyError> {
@@ -239,6 +271,7 @@ impl Task<'_> {
             settings,
             transient_s: self.asked.transient_s,
             own_load: self.own_load,
+            own_wind: false,
         }
     }
 
@@ -275,6 +308,7 @@ impl Task<'_> {
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
         study.tell_mass();
+        study.notes.extend(study.explanation.named.iter().filter_map(of_voltage).collect::<Vec<_>>());
         study.notes.extend(study.explanation.torque_law.iter().map(TorqueLaw::note));
         study.notes.extend(study.gyroscopic().iter().map(GyroscopicShare::note));
         study.tell_wandering();

@@ -52,6 +52,8 @@ pub struct Given {
     pub transient_s: f64,
     /// the hold-outs have a mass of their own, by their beginning
     pub own_load: bool,
+    /// the hold-outs are seen with their own wind in place of that of the flight explained
+    pub own_wind: bool,
 }
 
 /// The whole answer.

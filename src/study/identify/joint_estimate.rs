@@ -1,15 +1,14 @@
 //! Mass and inertia by the estimator of `explain`, together with the effects that the flights show.
 
-use crate::diagnose::{
-    ExplainSettings, Explanation, GyroscopicShare, Named, TorqueLaw, Verdict, brief, explain,
-};
+use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, TorqueLaw, Verdict, brief, explain};
 use crate::estimate::{Finding, MethodResult, Nominal, Recommendation, THETA, moved_by_guessed_curve};
-use crate::note::{About, Note};
+use crate::note::Note;
 use crate::signals::Signals;
-use crate::study::explain::{Asked, BY_CONTROL, KEPT, explain_prepared, kept_about_z};
+use crate::study::explain::{
+    Asked, BY_CONTROL, FlightLimit, KEPT, explain_prepared, kept_about_z, limits_of_flights, of_voltage,
+};
 use crate::study::flights::Prepared;
 use crate::study::{Progress, StudyError};
-use crate::text::significant;
 use crate::vehicle::Vehicle;
 
 /// The recommended estimate, and what was estimated beside mass and inertia.
@@ -69,6 +68,8 @@ pub(super) struct Found {
     pub(super) explanation: Explanation,
     /// of the part that `explain` does not hold back: the whole flight does not show all that this part shows
     pub(super) of_part: bool,
+    /// why the flights tell little, by the way they were flown
+    pub(super) limited: Vec<FlightLimit>,
 }
 
 impl Found {
@@ -77,7 +78,8 @@ impl Found {
         let explanation =
             explain(flights, vehicle, &ExplainSettings::default()).map_err(|why| why.to_string())?;
         let explanation = explanation.keeping_about_z(vehicle);
-        Ok(Self { flights: flights.to_vec(), explanation, of_part: false })
+        let limited = limits_of_flights(flights, vehicle);
+        Ok(Self { flights: flights.to_vec(), explanation, of_part: false, limited })
     }
 }
 
@@ -95,13 +97,14 @@ pub(super) fn found_beside(
         other => other.to_string(),
     };
     let whole = flights.signals.clone();
+    let limited = limits_of_flights(&whole, asked.vehicle);
     let study = explain_prepared(&mut flights, &mut Prepared::default(), asked, progress).map_err(why)?;
     let usable = |signals: &[Signals]| -> usize {
         signals.iter().flat_map(|one| one.usable.iter()).filter(|usable| **usable).count()
     };
     if usable(&flights.signals) == usable(&whole) {
         let explanation = study.explanation.keeping_about_z(asked.vehicle);
-        return Ok(Found { flights: flights.signals, explanation, of_part: false });
+        return Ok(Found { flights: flights.signals, explanation, of_part: false, limited });
     }
     let of_part = &study.explanation;
     let (unexplained, terms) = (of_part.verdict == Verdict::Unexplained, &of_part.search.after.base.effects);
@@ -120,9 +123,14 @@ pub(super) fn found_beside(
     let is_lost = |id: &str| has(of_part, id) && !has(&explanation, id);
     if !unexplained && of_part.named.iter().any(|named| is_lost(named.id)) {
         let explanation = study.explanation.keeping_about_z(asked.vehicle);
-        return Ok(Found { flights: flights.signals, explanation, of_part: true });
+        return Ok(Found { flights: flights.signals, explanation, of_part: true, limited });
     }
-    Ok(Found { flights: whole, explanation: explanation.keeping_about_z(asked.vehicle), of_part: false })
+    Ok(Found {
+        flights: whole,
+        explanation: explanation.keeping_about_z(asked.vehicle),
+        of_part: false,
+        limited,
+    })
 }
 
 /// Mass and inertia of the final fit.
@@ -153,23 +161,17 @@ pub(super) fn joint_estimate(of: &Found, vehicle: &Vehicle) -> EstimateWithEffec
         torque_per_thrust_m: fitted.base.vehicle.propulsion.torque_per_thrust_m,
         about_z_kg_m2: torque_law.map(|_| fitted.base.vehicle.body.inertia_kg_m2[(2, 2)]),
         about_z: torque_law.map(|_| kept_about_z(&fitted.base.vehicle, vehicle)),
-        notes: found.named.iter().filter_map(of_voltage).collect(),
+        notes: of
+            .limited
+            .iter()
+            .map(FlightLimit::note)
+            .chain(found.named.iter().filter_map(of_voltage))
+            .collect(),
     }
 }
 
-/// The voltage at which the stated thrust is taken to hold, where the thrust falls with the battery.
-fn of_voltage(named: &Named) -> Option<Note> {
-    let full_v = named.get("full_voltage")?.value;
-    let text = format!(
-        "the thrust falls with the battery. The mass rests on the stated thrust at {} V, the highest voltage that was used. If the stated thrust \
-         is that of another voltage, the mass is wrong by the same factor as the thrust (`mavid explain` gives the power of the voltage)",
-        significant(full_v, 3)
-    );
-    Some(Note::remark(About::Estimate, text))
-}
-
 /// The reason for the user.
-fn why(Found { flights, explanation: found, of_part }: &Found, vehicle: &Vehicle) -> String {
+fn why(Found { flights, explanation: found, of_part, .. }: &Found, vehicle: &Vehicle) -> String {
     let names: Vec<String> = found.named.iter().map(|named| brief(named, vehicle, false)).collect();
     let usable = |one: &Signals| one.usable.iter().filter(|usable| **usable).count() as f64 * one.grid.step_s;
     let seconds: f64 = flights.iter().map(usable).sum();

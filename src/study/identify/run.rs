@@ -1,11 +1,12 @@
 //! Opens, conditions and identifies; with effects where they are asked for.
 
-use super::joint_estimate::found_beside;
+use super::joint_estimate::{Found, found_beside};
 use super::request::IdentifyRequest;
 use super::result::{IdentifyStudy, WithEffects};
 use crate::config::effects_of;
 use crate::diagnose::ExplainSettings;
 use crate::diagnose::joint::{RequestedEffects, identify_jointly};
+use crate::note::{About, Note};
 use crate::signals::{ConditionSettings, Signals, other_settings};
 use crate::study::explain::{Asked, ExplainRequest};
 use crate::study::flight::Flight;
@@ -67,6 +68,7 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     let Prepared { recordings, mut signals, inputs, .. } =
         prepare(logs, vehicle, &request.conditioning()).map_err(or_unflown)?;
     signals.iter_mut().for_each(|signals| signals.quality.notes.extend(contradiction.clone()));
+    tell_contradictions(&mut signals, &found);
     let apart = other_settings(&recordings);
     apart.iter().for_each(|note| progress.note(note));
     notes.extend(apart);
@@ -80,6 +82,20 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
         None => study,
     };
     Ok(IdentifyStudy { with, notes, ..study })
+}
+
+/// What contradicts the vehicle file may show only where the beginning of the flights is used too, as it is beside effects.
+fn tell_contradictions(signals: &mut [Signals], found: &Result<Found, String>) {
+    let seen = found.iter().flat_map(|found| &found.flights);
+    for (signals, seen) in signals.iter_mut().zip(seen) {
+        let notes = &mut signals.quality.notes;
+        let is_new = |note: &&Note| note.about == About::Contradiction && !notes.contains(note);
+        let more: Vec<Note> = seen.quality.notes.iter().filter(is_new).cloned().collect();
+        // one that is told with other figures is told
+        if !notes.iter().any(|note| note.about == About::Contradiction) {
+            notes.extend(more);
+        }
+    }
 }
 
 /// The flights that can be used. The first reason where a log has none.
