@@ -24,6 +24,8 @@ const TURNS_RAD_S: f64 = 1.0;
 const TYPICAL: (usize, usize) = (1, 2);
 /// Shortest period of a trajectory for identification, s.
 const PERIOD_S: f64 = 8.0;
+/// Shortest period of a trajectory for identification that repeats, s.
+const SHORTEST_S: f64 = 6.0;
 /// Fewest periods: what is seen once is not told from what happened once.
 const PERIODS: f64 = 2.0;
 /// Share of the flight that may be saturated.
@@ -132,8 +134,8 @@ fn few_periods(signals: &Signals, used: &[usize], hover_m_s: f64) -> Option<Flig
     let speeds: Vec<f64> = used.iter().map(|&index| velocity[index].norm()).collect();
     let least = hover_m_s.max(MOVES * at(speeds.clone(), (19, 20))?);
     let moving_s = speeds.iter().filter(|speed| **speed > least).count() as f64 * signals.grid.step_s;
-    // a shorter one is that of a harmonic, or of a turn
-    let period_s = flown_period_s(signals, used).filter(|period_s| *period_s >= PERIOD_S);
+    // a shorter one may be that of a harmonic, or of a turn
+    let period_s = flown_period_s(signals, used).map(|period_s| period_s.max(SHORTEST_S));
     let is_few = moving_s < PERIODS * period_s.unwrap_or(PERIOD_S);
     is_few.then_some(FlightLimit::FewPeriods { moving_s, period_s })
 }

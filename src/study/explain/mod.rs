@@ -2,6 +2,7 @@
 
 mod along;
 mod along_flights;
+mod another_day;
 mod body;
 mod doubts;
 mod evidence;

@@ -1,6 +1,6 @@
 //! Flights that are ready: held out, explained, shown, and explained again where that is called for.
 
-use super::along::{airs, beside_wind, with_own, with_own_winds, without_gust_of_none};
+use super::along::{with_own, with_own_winds, without_gust_of_none};
 use super::doubts::of_voltage;
 use super::hold_out::hold_back;
 use super::limited::{FlightLimit, limits_of_flights};
@@ -92,8 +92,9 @@ pub(in crate::study) fn explain_prepared(
         let own_winds = if day { with_own_winds(held, asked.vehicle) } else { Vec::new() };
         progress.stage(Stage::Predicting);
         let ExplainStudy { given, explanation, .. } = &study;
-        let in_own_wind = task.in_own_wind(held, explanation);
-        let (held, own_wind) = (in_own_wind.as_ref().unwrap_or(held), in_own_wind.is_some());
+        let own_wind = given.own_wind;
+        let in_own_wind = own_wind.then(|| task.in_own_wind(held, explanation)).flatten();
+        let held = in_own_wind.as_ref().unwrap_or(held);
         let given = Given { own_wind, ..task.given(flights, given.settings.clone()) };
         let own = task.evaluated(given, explanation.clone(), flights, (held, None, shown_on));
         if own.predicts() && own.other_vehicle().is_none() {
@@ -114,8 +115,8 @@ pub(in crate::study) fn explain_prepared(
 }
 
 /// What every attempt has in common.
-struct Task<'a> {
-    asked: Asked<'a>,
+pub(super) struct Task<'a> {
+    pub(super) asked: Asked<'a>,
     /// of each flight, where they are several
     winds_m_s: &'a [Option<[f64; 2]>],
     /// command of the flown hover with its standard error, of the flights before any wind was taken out of them
@@ -129,7 +130,7 @@ struct Task<'a> {
     /// hold-outs with a mass of their own
     own_load: bool,
     /// wind of each hold-out, world, m/s, once it was asked for; `None` where they do not tell
-    held_airs: OnceCell<Option<Vec<Vector3<f64>>>>,
+    pub(super) held_airs: OnceCell<Option<Vec<Vector3<f64>>>>,
     progress: &'a dyn Progress,
 }
 
@@ -157,11 +158,10 @@ impl Task<'_> {
                 explanation = explanation.of_unsure_cause();
             }
             self.progress.stage(Stage::Predicting);
-            let in_own_wind = self.in_own_wind(held, &explanation);
-            let own_wind = in_own_wind.is_some();
-            let held = in_own_wind.as_ref().unwrap_or(held);
-            let given = Given { own_wind, ..self.given(flights, settings.clone()) };
+            let given = self.given(flights, settings.clone());
             let study = self.evaluated(given, explanation, flights, (held, back, shown_on.clone()));
+            let (study, in_own_wind) = self.with_own_wind(study, flights, (held, &shown_on));
+            let held = in_own_wind.as_ref().unwrap_or(held);
             let mut study = self.with_own_mass(study, flights, (held, &shown_on));
             if let Some(refuted) = study.refuted_by_holdout() {
                 let ExplainStudy { given, explanation, .. } = study;
@@ -203,34 +203,6 @@ impl Task<'_> {
         }
     }
 
-    /// The same with the mass that a hold-out begins with, where that is another one: what is named is judged by what it does there, and not
-    /// by a payload.
-    fn with_own_mass(
-        &self,
-        study: ExplainStudy,
-        flights: &Prepared,
-        (held, shown_on): (&Prepared, &ValidationData),
-    ) -> ExplainStudy {
-        let begins_so = study.shown.as_ref().is_some_and(|shown| shown.other_mass);
-        if !begins_so || !matches!(shown_on, ValidationData::Flights(_)) {
-            return study;
-        }
-        let (own_wind, settings) = (study.given.own_wind, study.given.settings.clone());
-        let given = Given { own_load: true, own_wind, ..self.given(flights, settings) };
-        let own = self.evaluated(given, study.explanation.clone(), flights, (held, None, shown_on.clone()));
-        if own.predicts() && own.other_vehicle().is_none() { own } else { study }
-    }
-
-    /// The hold-outs with their own wind, where the model has that of the one flight that was explained, and they tell theirs.
-    fn in_own_wind(&self, held: &Prepared, explanation: &Explanation) -> Option<Prepared> {
-        let base = &explanation.search.after.base;
-        if held.is_empty() || !base.effects.iter().any(|term| term.signature.role.of_the_day) {
-            return None;
-        }
-        let airs = self.held_airs.get_or_init(|| airs(held, self.asked.vehicle)).as_ref()?;
-        Some(beside_wind(held, airs, &base.wind_m_s()))
-    }
-
     fn explanation(&self, flights: &Prepared, settings: &ExplainSettings) -> Result<Explanation, StudyError> {
         let tell = |done, of| self.progress.about(done, of);
         let found = crate::diagnose::explain_watched(&flights.signals, self.asked.vehicle, settings, &tell)
@@ -251,7 +223,7 @@ impl Task<'_> {
         }
     }
 
-    fn given(&self, flights: &Prepared, settings: ExplainSettings) -> Given {
+    pub(super) fn given(&self, flights: &Prepared, settings: ExplainSettings) -> Given {
         // what a flight has its own is known, and no doubt
         let own = |flight: usize| flights.signals.get(flight).is_some_and(|signals| !signals.own.is_none());
         let mut contradicting = contradicting_flights(&flights.signals, self.asked.vehicle);
@@ -277,7 +249,7 @@ impl Task<'_> {
 
     /// An explanation with what it does on the flights explained and on those held out. An empirical force with which these are predicted
     /// worse is left out.
-    fn evaluated(
+    pub(super) fn evaluated(
         &self,
         given: Given,
         explanation: Explanation,
