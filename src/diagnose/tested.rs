@@ -67,6 +67,12 @@ pub struct Search {
 }
 
 impl Search {
+    /// Whether forces were estimated along the reconstructed flight path, and not with the autopilot's velocity.
+    #[must_use]
+    pub fn is_by_path(&self) -> bool {
+        !self.paths.is_empty()
+    }
+
     /// Of a model that was not searched for.
     pub(super) fn of(after: Fitted, latency: LatencyFinding) -> Self {
         Self {

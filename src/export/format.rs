@@ -33,7 +33,8 @@ pub fn export(
     identified: Option<&Table>,
     format: Format,
 ) -> Result<Exported, ExportError> {
-    let source = Source::new(vehicle, effects, identified)?;
+    let mut source = Source::new(vehicle, effects, identified)?;
+    source.tell_unsure(identified);
     match format {
         Format::Px4Sih => px4::write(source),
         Format::ArdupilotSitl => ardupilot::write(source),

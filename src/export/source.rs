@@ -7,7 +7,7 @@ use crate::diagnose::called;
 use crate::physics::effects::by_id;
 use crate::physics::{ActiveEffect, Airframe, Parameter};
 use crate::text::compact;
-use crate::vehicle::{ThrustLaw, Vehicle};
+use crate::vehicle::{Guess, ThrustLaw, Vehicle};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use toml::{Table, Value};
@@ -66,6 +66,24 @@ impl<'a> Source<'a> {
             left_out: Vec::new(),
             callback: None,
         })
+    }
+
+    /// Tells what of the file no flight determined, and which guesses it rests on.
+    pub(super) fn tell_unsure(&mut self, identified: Option<&Table>) {
+        let open = |value: &Value| value.get("status").and_then(Value::as_str) == Some("not_determined");
+        let named = identified.into_iter().flatten().filter(|(_, value)| open(value));
+        let named: Vec<&str> = named.map(|(name, _)| name.as_str()).collect();
+        if !named.is_empty() {
+            self.note(format!(
+                "not determined by the flights, so from the vehicle file or its guesses here as in the model: {}",
+                named.join(", ")
+            ));
+        }
+        let guess = |guess: &Guess| format!("{} +- {:.0} %", guess.of.words(), 100.0 * guess.relative);
+        let guesses: Vec<String> = self.vehicle.guesses.iter().map(guess).collect();
+        if !guesses.is_empty() {
+            self.note(format!("rests on guesses: {}", guesses.join(", ")));
+        }
     }
 
     /// The simulator turns a body without its gyroscopic torque.

@@ -176,12 +176,9 @@ impl Judge<'_> {
         }
     }
 
-    /// Where the scale of forces moved by enough to be told, if a parameter goes with it: between the groups, or along all flights.
+    /// Where the scale of forces moved by enough to be told: between the groups, or along all flights.
     #[must_use]
     pub fn scale(&self, groups: Option<&Groups>) -> Option<ScaleMoved> {
-        if !self.tracks.iter().any(|track| follows_force(track.unit)) {
-            return None;
-        }
         let moved = match groups {
             Some(groups) => ScaleMoved::between(self.balance, groups),
             None => ScaleMoved::along(self.balance),
