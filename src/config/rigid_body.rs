@@ -7,11 +7,11 @@ use super::faults::Faults;
 use super::vehicle_file::{BodyTable, InertiaTable};
 use crate::vehicle::RigidBody;
 
-/// The body of a vehicle file, read or to be written.
 /// Largest principal moment over the sum of the other two, from which on no body is meant. Measured moments of flat vehicles exceed the
 /// sum by their errors.
-const MOST_OF_OTHERS: f64 = 1.25;
+const MOST_OF_OTHERS: f64 = 1.5;
 
+/// The body of a vehicle file, read or to be written.
 pub(super) fn rigid_body(check: &Check<'_>, table: &BodyTable, faults: &mut Faults) -> RigidBody {
     let mass_kg = faults.number(check.positive("body.mass", table.mass));
     let center = check.finite_vector("body.center_of_mass", table.center_of_mass);

@@ -89,9 +89,6 @@ pub fn parse_vehicle(text: &str, origin: &str) -> Result<LoadedVehicle, ConfigEr
         },
         guesses: guesses(&check, file.guesses, &mut faults),
     };
-    if let Some((expected, came)) = vehicle.impossible_inertia().filter(|_| faults.count() == 0) {
-        faults.check(Err(check.refuse("body.inertia", expected, came)));
-    }
     let sound = (faults.count() == 0).then_some(&vehicle);
     effects::checked(&check, &file.effects, sound, &mut faults);
     faults.refuse(origin)?;

@@ -54,11 +54,7 @@ pub fn vehicle_to_toml(vehicle: &Vehicle) -> Result<String, ConfigError> {
         effects: Vec::new(),
     };
     let mut faults = Faults::default();
-    let check = Check { origin: WRITTEN };
-    rigid_body(&check, &file.body, &mut faults);
-    if let Some((expected, came)) = vehicle.impossible_inertia() {
-        faults.check(Err(check.refuse("body.inertia", expected, came)));
-    }
+    rigid_body(&Check { origin: WRITTEN }, &file.body, &mut faults);
     faults.refuse(WRITTEN)?;
     Ok(toml::to_string(&file)?)
 }

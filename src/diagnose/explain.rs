@@ -252,8 +252,9 @@ fn judge(traces: &[Trace], vehicle: &Vehicle, found: Search, beyond: Beyond) -> 
     let verdict = match (named.is_empty(), lacking) {
         (true, false) => Verdict::NothingMissing,
         (true, true) => Verdict::Unexplained,
+        (false, _) if beaten => Verdict::Unexplained,
         (false, false) => Verdict::Explained,
-        (false, true) if beaten || excess > explained => Verdict::Unexplained,
+        (false, true) if excess > explained => Verdict::Unexplained,
         (false, true) => Verdict::PartlyExplained,
     };
     let closest = if verdict == Verdict::Unexplained { std::mem::take(&mut named) } else { Vec::new() };

@@ -3,6 +3,7 @@
 use super::base::{Base, follows_force, turns_about_z};
 use super::channels::{Channels, Nuisance};
 use super::fit::Fitted;
+use super::nuisances::BIAS_STD_M_S2;
 use super::signature::EffectTerm;
 use crate::estimate::INERTIA_ENTRIES;
 use crate::physics::Parameter;
@@ -96,13 +97,14 @@ fn together(fitted: &Fitted, axis: usize, place: usize) -> f64 {
 /// against its being there. Zero of what is no amount; `column` is that of the value among the coefficients.
 pub(super) fn of_law(fitted: &Fitted, term: &EffectTerm, (slot, column): (usize, usize)) -> f64 {
     let Some(parameter) = term.parameter(slot).filter(|_| term.is_amount(slot)) else { return 0.0 };
-    let form = FORM * together(fitted, slot, column - fitted.rows.nuisances.len());
     let scale = if follows_force(parameter.unit) { of_scale(&fitted.base) } else { 0.0 };
     let signature = term.signature;
     let is_along_z = signature.is_drag() && slot == 2 || signature.role.axial_part_of.is_some();
     let sparse = if is_along_z && !fitted.rows.compares_torques { SPARSE } else { 0.0 };
     let guess = guessed(&fitted.base.vehicle, parameter);
-    form.hypot(scale).hypot(guess).hypot(sparse) * term.from_nothing(slot)
+    // what the whole drag is wrong by, one of its laws takes
+    let form = FORM.hypot(sparse) * together(fitted, slot, column - fitted.rows.nuisances.len());
+    form.hypot(scale).hypot(guess) * term.from_nothing(slot)
 }
 
 /// Adds the errors of the laws to those of a fit's mass, moments of inertia and sizes of effects.
@@ -110,6 +112,9 @@ pub(super) fn add_floors(fitted: &mut Fitted) {
     add_slope(fitted);
     let body = &fitted.base.vehicle.body;
     let scale = of_scale(&fitted.base);
+    // a bias that is not estimated is as unsure as one is
+    let of_bias =
+        if fitted.base.is_unbiased { BIAS_STD_M_S2 / fitted.base.vehicle.gravity_m_s2 } else { 0.0 };
     let mut index = fitted.rows.nuisances.len();
     for term in &fitted.base.effects {
         for &slot in &term.free {
@@ -121,7 +126,7 @@ pub(super) fn add_floors(fitted: &mut Fitted) {
     }
     for (index, column) in fitted.rows.nuisances.iter().enumerate() {
         let floor = match column.nuisance {
-            Nuisance::Mass => LAW_OF_THRUST.hypot(scale) * body.mass_kg,
+            Nuisance::Mass => LAW_OF_THRUST.hypot(scale).hypot(of_bias) * body.mass_kg,
             Nuisance::Inertia(0) => LAW_OF_TORQUE.hypot(scale) * body.inertia_kg_m2[(0, 0)],
             Nuisance::Inertia(3) => LAW_OF_TORQUE.hypot(scale) * body.inertia_kg_m2[(1, 1)],
             Nuisance::Inertia(5) => LAW_OF_TORQUE.hypot(scale) * body.inertia_kg_m2[(2, 2)],

@@ -191,8 +191,8 @@ pub(super) fn with_any_latency(flights: &[Trace], base: Base) -> Result<(Fitted,
     let mut allowed = base.clone();
     allowed.effects = look_alikes(flights);
     let (fitted, LatencyFinding { std_s, .. }) = with_latency(flights, allowed, Newton::Free)?;
-    let Base { vehicle, latency, .. } = fitted.base;
-    Ok((evaluate(flights, Base { vehicle, latency, ..base })?, std_s))
+    let Base { vehicle, latency, is_unbiased, .. } = fitted.base;
+    Ok((evaluate(flights, Base { vehicle, latency, is_unbiased, ..base })?, std_s))
 }
 
 /// The split into delay and lag, or the lag alone if it explains the flight far better.

@@ -25,7 +25,7 @@ const LATERAL_LATENCY_STD_S: f64 = 0.01;
 const LEVEL_STD_RAD: f64 = 0.01;
 /// Standard deviation of the prior of the accelerometer's bias if velocity does not determine it, m/s^2. It is the 20
 /// mg of data sheets (ICM-42688-P, table 2).
-const BIAS_STD_M_S2: f64 = 0.2;
+pub(super) const BIAS_STD_M_S2: f64 = 0.2;
 
 /// Standard deviation of the prior of the share of the gyroscopic torque that a simulator has, about that of a body. It has all or none.
 const GYROSCOPIC_STD: f64 = 1.0;

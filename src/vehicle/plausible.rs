@@ -21,22 +21,7 @@ const COAXIAL: f64 = 0.2;
 /// Height of a hub over its distance from the centre: arms that are tilted by 35 degrees.
 const HEIGHT_OVER_ARM: f64 = 0.7;
 
-/// Radii of gyration beyond which no vehicle is meant: three times as far off as what is hardly meant.
-const NO_GYRATION: (f64, f64) = (GYRATION.0 / 3.0, 3.0 * GYRATION.1);
-
 impl Vehicle {
-    /// What was expected of the inertia, and what came, where no vehicle of this mass and size has it.
-    #[must_use]
-    pub fn impossible_inertia(&self) -> Option<(String, String)> {
-        let share = odd_gyration(self, NO_GYRATION)?;
-        let (least, most) = NO_GYRATION;
-        let arm_m = self.size().arm_m;
-        Some((
-            format!("radii of gyration of {least:.2} to {most:.1} of the arms' {arm_m:.3} m"),
-            format!("one of {share:.3} of them (a wrong unit, or another vehicle's arms?)"),
-        ))
-    }
-
     /// What is possible but hardly meant, sentence by sentence.
     #[must_use]
     pub fn implausible(&self) -> Vec<String> {
@@ -66,18 +51,13 @@ fn body(vehicle: &Vehicle) -> Option<String> {
     })
 }
 
-/// The first radius of gyration over the distance of the rotors from the centre that is outside a range.
-fn odd_gyration(vehicle: &Vehicle, (least, most): (f64, f64)) -> Option<f64> {
+fn gyration(vehicle: &Vehicle) -> Option<String> {
     let arm_m = vehicle.size().arm_m;
     let moments = vehicle.body.inertia_kg_m2.symmetric_eigenvalues();
     let radius = |moment: f64| (moment / vehicle.body.mass_kg).max(0.0).sqrt() / arm_m;
-    moments.iter().map(|moment| radius(*moment)).find(|share| !(least..=most).contains(share))
-}
-
-fn gyration(vehicle: &Vehicle) -> Option<String> {
-    let arm_m = vehicle.size().arm_m;
     let (least, most) = GYRATION;
-    let share = odd_gyration(vehicle, GYRATION)?;
+    let is_odd = |share: &f64| !(least..=most).contains(share);
+    let share = moments.iter().map(|moment| radius(*moment)).find(is_odd)?;
     Some(format!(
         "body.inertia: a radius of gyration of {share:.2} of the arms' {arm_m:.3} m; expected {least} to {most}: a wrong unit, \
          or another vehicle's arms?"

@@ -14,7 +14,10 @@ use super::redness::{
     redness, scale,
 };
 use super::view::View;
-use crate::diagnose::materiality::{UNNAMED_OF_UNSURE_THRUST, UNNAMED_SIDEWAYS, UNNAMED_TORQUE};
+use crate::diagnose::materiality::{
+    UNNAMED_CHANGE_OF_WIND, UNNAMED_LOSS_OF_THRUST, UNNAMED_OF_UNSURE_THRUST, UNNAMED_SIDEWAYS,
+    UNNAMED_TORQUE,
+};
 use crate::stats::median;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -89,8 +92,11 @@ impl Aperiodic {
     pub fn drifting(&self) -> Option<&Trend> {
         let is_told = |trend: &&Trend| {
             let matters = trend.z > TREND_Z && trend.relative > least_unnamed(trend.of);
+            let is_by_wind =
+                matches!(trend.of, Quantity::World(_)) && trend.relative <= UNNAMED_CHANGE_OF_WIND;
             let is_less = trend.of == Quantity::Lift && trend.per_min < 0.0;
-            matters && !trend.certain && (is_less || matches!(trend.of, Quantity::World(_)))
+            let is_by_battery = is_less && trend.relative <= UNNAMED_LOSS_OF_THRUST;
+            matters && !trend.certain && (is_by_wind || is_by_battery)
         };
         self.trend.as_ref().filter(is_told)
     }

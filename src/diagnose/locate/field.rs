@@ -103,10 +103,12 @@ pub fn field_test(
     })?;
     let (where_m, extent_m, force_n) =
         bump(traces, after, (component, along), ranges[along]).unwrap_or((0.0, 0.0, 0.0));
+    // wind makes less than this outdoors, but what a place explains better than the names do speaks against them all the same
     let least = if component < 2 && are_outdoors(traces) { UNNAMED_WIND } else { UNNAMED_SIDEWAYS };
-    let certain = evidence.z > FIELD_Z
+    let share = force_n.abs() / after.weight_n();
+    let is_field = evidence.z > FIELD_Z
         && evidence.gain >= FIELD_GAIN
-        && force_n.abs() >= least * after.weight_n()
+        && share >= UNNAMED_SIDEWAYS
         && may_feel(after, &columns, &evidence)
         && all_along(
             after,
@@ -118,7 +120,7 @@ pub fn field_test(
                 wanders_s: wanders_s(redness, component),
             },
         );
-    let energy_alone = if certain { taken(before, after, &columns) } else { evidence.energy };
+    let energy_alone = if is_field { taken(before, after, &columns) } else { evidence.energy };
     Some(FieldTest {
         gain: evidence.gain,
         z: evidence.z,
@@ -130,8 +132,8 @@ pub fn field_test(
         force_n,
         energy: evidence.energy,
         energy_alone,
-        certain,
-        beats_named: certain && energy_alone > named_energy,
+        certain: is_field && share >= least,
+        beats_named: is_field && energy_alone > named_energy,
         uneven: uneven(traces, after),
     })
 }

@@ -51,22 +51,15 @@ fn recorded_caption(spans_s: &[[f64; 2]]) -> String {
     if spans_s.is_empty() { RECORDED.to_owned() } else { format!("{RECORDED} {SHADED}") }
 }
 
-/// Slope of the dots over that of the line from which on it is told why they differ. Set by judgement: it is seen.
-const FLATTER: f64 = 0.9;
-
 /// That the dots are flatter than the line, as a sentence behind a space; empty where they are not, or where the size is from the same data.
 fn flatter(study: &ExplainStudy, of: &Portrait) -> String {
-    let bins = || of.recorded.iter().zip(&of.model);
-    let along = bins().map(|(recorded, model)| recorded.mean * model.mean).sum::<f64>();
-    let slope = along / bins().map(|(_, model)| model.mean.powi(2)).sum::<f64>();
-    if !(study.explanation.search.is_by_path() && of.channel < 3 && slope < FLATTER) {
-        return String::new();
-    }
-    format!(
-        " The dots have {} of the line's slope: they are drawn over the autopilot's own velocity, whose errors flatten them. The size is from \
-         the flight path as it was reconstructed.",
-        significant(slope, 2)
-    )
+    study.flatter(of).map_or_else(String::new, |slope| {
+        format!(
+            " The dots have {} of the line's slope: they are drawn over the autopilot's own velocity, whose errors flatten them. The size is \
+             from the flight path as it was reconstructed.",
+            significant(slope, 2)
+        )
+    })
 }
 
 fn portrait_caption(study: &ExplainStudy, of: &Portrait) -> String {

@@ -51,7 +51,11 @@ impl Judge<'_> {
                     add_rivals(&mut wide.change, &own.change);
                     out.push(wide);
                 }
-                _ if is_step(&own.change) && (own.change.has_name() || is_mixed) => out.push(own),
+                _ if is_step(&own.change)
+                    && (own.change.has_name() || is_mixed && has_rivals(&step.change)) =>
+                {
+                    out.push(own);
+                }
                 _ => out.push(step),
             }
             alike = vec![place + 1];
@@ -130,6 +134,11 @@ impl Judge<'_> {
         }
         found
     }
+}
+
+/// Whether something else would look the same.
+fn has_rivals(change: &Compared) -> bool {
+    change.changes.iter().any(|change| !change.rivals.is_empty())
 }
 
 /// What other flights before say of the balance is another explanation of the same.

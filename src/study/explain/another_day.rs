@@ -23,7 +23,11 @@ impl Task<'_> {
         let Some(seen) = self.in_own_wind(held, &study.explanation) else { return (study, None) };
         let given = Given { own_wind: true, ..self.given(flights, study.given.settings.clone()) };
         let own = self.evaluated(given, study.explanation.clone(), flights, (&seen, None, shown_on.clone()));
-        if in_motion(&own).is_some_and(|own| own > percent) { (own, Some(seen)) } else { (study, None) }
+        if in_motion(&own).is_some_and(|own| own > percent.max(0.0)) {
+            (own, Some(seen))
+        } else {
+            (study, None)
+        }
     }
 
     /// The same with the mass that a hold-out begins with, where that is another one: what is named is judged by what it does there, and not
@@ -47,7 +51,11 @@ impl Task<'_> {
     /// The hold-outs with their own wind, where the model has that of the one flight that was explained, and they tell theirs.
     pub(super) fn in_own_wind(&self, held: &Prepared, explanation: &Explanation) -> Option<Prepared> {
         let base = &explanation.search.after.base;
-        if held.is_empty() || !base.effects.iter().any(|term| term.signature.role.of_the_day) {
+        // of several flights, each is seen with its own already
+        if held.is_empty()
+            || !self.winds_m_s.is_empty()
+            || !base.effects.iter().any(|term| term.signature.role.of_the_day)
+        {
             return None;
         }
         let airs = self.held_airs.get_or_init(|| airs(held, self.asked.vehicle)).as_ref()?;

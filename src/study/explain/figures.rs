@@ -1,7 +1,7 @@
 //! What the report draws, as numbers: recorded and simulated, what is left of it, and where.
 
 use super::result::ExplainStudy;
-use crate::diagnose::locate::{Bin, Follow, Portrait, portrait};
+use crate::diagnose::locate::{self, Bin, Follow, Portrait, portrait};
 use crate::diagnose::{CHANNEL_NAMES, Fitted, Line, Trace, Verdict, lack_of_fit};
 use std::ops::Range;
 
@@ -122,6 +122,9 @@ fn ranges(traces: &[Trace]) -> Vec<Range<usize>> {
     out
 }
 
+/// Slope of the dots over that of the line from which on it is told why they differ. Set by judgement: it is seen.
+const FLATTER: f64 = 0.9;
+
 impl ExplainStudy {
     /// The numbers of all figures.
     #[must_use]
@@ -170,6 +173,22 @@ impl ExplainStudy {
         let search = &self.explanation.search;
         let is_alone = self.empirical.is_some() && self.verdict() == Verdict::Unexplained;
         if is_alone { &search.before } else { &search.after }
+    }
+
+    /// Slope of the dots of a picture over airspeed as a share of that of its line, where the size is from the reconstructed flight path and
+    /// the dots are clearly flatter.
+    #[must_use]
+    pub fn flatter(&self, of: &Portrait) -> Option<f64> {
+        if !(self.explanation.search.is_by_path() && matches!(of.state, locate::Followed::Airspeed(_))) {
+            return None;
+        }
+        let bins = || of.recorded.iter().zip(&of.model);
+        let count = bins().count().max(1) as f64;
+        let mean = |value: fn((&Bin, &Bin)) -> f64| bins().map(value).sum::<f64>() / count;
+        let (recorded, model) = (mean(|(recorded, _)| recorded.mean), mean(|(_, model)| model.mean));
+        let along = bins().map(|(a, b)| (a.mean - recorded) * (b.mean - model)).sum::<f64>();
+        let slope = along / bins().map(|(_, b)| (b.mean - model).powi(2)).sum::<f64>();
+        (slope < FLATTER).then_some(slope)
     }
 
     fn portrait(&self) -> Option<Portrait> {

@@ -134,8 +134,8 @@ fn few_periods(signals: &Signals, used: &[usize], hover_m_s: f64) -> Option<Flig
     let speeds: Vec<f64> = used.iter().map(|&index| velocity[index].norm()).collect();
     let least = hover_m_s.max(MOVES * at(speeds.clone(), (19, 20))?);
     let moving_s = speeds.iter().filter(|speed| **speed > least).count() as f64 * signals.grid.step_s;
-    // a shorter one may be that of a harmonic, or of a turn
-    let period_s = flown_period_s(signals, used).map(|period_s| period_s.max(SHORTEST_S));
+    // a shorter one is that of a harmonic, or of a turn
+    let period_s = flown_period_s(signals, used).filter(|period_s| *period_s >= SHORTEST_S);
     let is_few = moving_s < PERIODS * period_s.unwrap_or(PERIOD_S);
     is_few.then_some(FlightLimit::FewPeriods { moving_s, period_s })
 }

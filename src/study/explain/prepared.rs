@@ -118,7 +118,7 @@ pub(in crate::study) fn explain_prepared(
 pub(super) struct Task<'a> {
     pub(super) asked: Asked<'a>,
     /// of each flight, where they are several
-    winds_m_s: &'a [Option<[f64; 2]>],
+    pub(super) winds_m_s: &'a [Option<[f64; 2]>],
     /// command of the flown hover with its standard error, of the flights before any wind was taken out of them
     flown_hover: Option<(f64, f64)>,
     /// why the flights tell little, with the parts that are held back

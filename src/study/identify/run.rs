@@ -67,8 +67,8 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     let found = prepared.and_then(|flights| found_beside(flights, asked, progress));
     let Prepared { recordings, mut signals, inputs, .. } =
         prepare(logs, vehicle, &request.conditioning()).map_err(or_unflown)?;
-    signals.iter_mut().for_each(|signals| signals.quality.notes.extend(contradiction.clone()));
     tell_contradictions(&mut signals, &found);
+    signals.iter_mut().for_each(|signals| signals.quality.notes.extend(contradiction.clone()));
     let apart = other_settings(&recordings);
     apart.iter().for_each(|note| progress.note(note));
     notes.extend(apart);
@@ -84,16 +84,17 @@ pub fn identify(request: &IdentifyRequest, progress: &dyn Progress) -> Result<Id
     Ok(IdentifyStudy { with, notes, ..study })
 }
 
-/// What contradicts the vehicle file may show only where the beginning of the flights is used too, as it is beside effects.
+/// What contradicts the vehicle file may show only where the beginning of the flights is used too, as it is beside effects. One that is
+/// told with other figures is told. Nothing where other flights could be used.
 fn tell_contradictions(signals: &mut [Signals], found: &Result<Found, String>) {
-    let seen = found.iter().flat_map(|found| &found.flights);
-    for (signals, seen) in signals.iter_mut().zip(seen) {
+    let Some(found) = found.as_ref().ok().filter(|found| found.flights.len() == signals.len()) else {
+        return;
+    };
+    let contradicts = |note: &&Note| note.about == About::Contradiction;
+    for (signals, seen) in signals.iter_mut().zip(&found.flights) {
         let notes = &mut signals.quality.notes;
-        let is_new = |note: &&Note| note.about == About::Contradiction && !notes.contains(note);
-        let more: Vec<Note> = seen.quality.notes.iter().filter(is_new).cloned().collect();
-        // one that is told with other figures is told
-        if !notes.iter().any(|note| note.about == About::Contradiction) {
-            notes.extend(more);
+        if !notes.iter().any(|note| contradicts(&note)) {
+            notes.extend(seen.quality.notes.iter().filter(contradicts).cloned());
         }
     }
 }
