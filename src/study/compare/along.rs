@@ -4,7 +4,6 @@ use super::judge::{Judge, beyond, flight_groups};
 use super::result::{Changed, Compared};
 use crate::change::{Groups, NAMED_SIGMAS, Step, What};
 use std::cmp::Reverse;
-use std::ops::Range;
 
 /// Most flights of a row in which each is held against every earlier one.
 const MOST_ALONE: usize = 60;
@@ -30,11 +29,6 @@ impl Judge<'_> {
                 Step { from: step.from, groups, change, as_before: Vec::new() }
             };
             let own = against(place);
-            // flights of both sides of another step have no mean that a name could be of
-            let mixes =
-                |group: &[usize], part: Range<usize>| group.iter().any(|flight| !part.contains(flight));
-            let is_mixed =
-                mixes(&step.groups.before, part(place)) || mixes(&step.groups.after, part(place + 1));
             if own.change.changes.is_empty() && own.change.balance.by_a_load {
                 alike.push(place + 1);
                 continue;
@@ -51,11 +45,7 @@ impl Judge<'_> {
                     add_rivals(&mut wide.change, &own.change);
                     out.push(wide);
                 }
-                _ if is_step(&own.change)
-                    && (own.change.has_name() || is_mixed && has_rivals(&step.change)) =>
-                {
-                    out.push(own);
-                }
+                _ if is_step(&own.change) && own.change.has_name() => out.push(own),
                 _ => out.push(step),
             }
             alike = vec![place + 1];
@@ -134,11 +124,6 @@ impl Judge<'_> {
         }
         found
     }
-}
-
-/// Whether something else would look the same.
-fn has_rivals(change: &Compared) -> bool {
-    change.changes.iter().any(|change| !change.rivals.is_empty())
 }
 
 /// What other flights before say of the balance is another explanation of the same.
