@@ -8,7 +8,7 @@ use super::vehicle_file::{BodyTable, InertiaTable};
 use crate::vehicle::RigidBody;
 
 /// Largest principal moment over the sum of the other two, from which on no body is meant. Measured moments of flat vehicles exceed the
-/// sum by their errors.
+/// sum by their errors. Set by judgement.
 const MOST_OF_OTHERS: f64 = 1.5;
 
 /// The body of a vehicle file, read or to be written.

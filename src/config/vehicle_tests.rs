@@ -126,6 +126,11 @@ fn refusals_name_file_key_and_value() {
         (vec![BODY, &CURVE.replace("pwm_max = 2000\n", ""), ROTORS], vec!["`propulsion.pwm_max`", "nothing"]),
         (vec![BODY, &CURVE.replace("0.5", "1.5"), ROTORS], vec!["`propulsion.thrust_expo`", "got 1.5"]),
         (vec![BODY, SPEED], vec!["`rotor`", "at least one"]),
+        // no body has more about one axis than about both others together; a little more is an error of measurement
+        (
+            vec![&BODY.replace("0.035", "0.07"), SPEED, ROTORS],
+            vec!["`body.inertia`", "at most the sum of the other two", "got 7.000e-2"],
+        ),
         // products of such numbers overflow, and factorisations of infinities do not end
         (
             vec![BODY, SPEED, &ROTORS.replacen("0.2", "1e200", 1)],

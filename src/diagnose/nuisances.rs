@@ -255,6 +255,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::super::rows::tests::vehicle;
     use super::*;
+    use crate::diagnose::fit::{Newton, fit};
     use crate::diagnose::made_flights::flown;
     use crate::diagnose::{ExplainSettings, explain};
     use crate::simulate::RandomTrajectory;
@@ -274,6 +275,25 @@ mod tests {
         assert!((mean - (stated - 0.1 * ixx)).abs() < 1e-12);
         let moment = INERTIA_ENTRIES.iter().position(|entry| *entry == (0, 0)).unwrap();
         assert_eq!(product_prior(&base, moment), None);
+    }
+
+    /// Thrusts that differ from their mean 1.4 times as much as the stated law has it, as of motors that are described with too flat a curve.
+    #[test]
+    fn a_thrust_law_that_does_not_hold_is_no_bias_of_the_accelerometer() {
+        let truth_kg = Cell::new(0.0);
+        let random = RandomTrajectory::default();
+        let (mut signals, vehicle) =
+            flown(4711, &random, |truth, _| truth_kg.set(truth.vehicle.body.mass_kg));
+        (signals.velocity, signals.position, signals.attitude) = (None, None, None);
+        let count = signals.rotor_thrust_n.len() as f64;
+        let mean_n = signals.rotor_thrust_n.iter().sum::<f64>() / count;
+        let steep = signals.rotor_thrust_n.iter().map(|thrust_n| mean_n + 1.4 * (thrust_n - mean_n));
+        signals.rotor_thrust_n = steep.collect::<Vec<f64>>().into();
+        let trace = Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap();
+        let fitted = fit(&[trace], Base::rigid(&vehicle), Newton::Free).unwrap();
+        let mass_kg = fitted.base.vehicle.body.mass_kg;
+        assert!(fitted.base.is_unbiased, "{mass_kg} of {}", truth_kg.get());
+        assert!((mass_kg / truth_kg.get() - 1.0).abs() < 0.04, "{mass_kg} of {}", truth_kg.get());
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::program::EffectsProgram;
 use crate::diagnose::called;
 use crate::physics::effects::by_id;
 use crate::physics::{ActiveEffect, Airframe, Parameter};
-use crate::text::compact;
+use crate::text::{compact, list};
 use crate::vehicle::{Guess, ThrustLaw, Vehicle};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -72,11 +72,11 @@ impl<'a> Source<'a> {
     pub(super) fn tell_unsure(&mut self, identified: Option<&Table>) {
         let open = |value: &Value| value.get("status").and_then(Value::as_str) == Some("not_determined");
         let named = identified.into_iter().flatten().filter(|(_, value)| open(value));
-        let named: Vec<&str> = named.map(|(name, _)| name.as_str()).collect();
+        let named: Vec<String> = named.map(|(name, _)| name.clone()).collect();
         if !named.is_empty() {
             self.note(format!(
-                "not determined by the flights, so from the vehicle file or its guesses here as in the model: {}",
-                named.join(", ")
+                "the flights did not determine {}: the model, and so this file, has what the vehicle file states or guesses",
+                list(&named)
             ));
         }
         let guess = |guess: &Guess| format!("{} +- {:.0} %", guess.of.words(), 100.0 * guess.relative);

@@ -159,7 +159,7 @@ pub(in crate::study) fn of_voltage(named: &Named) -> Option<Note> {
     let full_v = named.get("full_voltage")?.value;
     let text = format!(
         "the thrust falls with the battery. The mass rests on the stated thrust at {} V, the highest voltage that was used. If the stated thrust \
-         is that of another voltage, the mass is wrong by the same factor as the thrust (`mavid explain` gives the power of the voltage)",
+         is that of another voltage, the mass is wrong by the same factor as the thrust",
         significant(full_v, 3)
     );
     Some(Note::remark(About::Estimate, text))

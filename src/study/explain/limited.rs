@@ -24,7 +24,7 @@ const TURNS_RAD_S: f64 = 1.0;
 const TYPICAL: (usize, usize) = (1, 2);
 /// Shortest period of a trajectory for identification, s.
 const PERIOD_S: f64 = 8.0;
-/// Shortest period of a trajectory for identification that repeats, s.
+/// Shortest period of a trajectory for identification that repeats, s: the demo's. A shorter one found is that of a harmonic.
 const SHORTEST_S: f64 = 6.0;
 /// Fewest periods: what is seen once is not told from what happened once.
 const PERIODS: f64 = 2.0;
