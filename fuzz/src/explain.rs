@@ -45,6 +45,7 @@ pub fn run(data: &[u8], seeded: bool) {
         settings,
         transient_s: TRANSIENT_S,
         limited: Vec::new(),
+        has_velocity: true,
         own_load: false,
         own_wind: false,
     };

@@ -46,7 +46,8 @@ pub(crate) fn follows_force(unit: &str) -> bool {
 }
 
 /// Whether a value of an effect is known as a ratio to the rotors' torque per thrust: a moment about z, or the inertia of rotors that spin up.
-pub(super) fn turns_about_z(name: &str, unit: &str) -> bool {
+#[must_use]
+pub fn turns_about_z(name: &str, unit: &str) -> bool {
     unit == "kg m^2" || unit.starts_with("N m") && name.ends_with('z')
 }
 

@@ -13,6 +13,7 @@ use super::latency::LatencyFinding;
 use super::latency_name::{FlightLatency, flight_latency, latency_of};
 use super::left_over::add_left_over;
 use super::limits::is_beyond_showing;
+use super::named::Named;
 use super::other_law::of_other_laws;
 use super::own_wind::moves;
 use super::reconstructed::{self, Forms, reconstruct};
@@ -80,11 +81,12 @@ pub fn by_flight(
 }
 
 /// The parameters of each flight, fitted alone to the model of one explanation of all of them. A flight that drifts is seen with its own
-/// wind, and what is left of the wind is a parameter of its day.
+/// wind, and what is left of the wind is a parameter of its day. `alone` is what each shows alone, where that is known: a centre of mass of its
+/// own is beside the model of all, in which a rotor would stand for it.
 #[must_use]
 pub fn each_with_model_of_all(
     flights: &[Signals],
-    drifts: &[bool],
+    (drifts, alone): (&[bool], &[Vec<Named>]),
     explanation: &Explanation,
     (vehicle, settings): (&Vehicle, &ExplainSettings),
 ) -> Vec<Vec<FlightParameter>> {
@@ -94,13 +96,19 @@ pub fn each_with_model_of_all(
         return vec![Vec::new(); flights.len()];
     };
     let together = of_other_laws(&traces, &explanation.search.last, &explanation.search.after);
-    let one = |((signals, trace), drifts): ((&Signals, &Trace), &bool)| {
+    let one = |(flight, ((signals, trace), drifts)): (usize, ((&Signals, &Trace), &bool))| {
         // whether a flight lacks an effect is what it tells
         let trace = &trace.with_own(OwnOfFlight { lacks: Arc::default(), ..trace.own.clone() });
         let own = std::slice::from_ref(trace);
         let mut base = with_terms(explanation, &terms, (vehicle, trace));
         if *drifts {
             base.effects.extend(wind_beside(&base));
+        }
+        let recorded = Recorded::new(vehicle, own);
+        for term in
+            alone.get(flight).into_iter().flatten().filter_map(|named| of_the_loading(named, &recorded))
+        {
+            add_term(&mut base.effects, &term, || true);
         }
         let latency = explanation.search.latency;
         let of_latency = flight_latency((own, &base), &explanation.named, vehicle).ok().flatten();
@@ -116,7 +124,13 @@ pub fn each_with_model_of_all(
         Some(out)
     };
     let each = flights.par_iter().zip(&traces).zip(drifts);
-    each.map(one).map(Option::unwrap_or_default).collect()
+    each.enumerate().map(one).map(Option::unwrap_or_default).collect()
+}
+
+/// How a named effect of the vehicle's loading is looked for; `None` for other effects.
+fn of_the_loading(named: &Named, recorded: &Recorded) -> Option<EffectTerm> {
+    let signature = signature_of(named.id).filter(|of| of.role.of_the_loading)?;
+    (signature.forms)(recorded).into_iter().next().map(|form| form.term)
 }
 
 /// What drags of other laws may bring into the coefficients: of one flight, and of all of them together.

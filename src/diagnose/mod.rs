@@ -95,8 +95,8 @@ mod velocity_error;
 pub mod wording;
 mod words;
 
-pub use base::Base;
 pub(crate) use base::follows_force;
+pub use base::{Base, turns_about_z};
 pub use by_flight::{
     FlightParameter, LATENCY, by_flight, each_with_model_of_all, of_one_flight, rigid_by_flight,
 };

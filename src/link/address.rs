@@ -64,6 +64,14 @@ pub enum AddressError {
         /// the text
         got: String,
     },
+    /// it is the bare path of a device
+    #[error("expected a serial port with its rate in bits a second, like `serial:{path}:57600`, got `{got}`")]
+    Device {
+        /// the text
+        got: String,
+        /// the device
+        path: String,
+    },
     /// a host is missing
     #[error("expected a host name or IP address (IPv6 in brackets) in `{got}`, got `{host}`")]
     Host {
@@ -94,7 +102,10 @@ impl FromStr for Address {
     type Err = AddressError;
 
     fn from_str(text: &str) -> Result<Self, AddressError> {
-        let form = || AddressError::Form { got: text.into() };
+        let form = || match text.split(':').next() {
+            Some(path) if is_device(path) => AddressError::Device { got: text.into(), path: path.into() },
+            _ => AddressError::Form { got: text.into() },
+        };
         let (kind, rest) = text.split_once(':').ok_or_else(form)?;
         // as other programs write it: `udp://:14540` waits on all interfaces
         let (rest, anywhere) = rest.strip_prefix("//").map_or((rest, false), |rest| (rest, true));
@@ -114,6 +125,12 @@ impl FromStr for Address {
             _ => Err(form()),
         }
     }
+}
+
+/// Whether a text is the name of a serial port on Linux, macOS or Windows.
+fn is_device(text: &str) -> bool {
+    let com = text.get(..3).is_some_and(|start| start.eq_ignore_ascii_case("com"));
+    text.starts_with("/dev/") || com && text[3..].parse::<u8>().is_ok()
 }
 
 fn endpoint(text: &str, rest: &str) -> Result<(String, u16), AddressError> {
@@ -226,6 +243,10 @@ mod tests {
             ("serial:/dev/ttyACM0:0", "got `0`"),
             ("serial::57600", "serial:PATH:BAUD"),
             ("pty:", "pty:PATH"),
+            ("/dev/ttyUSB0", "`serial:/dev/ttyUSB0:57600`, got"),
+            ("/dev/ttyUSB0:115200", "`serial:/dev/ttyUSB0:57600`, got `/dev/ttyUSB0:115200`"),
+            ("COM3", "`serial:COM3:57600`"),
+            ("computer:14550", "udpin:HOST:PORT"),
         ] {
             let error = text.parse::<Address>().unwrap_err().to_string();
             assert!(error.contains(expected), "{text}: {error}");

@@ -146,9 +146,12 @@ impl Actuation {
             streams.map(|(_, stream)| stream.width).max()
         };
         match recorded(Quantity::RotorSpeed) {
-            Some(width) if rotors.source == ThrustSource::Command && width < needed => notes.push(Note::remark(
+            Some(width) if rotors.source == ThrustSource::Command && width < needed => notes.push(Note::warning(
                 About::Actuators,
-                format!("rotor speeds of {width} rotors are recorded, the vehicle has {needed}: commands are used instead"),
+                format!(
+                    "expected the speeds of all {needed} rotors, got those of {width}: thrust is taken from the commands instead, by the \
+                     vehicle's thrust law"
+                ),
             )),
             _ => {}
         }

@@ -2,6 +2,7 @@
 
 use crate::diagnose::{Fitted, Nuisance};
 use crate::estimate::{MethodResult, NAMES, THETA};
+use nalgebra::DMatrix;
 
 /// Correlation of everything that was estimated at once.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,5 +56,49 @@ fn rows(places: &[usize], covariance: impl Fn(usize, usize) -> f64) -> Vec<Vec<O
         let r = covariance(i, j) / (covariance(i, i) * covariance(j, j)).sqrt();
         r.is_finite().then_some(r)
     };
-    places.iter().map(|i| places.iter().map(|j| of(*i, *j)).collect()).collect()
+    possible(places.iter().map(|i| places.iter().map(|j| of(*i, *j)).collect()).collect())
+}
+
+/// Correlations that errors can have. Forces and torques are estimated one after the other, and what both bear on has its covariance from
+/// one of them. All correlations are then brought towards none by the same share, until no combination of the parameters has a negative
+/// variance. The standard errors stay.
+fn possible(mut rows: Vec<Vec<Option<f64>>>) -> Vec<Vec<Option<f64>>> {
+    let count = rows.len();
+    let all = DMatrix::from_fn(count, count, |i, j| if i == j { 1.0 } else { rows[i][j].unwrap_or(0.0) });
+    let least = all.symmetric_eigenvalues().iter().copied().fold(1.0, f64::min);
+    if least < 0.0 {
+        let left = 1.0 / (1.0 - least);
+        for (i, row) in rows.iter_mut().enumerate() {
+            for (_, of) in row.iter_mut().enumerate().filter(|(j, _)| *j != i) {
+                *of = of.map(|of| left * of);
+            }
+        }
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(matrix: [[f64; 3]; 3]) -> Vec<Vec<Option<f64>>> {
+        rows(&[0, 1, 2], |i, j| matrix[i][j])
+    }
+
+    #[test]
+    fn correlations_are_those_of_the_covariance_where_errors_can_have_it() {
+        let told = of([[4.0, 1.0, 0.0], [1.0, 1.0, 0.3], [0.0, 0.3, 9.0]]);
+        assert_eq!(told[0], [Some(1.0), Some(0.5), Some(0.0)]);
+        assert!((told[1][2].unwrap() - 0.1).abs() < 1e-12);
+        assert_eq!(of([[0.0, 0.0, 0.0], [0.0, 1.0, 0.2], [0.0, 0.2, 1.0]])[0][1], None);
+    }
+
+    #[test]
+    fn what_no_errors_can_have_is_brought_to_what_they_can() {
+        let told = of([[4.0, -2.8, 0.2], [-2.8, 1.0, 0.1], [0.2, 0.1, 1.0]]);
+        let matrix = DMatrix::from_fn(3, 3, |i, j| told[i][j].unwrap());
+        let least = matrix.symmetric_eigenvalues().min();
+        assert!(least.abs() < 1e-9, "{least}");
+        assert!((0..3).all(|i| matrix[(i, i)] == 1.0) && (-1.0..-0.9).contains(&matrix[(0, 1)]), "{matrix}");
+    }
 }

@@ -1,7 +1,7 @@
 //! Why an answer is doubtful.
 
 use crate::estimate::{Contradiction, contradicts_file};
-use crate::note::About;
+use crate::note::{About, Note};
 use crate::signals::Quality;
 use crate::vehicle::Vehicle;
 
@@ -37,4 +37,24 @@ pub(super) fn doubts<'a>(
     // questions are for the warnings
     doubts.extend(odd.iter().map(|odd| format!("implausible vehicle data, {}", odd.trim_end_matches('?'))));
     doubts
+}
+
+/// Largest ratio of an estimated mass to that of the vehicle file, or its inverse, without a note: a battery or a small payload.
+const ORDINARY_MASS: f64 = 1.15;
+/// Standard errors of the estimate that do not count. The usual 95 %.
+const WITHIN: f64 = 2.0;
+
+/// A note on a mass by the stated thrust, kg with its standard error, that differs from the stated one by more than files do.
+pub(in crate::study) fn of_mass((kg, std_kg): (f64, f64), stated_kg: f64) -> Option<Note> {
+    let factor = kg / stated_kg;
+    let apart = factor.ln().abs() - WITHIN * std_kg / kg.abs();
+    let text = || {
+        format!(
+            "the mass is {factor:.2} times what the vehicle file states, if the rotors give the thrust that it states. If the mass was \
+             weighed, the thrust is {:.2} times what is stated, and so is each force and moment of inertia of this answer: set anchor = \
+             \"mass\" below [identify] in the vehicle file",
+            factor.recip()
+        )
+    };
+    (apart >= ORDINARY_MASS.ln()).then(|| Note::warning(About::Estimate, text()))
 }

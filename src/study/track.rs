@@ -2,8 +2,8 @@
 
 use crate::change::{Spread, pooled_mean, with_scatter};
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{FlightParameter, LATENCY, Owner, called};
-use crate::estimate::{LARGEST_RELATIVE_STD, UNITS};
+use crate::diagnose::{FlightParameter, LATENCY, Owner, called, turns_about_z};
+use crate::estimate::{LARGEST_RELATIVE_STD, NAMES, THETA, UNITS};
 use crate::physics::effects::ALL;
 use crate::vehicle::Vehicle;
 
@@ -60,6 +60,23 @@ pub struct Track {
 }
 
 impl Track {
+    /// Whether flights tell it as a ratio to the rotors' torque per thrust.
+    pub(super) fn turns_about_z(&self) -> bool {
+        if self.effect.is_some() {
+            turns_about_z(&self.name, self.unit)
+        } else {
+            self.name == NAMES[THETA - 1]
+        }
+    }
+
+    /// The same on another scale.
+    pub(super) fn scale(&mut self, factor: f64) {
+        for (value, std) in self.values.iter_mut().flatten() {
+            (*value, *std) = (*value * factor, *std * factor);
+        }
+        self.common_std.iter_mut().for_each(|std| *std *= factor);
+    }
+
     /// A parameter along the flights of a table that was stored: values and common parts of their errors, flight by flight. `None` where
     /// no parameter here has that unit.
     #[must_use]

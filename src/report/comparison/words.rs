@@ -297,12 +297,12 @@ fn unseen(study: &CompareStudy, compared: &Compared) -> String {
     let [x, y, z] = balance.moved.map(|moved| with_error(moved.by.0, moved.by.1));
     let moved = if balance.by_a_load {
         format!(
-            "The balance did move, by {x} of an arm along body x and {y} along y: a load or a battery that sits elsewhere does the \
-             same, and a flight may have its own. The rotors along the flights have it in their values. "
+            "Its balance differs by {x} of an arm along body x and {y} along y, as a load or a battery that sits elsewhere makes it: that \
+             is the flight's own, and no change of the vehicle. The rotors along the flights have it in their values. "
         )
     } else if balance.moved_without_name() {
         format!(
-            "The balance did move, by {x} of an arm along body x, {y} along y and {z} about the vertical: too little to name a rotor. The \
+            "Its balance differs by {x} of an arm along body x, {y} along y and {z} about the vertical: too little to name a rotor. The \
              rotors along the flights have it in their values. "
         )
     } else {

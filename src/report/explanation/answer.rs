@@ -228,11 +228,18 @@ fn nothing(study: &ExplainStudy) -> String {
     if study.explanation.too_little_excitation {
         let could =
             if seen.is_empty() { String::new() } else { format!("; it could show {}", list_or(&seen)) };
+        let these = study.these_flights();
+        let (why, fly) = if study.given.has_velocity {
+            (
+                format!("the vehicle hardly moves in {these}"),
+                "Fly a trajectory that moves all axes (mavid plan)",
+            )
+        } else {
+            (format!("no velocity or no attitude is recorded in {these}"), "Log both")
+        };
         return format!(
-            "Too little excitation: the vehicle hardly moves in {}, so drag, damping, ground effect and \
-             similar effects could not be detected at any usual size{could}, and none of this was found. Fly a \
-             trajectory that moves all axes (mavid plan).{other}",
-            study.these_flights()
+            "Too little excitation: {why}, so drag, damping, ground effect and similar effects could not be detected at any usual \
+             size{could}, and none of this was found. {fly}.{other}"
         );
     }
     if let Some(refuted) = &study.refuted {
@@ -262,10 +269,12 @@ fn nothing(study: &ExplainStudy) -> String {
             100.0 * share
         );
     }
-    format!(
-        "Nothing is missing that {these} could show: the rigid body with its rotors explains {it} down to the \
-         noise{would}.{traces}{other}"
-    )
+    let left = if no_model(study).is_empty() {
+        format!("the rigid body with its rotors explains {it} down to the noise")
+    } else {
+        "what the rigid body with its rotors leaves follows nothing that was tested".to_owned()
+    };
+    format!("Nothing is missing that {these} could show: {left}{would}.{traces}{other}")
 }
 
 /// Share of the weight from which on what is left is not called noise. Set by judgement: simulated flights as noisy as real ones leave 5 %.

@@ -18,6 +18,19 @@ pub(super) fn out_of_order(flights: &[Begun<'_>], first: usize) -> Option<Note> 
     Some(Note::warning(About::Vehicle, text))
 }
 
+/// Sorts the flights of a history by their start times, where each is known; whether that moved one.
+pub(super) fn by_start_times<T>(flights: &mut [T], start_utc_us: impl Fn(&T) -> Option<u64>) -> bool {
+    let is_moved = flights.iter().all(|one| start_utc_us(one).is_some())
+        && !flights.is_sorted_by_key(|one| start_utc_us(one));
+    if is_moved {
+        flights.sort_by_key(|one| start_utc_us(one));
+    }
+    is_moved
+}
+
+/// What is said then.
+pub(super) const REORDERED: &str = "the flights are compared in the order of their start times, which is not the order in which they were given";
+
 /// Each flight beside the latest of those that were given ahead of it.
 fn of_history(flights: &[Begun<'_>]) -> Option<String> {
     let mut latest: Option<(u64, &str)> = None;
@@ -91,6 +104,17 @@ mod tests {
             "{said}"
         );
         assert!(!said.contains("a began") && !said.contains("before a"), "{said}");
+    }
+
+    #[test]
+    fn a_history_is_sorted_where_each_flight_is_dated() {
+        let mut dated = [(Some(30), 'a'), (Some(10), 'b'), (Some(30), 'c')];
+        assert!(by_start_times(&mut dated, |one| one.0));
+        assert_eq!(dated.map(|one| one.1), ['b', 'a', 'c']);
+        assert!(!by_start_times(&mut dated, |one| one.0));
+        let mut undated = [(Some(30), 'a'), (None, 'b'), (Some(10), 'c')];
+        assert!(!by_start_times(&mut undated, |one| one.0));
+        assert_eq!(undated.map(|one| one.1), ['a', 'b', 'c']);
     }
 
     #[test]

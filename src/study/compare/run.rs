@@ -2,7 +2,7 @@
 
 use super::judge::Judge;
 use super::motion::{Motion, motion};
-use super::order::out_of_order;
+use super::order::{REORDERED, out_of_order};
 use super::request::CompareRequest;
 use super::result::{CompareStudy, Compared, ComparedFlight, LeftOut};
 use super::usable::{Given, Usable};
@@ -47,12 +47,13 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let mut notes = doubt_one_vehicle(logs.each());
     let serials_apart = serials_apart(logs.each());
     refuse_single(logs.each())?;
-    let (Usable { flights, legs, starts_utc_us, first, left_out }, known) =
+    let (Usable { flights, legs, starts_utc_us, first, reordered, left_out }, known) =
         logs.conditioned(known, progress)?;
     notes.splice(0..0, of_vehicle(request, &known));
     let Known { loaded: LoadedVehicle { vehicle, .. }, draft, .. } = known;
     notes.extend(left_out.iter().map(LeftOut::note));
     notes.extend(of_flights(&flights, &starts_utc_us, first));
+    notes.extend(reordered.then(|| Note::remark(About::Vehicle, REORDERED)));
     let balance = balance(&legs);
     progress.stage(Stage::Explaining);
     let Motion { tracks, alone, reasons, notes: of_motion } = moved(request, &flights, &vehicle, progress);

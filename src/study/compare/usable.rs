@@ -1,5 +1,6 @@
 //! The flights that can be compared: what is too short, or was never flown, is left out where enough others remain.
 
+use super::order::by_start_times;
 use super::request::CompareRequest;
 use super::result::LeftOut;
 use crate::signals::{
@@ -36,6 +37,8 @@ pub(super) struct Usable {
     pub(super) starts_utc_us: Vec<Option<u64>>,
     /// so many of them are of before
     pub(super) first: usize,
+    /// they were given in another order than that of their start times
+    pub(super) reordered: bool,
     pub(super) left_out: Vec<LeftOut>,
 }
 
@@ -139,9 +142,10 @@ impl<'a> Given<'a> {
         unflown_first(error, &paths, &self.request.read)
     }
 
-    fn usable(self, [before, after]: [Vec<Made>; 2]) -> Usable {
+    fn usable(self, [mut before, after]: [Vec<Made>; 2]) -> Usable {
         let (mut flights, mut legs, mut starts_utc_us) = (Prepared::default(), Vec::new(), Vec::new());
         let first = before.len();
+        let reordered = after.is_empty() && by_start_times(&mut before, |(flight, _)| flight.start_utc_us);
         for (flight, (signals, of_flight)) in before.into_iter().chain(after) {
             starts_utc_us.push(flight.start_utc_us);
             flights.recordings.push(flight.recording);
@@ -154,6 +158,7 @@ impl<'a> Given<'a> {
             legs,
             starts_utc_us,
             first,
+            reordered,
             left_out: self.refused.iter().map(LeftOut::of).collect(),
         }
     }

@@ -97,7 +97,7 @@ impl ExplainStudy {
     ) {
         let (vehicle, settings) = (&self.given.vehicle, &self.given.settings);
         let drifts: Vec<bool> = winds_m_s.iter().map(Option::is_some).collect();
-        let each = each_with_model_of_all(flights, &drifts, &self.explanation, (vehicle, settings));
+        let each = each_with_model_of_all(flights, (&drifts, alone), &self.explanation, (vehicle, settings));
         let mut tracks = Track::all(each.into_iter().enumerate().collect(), flights.len(), vehicle);
         if drifts.iter().any(|drifts| *drifts) {
             // what was left of a wind belongs to it
@@ -187,7 +187,8 @@ impl ExplainStudy {
                 self.notes.push(Note::warning(About::File(input.path.clone()), text));
             } else if kg != 0.0 {
                 let text = format!(
-                    "it flew with {} kg {} than the others: load and mass are each flight's own, and the model has the mass without that",
+                    "its thrust carries {} kg {} than that of the others, by a load, another battery or a thrust that is not that of its commands. That \
+                     is the flight's own, and the model has the mass without it",
                     significant(kg.abs(), 2),
                     if kg > 0.0 { "more" } else { "less" }
                 );

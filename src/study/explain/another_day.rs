@@ -8,6 +8,10 @@ use super::validation_data::ValidationData;
 use crate::diagnose::Explanation;
 use crate::study::flights::Prepared;
 
+/// A wind that leaves this share of the error that the motion is predicted with is the hold-out's, also where a wrong name still makes the
+/// prediction worse than none. Set by judgement.
+const HALVED: f64 = 0.5;
+
 impl Task<'_> {
     /// The same with the hold-outs' own wind, where it is told and the motion is predicted better with it, if the effects make that worse with
     /// the wind of the flight explained: another day has another wind.
@@ -23,7 +27,7 @@ impl Task<'_> {
         let Some(seen) = self.in_own_wind(held, &study.explanation) else { return (study, None) };
         let given = Given { own_wind: true, ..self.given(flights, study.given.settings.clone()) };
         let own = self.evaluated(given, study.explanation.clone(), flights, (&seen, None, shown_on.clone()));
-        if in_motion(&own).is_some_and(|own| own > percent.max(0.0)) {
+        if in_motion(&own).is_some_and(|own| own > 0.0 || 100.0 - own < HALVED * (100.0 - percent)) {
             (own, Some(seen))
         } else {
             (study, None)

@@ -10,14 +10,9 @@ use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{Named, Verdict};
 use crate::estimate::{Contradiction, Finding, FlightApart, NAMES, ThrustScale, stated};
 use crate::note::{About, Note};
-use crate::study::doubts::{TWO_VEHICLES, doubts};
+use crate::study::doubts::{TWO_VEHICLES, doubts, of_mass};
 use crate::text::significant;
 use crate::vehicle::Guessed;
-
-/// Largest ratio of an estimated mass to that of the vehicle file, or its inverse, without a note: a battery or a small payload.
-const ORDINARY_MASS: f64 = 1.15;
-/// Standard errors of the estimate that do not count. The usual 95 %.
-const WITHIN: f64 = 2.0;
 
 impl ExplainStudy {
     /// Mass, thrust and moments of inertia that are far from what the vehicle file states.
@@ -44,24 +39,10 @@ impl ExplainStudy {
     pub(super) fn tell_mass(&mut self) {
         let body = self.body();
         let Some(mass) = body.first() else { return };
-        let factor = mass.after.value / mass.nominal;
-        let apart = factor.ln().abs() - WITHIN * mass.after.std / mass.after.value.abs();
         let told = self.contradictions().iter().any(|of| of.name == mass.name);
-        if mass.weighed
-            || told
-            || mass.not_determined.is_some()
-            || apart.is_nan()
-            || apart < ORDINARY_MASS.ln()
-        {
-            return;
+        if !mass.weighed && !told && mass.not_determined.is_none() {
+            self.notes.extend(of_mass((mass.after.value, mass.after.std), mass.nominal));
         }
-        let text = format!(
-            "the mass is {factor:.2} times what the vehicle file states, if the rotors give the thrust that it states. If the mass was \
-             weighed, the thrust is {:.2} times what is stated, and so is each force and moment of inertia of this answer: set anchor = \
-             \"mass\" below [identify] in the vehicle file",
-            factor.recip()
-        );
-        self.notes.push(Note::warning(About::Estimate, text));
     }
 
     /// Whether an effect is named that alters the thrust of a command: the masses and moments of inertia of single flights by the
@@ -146,7 +127,8 @@ impl ExplainStudy {
             return Vec::new();
         }
         let is_hover = self.given.limited.contains(&FlightLimit::Hover);
-        let more = (hardly_moves && !is_hover).then_some(FlightLimit::LittleMotion);
+        let why = if self.given.has_velocity { FlightLimit::LittleMotion } else { FlightLimit::NoVelocity };
+        let more = (hardly_moves && !is_hover).then_some(why);
         // that a flight is short as a whole is said as a doubt
         let is_told =
             |limit: &FlightLimit| self.short.is_some() && matches!(limit, FlightLimit::FewPeriods { .. });

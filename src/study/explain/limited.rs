@@ -38,6 +38,8 @@ pub enum FlightLimit {
     Hover,
     /// no effect that shows only in motion could have been seen
     LittleMotion,
+    /// no velocity, or no attitude, is recorded, and so no such effect could have been seen
+    NoVelocity,
     /// it moves for less than two periods
     FewPeriods {
         /// s in motion
@@ -70,6 +72,9 @@ impl FlightLimit {
             }
             Self::LittleMotion => {
                 "the vehicle hardly moves, so drag, damping, ground effect and similar effects could not be detected".to_owned()
+            }
+            Self::NoVelocity => {
+                "no velocity or no attitude is recorded, so drag, damping, ground effect and similar effects could not be detected".to_owned()
             }
             Self::FewPeriods { moving_s, period_s } => {
                 let of = period_s.map_or_else(

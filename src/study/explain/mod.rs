@@ -27,6 +27,7 @@ mod run;
 mod short;
 mod traces;
 mod unshown;
+mod unsupported;
 mod validation_data;
 mod worth;
 mod worth_measured;

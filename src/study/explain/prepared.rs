@@ -4,6 +4,7 @@ use super::along::{with_own, with_own_winds, without_gust_of_none};
 use super::doubts::of_voltage;
 use super::hold_out::hold_back;
 use super::limited::{FlightLimit, limits_of_flights};
+use super::refuted::BetterBy;
 use super::result::{ExplainStudy, Given};
 use super::short::Short;
 use super::traces::traces_of;
@@ -163,15 +164,21 @@ impl Task<'_> {
             let (study, in_own_wind) = self.with_own_wind(study, flights, (held, &shown_on));
             let held = in_own_wind.as_ref().unwrap_or(held);
             let mut study = self.with_own_mass(study, flights, (held, &shown_on));
-            if let Some(refuted) = study.refuted_by_holdout() {
+            let worthless = study.worthless().or_else(|| study.unsupported());
+            let worthless = worthless.filter(|of| !settings.refused.contains(&of.id));
+            let refuted = study.refuted_by_holdout();
+            let is_refuted = refuted.is_some();
+            // one of several that does harm leaves first: what is left is judged again
+            let leaves_first = worthless.is_some() && study.explanation.named.len() > 1;
+            if let Some(refuted) = refuted.filter(|_| !leaves_first) {
                 let ExplainStudy { given, explanation, .. } = study;
                 study = self.evaluated(given, explanation.refuted(), flights, (held, back, shown_on));
                 study.notes.push(refuted.note());
                 study.refuted = Some(refuted);
                 return Ok((study, notes));
             }
-            let unshown = study.unshown(&traces_of(&flights.signals, self.asked.vehicle, &settings));
-            let worthless = study.worthless().filter(|of| !settings.refused.contains(&of.id));
+            let traces = || traces_of(&flights.signals, self.asked.vehicle, &settings);
+            let unshown = if is_refuted { None } else { study.unshown(&traces()) };
             let is_unshown = unshown.is_some();
             let (id, note) = match (unshown, worthless) {
                 (Some(of), _) => {
@@ -181,7 +188,9 @@ impl Task<'_> {
                 }
                 (None, Some(of)) => {
                     let more = (of.id, of.note());
-                    withdrawn.push((of.id, of.name));
+                    if of.by != BetterBy::NoFlight {
+                        withdrawn.push((of.id, of.name));
+                    }
                     more
                 }
                 (None, None) => {
@@ -240,6 +249,7 @@ impl Task<'_> {
             by_guessed_curve: moved_by_guessed_curve(&flights.signals, self.asked.vehicle),
             contradicting,
             limited: self.limited.clone(),
+            has_velocity: flights.signals.iter().any(|one| one.velocity.is_some() && one.attitude.is_some()),
             settings,
             transient_s: self.asked.transient_s,
             own_load: self.own_load,

@@ -1,6 +1,6 @@
 //! Names that flights which were not used refute.
 
-use crate::diagnose::called;
+use crate::diagnose::{NAME_Z, called};
 use crate::note::{About, Note};
 use crate::text::significant;
 
@@ -45,6 +45,8 @@ pub(super) enum BetterBy {
     Without,
     /// the rigid body alone, or a state that does not change
     Baseline,
+    /// nothing: no flight of several shows the effect alone, and all together show less than a name needs
+    NoFlight,
 }
 
 impl Worthless {
@@ -57,6 +59,9 @@ impl Worthless {
             BetterBy::Baseline => format!(
                 "it follows the height, as a thrust that drifts does, and a state that does not change or the rigid body alone \
                  predicts the hold-out better than the model with it, over 0.5 s by {percent} % in the mean"
+            ),
+            BetterBy::NoFlight => format!(
+                "no flight shows it alone, and its size from all of them together is less than {NAME_Z} standard errors"
             ),
         };
         let text =

@@ -1,15 +1,20 @@
 //! Mass and inertia by the estimator of `explain`, together with the effects that the flights show.
 
 use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, TorqueLaw, Verdict, brief, explain};
-use crate::estimate::{Finding, MethodResult, Nominal, Recommendation, THETA, moved_by_guessed_curve};
+use crate::estimate::{
+    Contradiction, Estimated, Finding, MethodResult, NAMES, Nominal, Recommendation, THETA,
+    moved_by_guessed_curve, stated,
+};
 use crate::note::Note;
 use crate::signals::Signals;
+use crate::study::doubts::of_mass;
 use crate::study::explain::{
     Asked, BY_CONTROL, FlightLimit, KEPT, explain_prepared, kept_about_z, limits_of_flights, of_voltage,
 };
 use crate::study::flights::Prepared;
 use crate::study::{Progress, StudyError};
-use crate::vehicle::Vehicle;
+use crate::text::list;
+use crate::vehicle::{Anchor, Vehicle};
 
 /// The recommended estimate, and what was estimated beside mass and inertia.
 #[derive(Debug)]
@@ -70,6 +75,8 @@ pub(super) struct Found {
     pub(super) of_part: bool,
     /// why the flights tell little, by the way they were flown
     pub(super) limited: Vec<FlightLimit>,
+    /// what a flight that is too short for a certain name shows, each in brief with its size
+    pub(super) unsure: Vec<String>,
 }
 
 impl Found {
@@ -79,7 +86,7 @@ impl Found {
             explain(flights, vehicle, &ExplainSettings::default()).map_err(|why| why.to_string())?;
         let explanation = explanation.keeping_about_z(vehicle);
         let limited = limits_of_flights(flights, vehicle);
-        Ok(Self { flights: flights.to_vec(), explanation, of_part: false, limited })
+        Ok(Self { flights: flights.to_vec(), explanation, of_part: false, limited, unsure: Vec::new() })
     }
 }
 
@@ -99,12 +106,13 @@ pub(super) fn found_beside(
     let whole = flights.signals.clone();
     let limited = limits_of_flights(&whole, asked.vehicle);
     let study = explain_prepared(&mut flights, &mut Prepared::default(), asked, progress).map_err(why)?;
+    let unsure = study.short.as_ref().map_or_else(Vec::new, |short| short.unsure.clone());
     let usable = |signals: &[Signals]| -> usize {
         signals.iter().flat_map(|one| one.usable.iter()).filter(|usable| **usable).count()
     };
     if usable(&flights.signals) == usable(&whole) {
         let explanation = study.explanation.keeping_about_z(asked.vehicle);
-        return Ok(Found { flights: flights.signals, explanation, of_part: false, limited });
+        return Ok(Found { flights: flights.signals, explanation, of_part: false, limited, unsure });
     }
     let of_part = &study.explanation;
     let (unexplained, terms) = (of_part.verdict == Verdict::Unexplained, &of_part.search.after.base.effects);
@@ -119,17 +127,21 @@ pub(super) fn found_beside(
         explanation.verdict = Verdict::Unexplained;
     }
     // without an effect that holds, what it does would be in mass and inertia: the part that shows it tells them
-    let has = |of: &Explanation, id: &str| of.search.after.base.effects.iter().any(|term| term.id() == id);
-    let is_lost = |id: &str| has(of_part, id) && !has(&explanation, id);
-    if !unexplained && of_part.named.iter().any(|named| is_lost(named.id)) {
+    let stays = |id: &str| {
+        let mut named = explanation.named.iter().map(|named| named.id);
+        let mut terms = explanation.search.after.base.effects.iter().map(|term| term.id());
+        named.any(|named| named == id) || terms.any(|term| term == id)
+    };
+    if !unexplained && !of_part.named.iter().all(|named| stays(named.id)) {
         let explanation = study.explanation.keeping_about_z(asked.vehicle);
-        return Ok(Found { flights: flights.signals, explanation, of_part: true, limited });
+        return Ok(Found { flights: flights.signals, explanation, of_part: true, limited, unsure });
     }
     Ok(Found {
         flights: whole,
         explanation: explanation.keeping_about_z(asked.vehicle),
         of_part: false,
         limited,
+        unsure,
     })
 }
 
@@ -165,13 +177,22 @@ pub(super) fn joint_estimate(of: &Found, vehicle: &Vehicle) -> EstimateWithEffec
             .limited
             .iter()
             .map(FlightLimit::note)
+            .chain(mass_apart(&estimated, vehicle))
             .chain(found.named.iter().filter_map(of_voltage))
             .collect(),
     }
 }
 
+/// A note on a mass by the stated thrust that differs from the stated one by more than files do, and by less than contradicts them.
+fn mass_apart(estimated: &Estimated, vehicle: &Vehicle) -> Option<Note> {
+    let mass = (estimated.theta[0], estimated.covariance[(0, 0)].max(0.0).sqrt());
+    let is_told = Contradiction::of(NAMES[0], mass, stated(vehicle, 0)).is_some();
+    let is_asked = vehicle.anchor != Anchor::Mass && mass.0.is_finite() && !is_told;
+    if is_asked { of_mass(mass, vehicle.body.mass_kg) } else { None }
+}
+
 /// The reason for the user.
-fn why(Found { flights, explanation: found, of_part, .. }: &Found, vehicle: &Vehicle) -> String {
+fn why(Found { flights, explanation: found, of_part, unsure, .. }: &Found, vehicle: &Vehicle) -> String {
     let names: Vec<String> = found.named.iter().map(|named| brief(named, vehicle, false)).collect();
     let usable = |one: &Signals| one.usable.iter().filter(|usable| **usable).count() as f64 * one.grid.step_s;
     let seconds: f64 = flights.iter().map(usable).sum();
@@ -185,6 +206,10 @@ fn why(Found { flights, explanation: found, of_part, .. }: &Found, vehicle: &Veh
         (Verdict::Unexplained, _) => format!(
             "mass and inertia alone, {used}: something acts in these flights that no known effect explains, and `mavid explain` \
              shows where"
+        ),
+        (_, names) if names.is_empty() && !unsure.is_empty() => format!(
+            "mass and inertia alone, {used}: this flight shows {}, but not surely enough for a name",
+            list(unsure)
         ),
         (_, names) if names.is_empty() => {
             format!("these flights show no effect beside mass and inertia ({used})")
