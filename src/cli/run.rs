@@ -32,7 +32,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["mass", "size", "frame"])]
     pub vehicle: Option<PathBuf>,
     /// the free room round the place of takeoff, m: length from south to north, width from west to east, height
-    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', value_parser = side, allow_hyphen_values = true)]
     pub room: Option<Vec<f64>>,
     /// folder for everything; one that was begun is taken up where it was left [default: mavid-run]
     #[arg(long, value_name = "DIR")]
@@ -64,4 +64,11 @@ pub struct RunArgs {
     /// print lines instead of the terminal view
     #[arg(long)]
     pub plain: bool,
+}
+
+/// A side of a room, m.
+fn side(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| {
+        "expected length, width and height in m with commas between them, such as 4,4,3".to_owned()
+    })
 }

@@ -128,8 +128,8 @@ fn admit(listed: &Listed) -> Choice {
     }
     if listed.armed {
         return Choice::Refuse(format!(
-            "system {system} is armed already; expected it on the ground, disarmed: land and disarm it, then give the same command \
-             again"
+            "system {system} is armed already; expected it on the ground, disarmed: land and disarm it, by the transmitter or \
+             with another ground station, then give the same command again"
         ));
     }
     Choice::Vehicle(vehicle, target, stack)

@@ -6,7 +6,7 @@ use std::io;
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
     /// it could not be opened
-    #[error("cannot open {address}: {source}")]
+    #[error("cannot open {address}: {source}{}", in_use(source))]
     Open {
         /// which one
         address: String,
@@ -44,4 +44,14 @@ pub enum LinkError {
     /// the link has ended: its task is gone, or the replay is over
     #[error("the link has ended")]
     Closed,
+}
+
+/// What to do where another program has a local port.
+fn in_use(source: &io::Error) -> &'static str {
+    match source.kind() {
+        io::ErrorKind::AddrInUse => {
+            ". Another program has this port, perhaps another ground station: close it, or let the vehicle send to another port"
+        }
+        _ => "",
+    }
 }

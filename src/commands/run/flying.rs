@@ -136,7 +136,10 @@ fn in_the_air((is_twin, out): (bool, &Path), mode: impl std::fmt::Display, why: 
         true => format!("the twin was left in the air, mode {mode}{why}"),
         false => {
             let kept = text::path(out);
-            format!("the vehicle was left in the air, mode {mode}{why}; its recording is in {kept}")
+            format!(
+                "the vehicle was left in the air, mode {mode}{why}; its recording is in {kept}. Land it by the transmitter or with another \
+                 ground station, and give the same command again when it is disarmed"
+            )
         }
     }
 }

@@ -38,7 +38,7 @@ pub(super) fn finding(battery: &BatteryState, flight_s: f64) -> Finding {
             "battery",
             expected,
             format!("{remaining}, {missing}"),
-            "see that it is charged, and give the hover time of a full battery (--hover-time)",
+            "see that it is charged; mavid fly takes the hover time of a full battery (--hover-time)",
         );
     };
     let lasts_s = 1e-2 * percent * endurance_s;

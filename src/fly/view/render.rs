@@ -214,9 +214,12 @@ fn motion_lines(model: &ViewModel) -> Vec<Line<'_>> {
     let [x, y, z] = attitude.position_m;
     let [vx, vy, vz] = attitude.velocity_m_s;
     vec![
+        // as pilots and autopilots read them: nose up is positive, the heading is clockwise from north
         Line::raw(format!(
-            "roll {:+6.1}  pitch {:+6.1}  yaw {:+6.1} deg",
-            attitude.roll_deg, attitude.pitch_deg, attitude.yaw_deg
+            "roll {:+6.1}  pitch {:+6.1} (nose up)  heading {:5.1} deg",
+            attitude.roll_deg,
+            -attitude.pitch_deg,
+            (-attitude.yaw_deg).rem_euclid(360.0)
         )),
         Line::raw(format!(
             "position {x:+7.2} {y:+7.2} {z:+7.2} m   velocity {vx:+6.2} {vy:+6.2} {vz:+6.2} m/s"
