@@ -262,7 +262,7 @@ fn a_named_latency_is_told_flight_by_flight() {
     let (flights, settings) = ([flight.clone(), flight], ExplainSettings::default());
     let found = explain(&flights, &vehicle, &settings).unwrap();
     let [lag] = found.named.as_slice() else { panic!("{:?}", found.named) };
-    for alone in each_with_model_of_all(&flights, &[false; 2], &found, (&vehicle, &settings)) {
+    for alone in each_with_model_of_all(&flights, (&[false; 2], &[]), &found, (&vehicle, &settings)) {
         let latency = alone.iter().find(|of| of.effect == Some(lag.id)).unwrap();
         let (value, std) = latency.estimate;
         // without the delay that the log itself has, which is below the period of its commands

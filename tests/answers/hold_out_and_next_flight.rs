@@ -340,7 +340,8 @@ fn flights_with_and_without_measured_rotor_speeds_are_explained_together() {
     let [drag] = found.named.as_slice() else { panic!("{:?}", found.named) };
     assert_eq!((drag.id, drag.parameters[0].name), ("linear_drag", "dx"));
     // each flight tells it too, less certainly than both of them
-    for alone in each_with_model_of_all(&flights, &[false; 2], &found, (&vehicles.nominal, &settings)) {
+    for alone in each_with_model_of_all(&flights, (&[false; 2], &[]), &found, (&vehicles.nominal, &settings))
+    {
         let dx = alone.iter().find(|of| of.name == "linear_drag.dx").unwrap();
         let (value, std) = dx.estimate;
         assert!((value - 0.25).abs() < 3.0 * std && std < 0.1, "{dx:?}");
@@ -436,7 +437,7 @@ fn a_hover_within_the_steps_of_its_accelerometer_does_not_tell_the_drag() {
     let trace = Trace::new(&hover, &vehicles.nominal, settings.half_width_s).unwrap();
     assert!(!trace.has_accelerometer());
     let flights = [moving, hover];
-    let each = each_with_model_of_all(&flights, &[false; 2], &found, (&vehicles.nominal, &settings));
+    let each = each_with_model_of_all(&flights, (&[false; 2], &[]), &found, (&vehicles.nominal, &settings));
     let [moving, hover] = each.try_into().unwrap();
     let of = |flight: &[FlightParameter], name: &str| {
         flight.iter().find(|of| of.name == name).map(|of| of.estimate)

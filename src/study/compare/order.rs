@@ -20,10 +20,10 @@ pub(super) fn out_of_order(flights: &[Begun<'_>], first: usize) -> Option<Note> 
 
 /// Sorts the flights of a history by their start times, where each is known; whether that moved one.
 pub(super) fn by_start_times<T>(flights: &mut [T], start_utc_us: impl Fn(&T) -> Option<u64>) -> bool {
-    let is_moved = flights.iter().all(|one| start_utc_us(one).is_some())
-        && !flights.is_sorted_by_key(|one| start_utc_us(one));
+    let is_moved =
+        flights.iter().all(|one| start_utc_us(one).is_some()) && !flights.is_sorted_by_key(&start_utc_us);
     if is_moved {
-        flights.sort_by_key(|one| start_utc_us(one));
+        flights.sort_by_key(start_utc_us);
     }
     is_moved
 }
