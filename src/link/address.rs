@@ -65,12 +65,16 @@ pub enum AddressError {
         got: String,
     },
     /// it is the bare path of a device
-    #[error("expected a serial port with its rate in bits a second, like `serial:{path}:57600`, got `{got}`")]
+    #[error(
+        "expected a serial port with its rate in bits a second, like `serial:{path}:{baud}`, got `{got}`"
+    )]
     Device {
         /// the text
         got: String,
         /// the device
         path: String,
+        /// the rate that was given, or a usual one
+        baud: u32,
     },
     /// a host is missing
     #[error("expected a host name or IP address (IPv6 in brackets) in `{got}`, got `{host}`")]
@@ -102,9 +106,13 @@ impl FromStr for Address {
     type Err = AddressError;
 
     fn from_str(text: &str) -> Result<Self, AddressError> {
-        let form = || match text.split(':').next() {
-            Some(path) if is_device(path) => AddressError::Device { got: text.into(), path: path.into() },
-            _ => AddressError::Form { got: text.into() },
+        let form = || {
+            let (path, rest) = text.split_once(':').unwrap_or((text, ""));
+            if !is_device(path) {
+                return AddressError::Form { got: text.into() };
+            }
+            let baud = rest.parse().ok().filter(|baud| *baud > 0).unwrap_or(USUAL_BAUD);
+            AddressError::Device { got: text.into(), path: path.into(), baud }
         };
         let (kind, rest) = text.split_once(':').ok_or_else(form)?;
         // as other programs write it: `udp://:14540` waits on all interfaces
@@ -126,6 +134,9 @@ impl FromStr for Address {
         }
     }
 }
+
+/// Rate of a usual telemetry radio, bits a second.
+const USUAL_BAUD: u32 = 57_600;
 
 /// Whether a text is the name of a serial port on Linux, macOS or Windows.
 fn is_device(text: &str) -> bool {
@@ -244,7 +255,7 @@ mod tests {
             ("serial::57600", "serial:PATH:BAUD"),
             ("pty:", "pty:PATH"),
             ("/dev/ttyUSB0", "`serial:/dev/ttyUSB0:57600`, got"),
-            ("/dev/ttyUSB0:115200", "`serial:/dev/ttyUSB0:57600`, got `/dev/ttyUSB0:115200`"),
+            ("/dev/ttyUSB0:115200", "`serial:/dev/ttyUSB0:115200`, got `/dev/ttyUSB0:115200`"),
             ("COM3", "`serial:COM3:57600`"),
             ("computer:14550", "udpin:HOST:PORT"),
         ] {

@@ -59,15 +59,18 @@ fn rows(places: &[usize], covariance: impl Fn(usize, usize) -> f64) -> Vec<Vec<O
     possible(places.iter().map(|i| places.iter().map(|j| of(*i, *j)).collect()).collect())
 }
 
+/// Least variance, over those of the parameters, that a combination of them has: with less, four written digits may have a negative one.
+const LEAST: f64 = 1e-3;
+
 /// Correlations that errors can have. Forces and torques are estimated one after the other, and what both bear on has its covariance from
-/// one of them. All correlations are then brought towards none by the same share, until no combination of the parameters has a negative
+/// one of them. All correlations are then brought towards none by the same share, until each combination of the parameters has a
 /// variance. The standard errors stay.
 fn possible(mut rows: Vec<Vec<Option<f64>>>) -> Vec<Vec<Option<f64>>> {
     let count = rows.len();
     let all = DMatrix::from_fn(count, count, |i, j| if i == j { 1.0 } else { rows[i][j].unwrap_or(0.0) });
     let least = all.symmetric_eigenvalues().iter().copied().fold(1.0, f64::min);
-    if least < 0.0 {
-        let left = 1.0 / (1.0 - least);
+    if least < LEAST {
+        let left = (1.0 - LEAST) / (1.0 - least);
         for (i, row) in rows.iter_mut().enumerate() {
             for (_, of) in row.iter_mut().enumerate().filter(|(j, _)| *j != i) {
                 *of = of.map(|of| left * of);
@@ -98,7 +101,7 @@ mod tests {
         let told = of([[4.0, -2.8, 0.2], [-2.8, 1.0, 0.1], [0.2, 0.1, 1.0]]);
         let matrix = DMatrix::from_fn(3, 3, |i, j| told[i][j].unwrap());
         let least = matrix.symmetric_eigenvalues().min();
-        assert!(least.abs() < 1e-9, "{least}");
+        assert!((least - LEAST).abs() < 1e-9, "{least}");
         assert!((0..3).all(|i| matrix[(i, i)] == 1.0) && (-1.0..-0.9).contains(&matrix[(0, 1)]), "{matrix}");
     }
 }

@@ -121,8 +121,6 @@ pub fn differing(
         let pairs = pairs.into_iter().map(|(own, first)| Agreement {
             identified: first.held_out,
             identified_std: first.held_out_std,
-            // which flights have a weak rotor is told with its name
-            relevance: own.relevance.filter(Relevance::is_of_an_amount),
             ..own
         });
         let mut pairs: Vec<Agreement> = pairs.collect();

@@ -20,8 +20,6 @@ const SCATTER: f64 = 0.08;
 /// Difference of one rotor that is ordinary (-): no two motors and propellers are more alike. Set by judgement: with
 /// less, ordinary vehicles would have it.
 const ALIKE: f64 = 0.005;
-/// Difference of one rotor between flights of one vehicle (-): a motor that is warmer, a blade that is nicked. Set by judgement.
-const WORN: f64 = 0.03;
 /// Difference of a second rotor, as a share of that of the first, below which it is none. Set by judgement; measured
 /// only together with all conditions of a name (see `Gates`).
 const BESIDE: f64 = 0.33;
@@ -44,11 +42,7 @@ pub static SIGNATURE: Signature = Signature {
         says: |term, slot| slot == ROTOR || term.values[slot] != 0.0,
         ..Naming::PLAIN
     },
-    role: Role {
-        which: Some(ROTOR),
-        of_the_vehicle: Some(OfTheVehicle { slots: &[FACTOR], least_difference: WORN }),
-        ..Role::NONE
-    },
+    role: Role { which: Some(ROTOR), of_the_vehicle: Some(OfTheVehicle::of(&[FACTOR])), ..Role::NONE },
     joint: Joint {
         forms: Some(|recorded: &Recorded, _| {
             terms(recorded.airframe.as_ref().map_or(0, |airframe| airframe.rotor_count()))

@@ -235,7 +235,7 @@ fn nothing(study: &ExplainStudy) -> String {
                 "Fly a trajectory that moves all axes (mavid plan)",
             )
         } else {
-            (format!("no velocity or no attitude is recorded in {these}"), "Log both")
+            (format!("velocity and attitude are not both recorded in {these}"), "Log both")
         };
         return format!(
             "Too little excitation: {why}, so drag, damping, ground effect and similar effects could not be detected at any usual \
@@ -293,7 +293,8 @@ fn taken_back(Refuted { names, worse_percent }: &Refuted, shown_on: &ValidationD
     let them = if names.len() > 1 { "them" } else { "it" };
     format!(
         "No name holds. What was explained shows {}, but with {them} the 0.5 s errors on {} are {} % larger in the mean. Why the two \
-         differ is not known, so the model stays the rigid body. Fly again, and give both flights.",
+         differ is not known, so the model stays the rigid body. Fly again, and give both flights; mavid compare tells whether the \
+         vehicle changed in between.",
         list(names),
         shown_on.words(),
         significant(*worse_percent, 2)

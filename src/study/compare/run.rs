@@ -53,7 +53,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     let Known { loaded: LoadedVehicle { vehicle, .. }, draft, .. } = known;
     notes.extend(left_out.iter().map(LeftOut::note));
     notes.extend(of_flights(&flights, &starts_utc_us, first));
-    notes.extend(reordered.then(|| Note::remark(About::Vehicle, REORDERED)));
+    notes.extend(reordered.then(|| Note::warning(About::Estimate, REORDERED)));
     let balance = balance(&legs);
     progress.stage(Stage::Explaining);
     let Motion { tracks, alone, reasons, notes: of_motion } = moved(request, &flights, &vehicle, progress);

@@ -74,7 +74,7 @@ impl FlightLimit {
                 "the vehicle hardly moves, so drag, damping, ground effect and similar effects could not be detected".to_owned()
             }
             Self::NoVelocity => {
-                "no velocity or no attitude is recorded, so drag, damping, ground effect and similar effects could not be detected".to_owned()
+                "velocity and attitude are not both recorded, so drag, damping, ground effect and similar effects could not be detected".to_owned()
             }
             Self::FewPeriods { moving_s, period_s } => {
                 let of = period_s.map_or_else(

@@ -164,8 +164,8 @@ impl Task<'_> {
             let (study, in_own_wind) = self.with_own_wind(study, flights, (held, &shown_on));
             let held = in_own_wind.as_ref().unwrap_or(held);
             let mut study = self.with_own_mass(study, flights, (held, &shown_on));
-            let worthless = study.worthless().or_else(|| study.unsupported());
-            let worthless = worthless.filter(|of| !settings.refused.contains(&of.id));
+            let worthless = study.worthless().filter(|of| !settings.refused.contains(&of.id));
+            let worthless = worthless.or_else(|| study.unsupported());
             let refuted = study.refuted_by_holdout();
             let is_refuted = refuted.is_some();
             // one of several that does harm leaves first: what is left is judged again
@@ -186,11 +186,15 @@ impl Task<'_> {
                     unsure.push((of.id, of.name));
                     more
                 }
+                // what is in one flight alone may stand behind it, and is looked for again
+                (None, Some(of)) if of.by == BetterBy::NoFlight => {
+                    settings.refused.push(of.id);
+                    notes.push(of.note());
+                    continue;
+                }
                 (None, Some(of)) => {
                     let more = (of.id, of.note());
-                    if of.by != BetterBy::NoFlight {
-                        withdrawn.push((of.id, of.name));
-                    }
+                    withdrawn.push((of.id, of.name));
                     more
                 }
                 (None, None) => {

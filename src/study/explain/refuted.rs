@@ -25,7 +25,8 @@ impl Refuted {
     }
 }
 
-/// An effect that the flights explained would name, and that flights that were not used do not confirm.
+/// An effect that the flights explained would name, and that does not hold: flights that were not used do not confirm it, or no flight of
+/// several shows it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Worthless {
     /// the effect
@@ -38,14 +39,14 @@ pub(super) struct Worthless {
     pub(super) by: BetterBy,
 }
 
-/// What predicts a hold-out better than a model with a named effect.
+/// What speaks against a named effect: what predicts a hold-out better than a model with it, or the flights themselves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum BetterBy {
     /// the model without the effect
     Without,
     /// the rigid body alone, or a state that does not change
     Baseline,
-    /// nothing: no flight of several shows the effect alone, and all together show less than a name needs
+    /// no single flight of several shows the effect, and all together show less than a name needs
     NoFlight,
 }
 
@@ -60,9 +61,14 @@ impl Worthless {
                 "it follows the height, as a thrust that drifts does, and a state that does not change or the rigid body alone \
                  predicts the hold-out better than the model with it, over 0.5 s by {percent} % in the mean"
             ),
-            BetterBy::NoFlight => format!(
-                "no flight shows it alone, and its size from all of them together is less than {NAME_Z} standard errors"
-            ),
+            BetterBy::NoFlight => {
+                let text = format!(
+                    "all flights together would give a name to {}, but no single flight shows it, and their mean is less than {NAME_Z} \
+                     standard errors from none, so it gets none",
+                    self.name
+                );
+                return Note::warning(About::Estimate, text);
+            }
         };
         let text =
             format!("the flights explained alone would give a name to {}; {why}, so it gets none", self.name);
