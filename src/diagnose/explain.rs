@@ -27,7 +27,6 @@ use super::trace_error::TraceError;
 use crate::physics::PhysicsError;
 use crate::signals::{Signals, WEAK_HALF_WIDTH_S};
 use crate::vehicle::Vehicle;
-use std::ops::Range;
 
 /// Settings of an explanation.
 #[derive(Debug, Clone)]
