@@ -83,8 +83,8 @@ const LACK_FORCE_G: f64 = 0.002;
 /// Least torque that is left at the harmonics, as a share of the rms of the torque. On eleven flights of ArduCopter's simulator with vehicles
 /// that were drafted from their parameters, 0.10 to 0.18 was left of torques whose arms and curves are guesses.
 const LACK_TORQUE: f64 = UNNAMED_TORQUE;
-/// Channel of the torque about body z.
-const TORQUE_Z: usize = 5;
+/// Channel of the torque about body z: the last of the axes.
+const TORQUE_Z: usize = AXES - 1;
 /// Least share of the energy of the accepted effect that a rival must explain. Set by judgement; measured only
 /// together with all conditions of a finding (see `Gates`).
 const RIVAL: f64 = 0.93;

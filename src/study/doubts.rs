@@ -15,6 +15,11 @@ const CONTRADICTION: &str = "the recorded motion does not go with the rotors of 
 pub(super) const TWO_VEHICLES: &str =
     "the flights given together differ by more than flights of one vehicle do";
 
+/// Largest ratio of an estimated mass to that of the vehicle file, or its inverse, without a note: a battery or a small payload.
+const ORDINARY_MASS: f64 = 1.15;
+/// Standard errors of the estimate that do not count. The usual 95 %.
+const WITHIN: f64 = 2.0;
+
 /// What speaks against an answer, clause by clause: what the vehicle file states and is hardly meant, rotors other
 /// than the autopilot's, and results that are far from the file's.
 pub(super) fn doubts<'a>(
@@ -38,11 +43,6 @@ pub(super) fn doubts<'a>(
     doubts.extend(odd.iter().map(|odd| format!("implausible vehicle data, {}", odd.trim_end_matches('?'))));
     doubts
 }
-
-/// Largest ratio of an estimated mass to that of the vehicle file, or its inverse, without a note: a battery or a small payload.
-const ORDINARY_MASS: f64 = 1.15;
-/// Standard errors of the estimate that do not count. The usual 95 %.
-const WITHIN: f64 = 2.0;
 
 /// A note on a mass by the stated thrust, kg with its standard error, that differs from the stated one by more than files do.
 pub(in crate::study) fn of_mass((kg, std_kg): (f64, f64), stated_kg: f64) -> Option<Note> {

@@ -52,8 +52,7 @@ pub fn compare(request: &CompareRequest, progress: &dyn Progress) -> Result<Comp
     notes.splice(0..0, of_vehicle(request, &known));
     let Known { loaded: LoadedVehicle { vehicle, .. }, draft, .. } = known;
     notes.extend(left_out.iter().map(LeftOut::note));
-    notes.extend(of_flights(&flights, &starts_utc_us, first));
-    notes.extend(reordered.then(|| Note::warning(About::Estimate, REORDERED)));
+    notes.extend(of_flights(&flights, &starts_utc_us, (first, reordered)));
     let balance = balance(&legs);
     progress.stage(Stage::Explaining);
     let Motion { tracks, alone, reasons, notes: of_motion } = moved(request, &flights, &vehicle, progress);
@@ -121,10 +120,15 @@ fn given(request: &CompareRequest) -> Result<(VehicleGiven, Option<Known>, Optio
 }
 
 /// What is to be known of the flights: their order, their logs, and what is doubtful about their data.
-fn of_flights(flights: &Prepared, starts_utc_us: &[Option<u64>], first: usize) -> Vec<Note> {
+fn of_flights(
+    flights: &Prepared,
+    starts_utc_us: &[Option<u64>],
+    (first, reordered): (usize, bool),
+) -> Vec<Note> {
     let paths = flights.inputs.iter().map(|input| input.path.as_str());
     let begun: Vec<_> = starts_utc_us.iter().copied().zip(paths).collect();
     let mut notes: Vec<Note> = out_of_order(&begun, first).into_iter().collect();
+    notes.extend(reordered.then(|| Note::warning(About::Estimate, REORDERED)));
     notes.extend(said_of(&flights.inputs));
     notes.extend(other_settings(&flights.recordings));
     notes.extend(doubts(flights));

@@ -187,8 +187,8 @@ impl ExplainStudy {
                 self.notes.push(Note::warning(About::File(input.path.clone()), text));
             } else if kg != 0.0 {
                 let text = format!(
-                    "its thrust carries {} kg {} than that of the others, by a load, another battery or a thrust that is not that of its commands. That \
-                     is the flight's own, and the model has the mass without it",
+                    "its rotors carry {} kg {} than in the others: a load, another battery, or rotors that give another thrust. That is the \
+                     flight's own, and the model has the mass without it",
                     significant(kg.abs(), 2),
                     if kg > 0.0 { "more" } else { "less" }
                 );

@@ -25,6 +25,7 @@ mod request;
 mod result;
 mod run;
 mod short;
+mod taken_back;
 mod traces;
 mod unshown;
 mod unsupported;

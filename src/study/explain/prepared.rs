@@ -7,6 +7,7 @@ use super::limited::{FlightLimit, limits_of_flights};
 use super::refuted::BetterBy;
 use super::result::{ExplainStudy, Given};
 use super::short::Short;
+use super::taken_back::{gone_with, tell_gone};
 use super::traces::traces_of;
 use super::validation_data::ValidationData;
 use crate::diagnose::holdout::{Agreement, HoldoutSettings};
@@ -160,10 +161,8 @@ impl Task<'_> {
             }
             self.progress.stage(Stage::Predicting);
             let given = self.given(flights, settings.clone());
-            let study = self.evaluated(given, explanation, flights, (held, back, shown_on.clone()));
-            let (study, in_own_wind) = self.with_own_wind(study, flights, (held, &shown_on));
+            let (mut study, in_own_wind) = self.shown(given, explanation, flights, (held, back, &shown_on));
             let held = in_own_wind.as_ref().unwrap_or(held);
-            let mut study = self.with_own_mass(study, flights, (held, &shown_on));
             let worthless = study.worthless().filter(|of| !settings.refused.contains(&of.id));
             let worthless = worthless.or_else(|| study.unsupported());
             let refuted = study.refuted_by_holdout();
@@ -198,14 +197,7 @@ impl Task<'_> {
                     more
                 }
                 (None, None) => {
-                    // one that came back as a part of what stays has its name
-                    for gone in [&mut unsure, &mut withdrawn] {
-                        gone.retain(|(id, _)| study.effects.iter().all(|named| named.id != *id));
-                    }
-                    study.withdrawn = withdrawn.into_iter().map(|(_, name)| name).collect();
-                    if let Some(short) = &mut study.short {
-                        short.unsure = unsure.into_iter().map(|(_, name)| name).collect();
-                    }
+                    tell_gone(&mut study, unsure, withdrawn);
                     return Ok((study, notes));
                 }
             };
@@ -214,6 +206,20 @@ impl Task<'_> {
             notes.push(note);
             self.progress.stage(Stage::ExplainingAgain);
         }
+    }
+
+    /// An explanation on hold-outs, with their own wind and mass where that counts; the hold-outs as they are seen then.
+    fn shown(
+        &self,
+        given: Given,
+        explanation: Explanation,
+        flights: &Prepared,
+        (held, back, shown_on): (&Prepared, Option<&Signals>, &ValidationData),
+    ) -> (ExplainStudy, Option<Prepared>) {
+        let study = self.evaluated(given, explanation, flights, (held, back, shown_on.clone()));
+        let (study, in_own_wind) = self.with_own_wind(study, flights, (held, shown_on));
+        let held = in_own_wind.as_ref().unwrap_or(held);
+        (self.with_own_mass(study, flights, (held, shown_on)), in_own_wind)
     }
 
     fn explanation(&self, flights: &Prepared, settings: &ExplainSettings) -> Result<Explanation, StudyError> {
@@ -335,23 +341,6 @@ impl Task<'_> {
         }
         Ok(of_part)
     }
-}
-
-/// The effects that a flight is explained without after one (`id`) was taken back: what would take its place has no more to stand on. Of one
-/// that the flight does not show (`is_unshown`), a part of it goes too, as drag along z of a drag.
-fn gone_with(
-    (id, is_unshown): (&str, bool),
-    study: &ExplainStudy,
-    settings: &ExplainSettings,
-) -> Vec<&'static str> {
-    let terms = &study.explanation.search.after.base.effects;
-    let is_part = |of: &str| {
-        let whole = signature_of(of).and_then(|of| of.role.axial_part_of);
-        is_unshown && whole.is_some_and(|whole| whole.id() == id)
-    };
-    let stays = |of: &str| of != id && !is_part(of) && terms.iter().any(|term| term.id() == of);
-    let ids = settings.signatures.iter().map(|signature| signature.id());
-    ids.filter(|id| !stays(id)).collect()
 }
 
 /// The part held back is another's, or what is left of the part explained drifts with time. Or its mass is another one, as after a drop

@@ -158,22 +158,19 @@ impl ExplainStudy {
 
     /// The same with izz as the vehicle file states it, see [`Explanation::keeping_about_z`]: what is written and told.
     pub(super) fn keeping_about_z(self) -> Self {
-        let about_z = |fit: &Fitted| fit.base.vehicle.body.inertia_kg_m2[(2, 2)];
-        let told = about_z(self.fitted());
+        let about_z = |of: &Self| of.fitted().base.vehicle.body.inertia_kg_m2[(2, 2)];
+        let told_kg_m2 = about_z(&self);
         let explanation = self.explanation.keeping_about_z(&self.given.vehicle);
-        let search = &explanation.search;
-        let kept = if explanation.verdict == Verdict::Unexplained { &search.before } else { &search.after };
-        let factor = about_z(kept) / told;
-        let mut along = self.along;
-        let of_each = along.iter_mut().flat_map(|along| along.tracks.iter_mut());
-        of_each.filter(|track| track.turns_about_z()).for_each(|track| track.scale(factor));
-        Self {
-            along,
+        let mut kept = Self {
             effects: for_readers(&explanation.named, explanation.airspeed_m_s),
             closest: for_readers(&explanation.closest, explanation.airspeed_m_s),
             explanation,
             ..self
-        }
+        };
+        let factor = about_z(&kept) / told_kg_m2;
+        let of_each = kept.along.iter_mut().flat_map(|along| along.tracks.iter_mut());
+        of_each.filter(|track| track.turns_about_z()).for_each(|track| track.scale(factor));
+        kept
     }
 
     /// In one word.
