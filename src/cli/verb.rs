@@ -27,7 +27,7 @@ pub struct Cli {
     /// Print one JSON document on standard output and nothing else there
     #[arg(long, global = true)]
     pub json: bool,
-    /// Colours on a terminal. NO_COLOR in the environment is never as well
+    /// Colours on a terminal. NO_COLOR in the environment means never where this is auto
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t)]
     pub color: ColorChoice,
     /// how much is said

@@ -80,7 +80,7 @@ fn summary(out: &str, redacted: &Redacted) -> String {
     let of_fields = format!("{} of {fields}", counted(tally.emptied, "value"));
     lines.push(format!("emptied: {of_fields}{}", listed(&redacted.emptied)));
     lines.push(format!("left out: {}{}", counted(tally.left_out, "message"), listed(&redacted.left_out)));
-    lines.push("read back: nothing of it is left".to_owned());
+    lines.push("read back: none of these is left. Texts keep plain words and short numbers: read them before you share the log".to_owned());
     lines.push("heights, times, the names of parameters and the flight in metres stay".to_owned());
     lines.join("\n")
 }

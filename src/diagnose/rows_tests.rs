@@ -85,6 +85,7 @@ pub(in super::super) fn turning_on_the_spot() -> Signals {
             gyro_noise_rad_s: None,
             height_by_pose: None,
             position_by_receiver: false,
+            steady_voltage_v: None,
             torque_std: 0.0,
             simulated: false,
             notes: Vec::new(),

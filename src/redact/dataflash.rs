@@ -1,7 +1,8 @@
 //! DataFlash logs: messages behind two bytes and a number, as the definitions in the log say.
 
-use super::names::{Coordinate, coordinate, is_identity, is_secret_parameter, is_suspicious};
+use super::names::{Coordinate, coordinate, is_identity, is_secret_parameter};
 use super::pass::{Kind, Pass};
+use super::texts::Part;
 use crate::autopilot::DATAFLASH_MARKER;
 use std::collections::BTreeMap;
 
@@ -107,7 +108,7 @@ impl Definition {
             let of = coordinate(label).or_else(|| (*letter == b'L').then(|| by_letter(label)));
             match (letter, of) {
                 (b'N', _) => named = text(value),
-                (b'Z' | b'n', _) if is_suspicious(&text(value)) => return None,
+                (b'Z', _) => pass.cover(|| format!("words of {}.{label}", self.name), value, Part::default()),
                 (b'L' | b'i', Some(of)) => pass.move_in((of, Kind::E7), label, value),
                 (b'f' | b'd', Some(of)) => pass.move_in((of, Kind::Degrees), label, value),
                 (b'f' | b'd', None) if self.name == "PARM" && is_secret_parameter(&named) => {

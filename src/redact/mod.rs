@@ -5,6 +5,7 @@ mod error;
 mod names;
 mod pass;
 mod redaction;
+mod texts;
 mod tlog;
 mod ulog;
 

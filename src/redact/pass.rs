@@ -1,6 +1,7 @@
 //! One pass over a log: what is moved, emptied and left out.
 
 use super::names::Coordinate;
+use super::texts::{self, Part};
 use std::collections::BTreeMap;
 
 /// Where the flight is moved to, degrees: beside the point without a position, where a degree of longitude is as long as one of
@@ -84,6 +85,14 @@ impl Pass {
             self.tally.emptied += 1;
             *self.emptied.entry(name()).or_default() += 1;
             bytes.fill(0);
+        }
+    }
+
+    /// Covers in a text what may tell hardware, a key or a place: that of a field of this name.
+    pub(super) fn cover(&mut self, name: impl FnOnce() -> String, text: &mut [u8], part: Part) {
+        if texts::cover(text, part) {
+            self.tally.emptied += 1;
+            *self.emptied.entry(name()).or_default() += 1;
         }
     }
 

@@ -24,6 +24,7 @@ type Walk = fn(&[u8], &mut Pass) -> Vec<u8>;
 ///
 /// Latitude and longitude are moved: the flight over the ground stays as it was in metres, elsewhere on the Earth. Heights,
 /// times and names of parameters stay. Messages that may hold a position, a serial number or a key in another form are left out.
+/// Free text keeps plain words and short numbers.
 ///
 /// # Errors
 /// [`RedactError`] where it is no such log, or where the redacted log still holds something.

@@ -1,9 +1,10 @@
 //! Telemetry logs: stamps of eight bytes, each with a MAVLink frame.
 
-use super::names::{Coordinate, is_secret_parameter, is_suspicious};
+use super::names::{Coordinate, is_secret_parameter};
 use super::pass::{Kind, Pass};
+use super::texts::Part;
 use crate::wire::message_id as id;
-use crate::wire::{Check, CrcSeeds, Frame, MARKER_V2, Payload, STAMP_BYTES, checksum};
+use crate::wire::{Check, CrcSeeds, Frame, MARKER_V2, Payload, STAMP_BYTES, STATUSTEXT_BYTES, checksum};
 
 /// Messages that hold neither a position on the Earth nor a name of the hardware.
 const HARMLESS: &[u32] = &[
@@ -127,18 +128,10 @@ pub(super) fn walk(log: &[u8], pass: &mut Pass) -> Vec<u8> {
                 out.extend_from_slice(stamp.unwrap_or_default());
                 out.extend_from_slice(&bytes);
             }
-            None => pass.leave_out(name_of(frame.header().message_id)),
+            None => pass.leave_out(format!("MAVLink message {}", frame.header().message_id)),
         }
     }
     out
-}
-
-/// What a message that is left out is called.
-fn name_of(message: u32) -> String {
-    match message {
-        id::STATUSTEXT => "text that looks like a serial number, a key or a place".to_owned(),
-        number => format!("MAVLink message {number}"),
-    }
 }
 
 /// A frame without what is not to be shared, unsigned; `None` where it is left out.
@@ -161,8 +154,11 @@ fn redacted(frame: &Frame<'_>, pass: &mut Pass, seeds: &CrcSeeds) -> Option<Vec<
             pass.empty(|| "AUTOPILOT_VERSION.uid".to_owned(), grown(&mut payload, 78).get_mut(8..16)?);
             pass.empty(|| "AUTOPILOT_VERSION.uid2".to_owned(), payload.get_mut(60..78)?);
         }
-        id::STATUSTEXT if is_suspicious(&Payload(&payload).text(1, 50)) => return None,
-        id::STATUSTEXT => {}
+        id::STATUSTEXT => {
+            let part = part_of(Payload(&payload));
+            let end = payload.len().min(1 + STATUSTEXT_BYTES);
+            pass.cover(|| "words of STATUSTEXT".to_owned(), payload.get_mut(1..end)?, part);
+        }
         _ if HARMLESS.contains(&message) => {}
         _ => {
             let (_, from) = *POSITIONS.iter().find(|(of, _)| *of == message)?;
@@ -172,6 +168,14 @@ fn redacted(frame: &Frame<'_>, pass: &mut Pass, seeds: &CrcSeeds) -> Option<Vec<
         }
     }
     Some(rebuilt(frame.bytes(), payload, sent, seeds.get(message)?))
+}
+
+/// A text with a number is one of several that follow each other, and a word may lie in two of them.
+fn part_of(payload: Payload<'_>) -> Part {
+    let (id, chunk) = (payload.u16(51), payload.u8(53));
+    // the text's last letter
+    let is_full = payload.u8(STATUSTEXT_BYTES) != 0;
+    Part { is_continued: chunk > 0, goes_on: id != 0 && is_full }
 }
 
 /// The payload with so many bytes at least: zeros at its end are not sent.

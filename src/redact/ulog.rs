@@ -2,11 +2,14 @@
 
 use super::names::{coordinate, is_identity, is_secret_parameter, is_suspicious};
 use super::pass::{Kind, Pass};
+use super::texts::Part;
 use crate::autopilot::{ULOG_DEEPEST, ULOG_HEAD_BYTES, ULOG_MAGIC};
 use std::collections::BTreeMap;
 
 /// Length and kind before each message.
 const HEAD_BYTES: usize = 3;
+/// What the words of the autopilot are called.
+const TEXT: &str = "words of texts";
 /// Topics whose bytes hold positions or names of the hardware in forms of their own.
 const OPAQUE: &[&str] = &[
     "gps_dump",
@@ -95,10 +98,10 @@ impl Schema {
             }
             b'P' => secret(body, 0, &mut out, pass)?,
             b'Q' => secret(body, 1, &mut out, pass)?,
-            // texts of the boot, of performance counters, of faults; words of the autopilot
+            // texts of the boot, of performance counters, of faults
             b'M' => return None,
-            b'L' if is_suspicious(&String::from_utf8_lossy(body.get(9..)?)) => return None,
-            b'C' if is_suspicious(&String::from_utf8_lossy(body.get(11..)?)) => return None,
+            b'L' => pass.cover(|| TEXT.to_owned(), out.get_mut(9..)?, Part::default()),
+            b'C' => pass.cover(|| TEXT.to_owned(), out.get_mut(11..)?, Part::default()),
             _ => {}
         }
         Some(out)
@@ -115,7 +118,6 @@ impl Schema {
             b'A' => "subscription to such a topic".to_owned(),
             b'I' => "information on the hardware".to_owned(),
             b'M' => "texts of the boot".to_owned(),
-            b'L' | b'C' => "text that looks like a serial number, a key or a place".to_owned(),
             _ => "damaged message".to_owned(),
         }
     }

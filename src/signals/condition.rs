@@ -16,6 +16,7 @@ use super::rotor_thrusts::ThrustSource;
 use super::select::{best, best_of, mean_rate_hz, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
 use super::usable::{Evidence, Usable, airborne_spans, usable};
+use super::voltage::{battery_voltage_v, steady_voltage_v};
 use super::{Grid, SignalsError, WeakKernel, plausible, sufficient};
 use crate::autopilot::is_simulated;
 use crate::note::Note;
@@ -142,6 +143,7 @@ pub fn condition(
             torque_std: actuation.torque_std(),
             height_by_pose: is_height_by_pose(recording),
             position_by_receiver: is_position_by_receiver(recording),
+            steady_voltage_v: steady_voltage_v(recording),
             simulated: is_simulated(|name| recording.parameters.get(name).copied()),
             notes,
         },
@@ -387,12 +389,4 @@ impl Motion {
         let world_acceleration = plain(chosen.world_acceleration);
         Self { attitude, rate, specific_force, world_acceleration, position, velocity, offsets }
     }
-}
-
-/// Battery voltage by linear interpolation, V.
-fn battery_voltage_v(recording: &Recording, grid: &Grid) -> Option<Vec<f64>> {
-    let (_, raw) = best(recording, Quantity::BatteryVoltage, |s| s.width == 1)?;
-    let known = raw.time_s.iter().zip(&raw.values).filter(|(_, volts)| (0.1..1e3).contains(*volts));
-    let (time_s, values) = known.map(|(time_s, volts)| (*time_s, *volts)).unzip();
-    super::linear_onto(&Stream { time_s, width: 1, values }, 0.0, grid)
 }

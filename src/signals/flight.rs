@@ -138,6 +138,8 @@ pub struct Quality {
     pub height_by_pose: Option<bool>,
     /// a satellite receiver gives the position
     pub position_by_receiver: bool,
+    /// voltage of a battery that never changes, as a simulator's may, V: no effect can be told from it; `None` where it changes
+    pub steady_voltage_v: Option<f64>,
     /// a simulator flew it: its parameters say that the inertial unit is simulated
     pub simulated: bool,
     /// notes for the user
@@ -179,6 +181,7 @@ mod tests {
                 torque_std: 0.0,
                 height_by_pose: None,
                 position_by_receiver: false,
+                steady_voltage_v: None,
                 simulated: false,
                 notes: Vec::new(),
             },

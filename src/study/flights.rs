@@ -214,6 +214,10 @@ pub fn unread(path: &Path, error: LogError) -> StudyError {
     match error {
         // these name it
         LogError::Open { .. } | LogError::Table(_) => StudyError::Log(error),
+        // a log that is damaged from its start on
+        LogError::Empty | LogError::WrongContent { .. } | LogError::NoVehicle { .. } => {
+            StudyError::NoFlight { file: text::path(&path), why: error.to_string() }
+        }
         _ => StudyError::File { file: text::path(&path), why: error.to_string() },
     }
 }

@@ -80,7 +80,10 @@ pub fn story(
     if json {
         output::json(&Document::new(&context, made))?;
     } else {
-        output::text(&format!("\n{}", places(&context, &made)))?;
+        // on a terminal the steps of the last stage stand below the answer
+        let again = (output::is_one_terminal() && !context.is_brief()).then(|| answer(study));
+        let parts = [again, Some(places(&context, &made))];
+        output::text(&format!("\n{}", parts.into_iter().flatten().collect::<Vec<_>>().join("\n\n")))?;
     }
     match record {
         Some(record) => fly::outcome(record, Some(Ok(explain::outcome(study)))),

@@ -242,6 +242,7 @@ impl SimulatedSeries {
                 gyro_noise_rad_s: Some(like.gyro_noise_rad_s),
                 height_by_pose: like.height_by_pose,
                 position_by_receiver: like.position_by_receiver,
+                steady_voltage_v: None,
                 torque_std: like.torque_std,
                 simulated: like.simulated,
                 notes: Vec::new(),

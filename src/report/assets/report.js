@@ -15,6 +15,13 @@
   function rough(value) { return value == null ? '–' : String(+value.toPrecision(4)); }
   function read(box) { return JSON.parse(box.querySelector('script').textContent); }
 
+  // a tick's value, short enough for its place
+  function tick(value) {
+    if (value == null) return '';
+    var size = Math.abs(value);
+    return size !== 0 && (size >= 1e5 || size < 1e-4) ? value.toExponential().replace('e+', 'e') : String(+value.toPrecision(8));
+  }
+
   // the tables of a panel's lines and bands on one abscissa
   function joined(of) {
     var tables = [], last = null;
@@ -61,13 +68,17 @@
     var first = 1 + of.lines.length;
     var axis = { stroke: ink, grid: { stroke: 'rgba(128,128,128,0.2)', width: 1 }, ticks: { stroke: 'rgba(128,128,128,0.4)', width: 1 }, font: '12px system-ui, sans-serif', labelFont: '12px system-ui, sans-serif' };
     var narrow = box.clientWidth < 500;
+    var ticks = function (u, values) { return values.map(tick); };
+    // bars are whole at the ends too
+    var room = of.lines.some(function (line) { return line.stroke === 'stems'; }) ? 0.03 : 0;
+    var wide = function (u, low, high) { var more = room * (high - low); return [low - more, high + more]; };
     var key = of.cursor == null ? null : 'time' + of.cursor;
     return {
       title: '', width: box.clientWidth, height: narrow ? 220 : 250,
-      scales: { x: { time: false, distr: of.log[0] ? 3 : 1 }, y: { distr: of.log[1] ? 3 : 1 } },
+      scales: { x: Object.assign({ time: false, distr: of.log[0] ? 3 : 1 }, room ? { range: wide } : {}), y: { distr: of.log[1] ? 3 : 1 } },
       axes: [
-        Object.assign({ label: of.x_label, labelSize: 18, size: 34 }, axis),
-        Object.assign({ label: of.y_label, labelSize: 18, size: narrow ? 46 : 56 }, axis)
+        Object.assign({ label: of.x_label, labelSize: 18, size: 34, values: ticks }, axis),
+        Object.assign({ label: of.y_label, labelSize: 18, size: narrow ? 46 : 56, values: ticks }, axis)
       ],
       series: series(of),
       // a mark is a line or a dot as it is drawn

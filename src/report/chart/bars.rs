@@ -2,7 +2,7 @@
 
 use super::colour::colour;
 use super::draw::{LETTER, MARK, TOP};
-use super::frame::{WIDTH, framed, tenths};
+use super::frame::{framed_as, tenths};
 use crate::report::number::significant;
 use maud::{Markup, html};
 
@@ -19,8 +19,14 @@ pub struct Bars {
     pub series: Vec<(String, usize, Vec<f64>)>,
 }
 
+/// Dots: so narrow that its words are legible on a phone.
+const WIDTH: f64 = 400.0;
 const LEFT: f64 = 130.0;
-const RIGHT: f64 = 70.0;
+const RIGHT: f64 = 44.0;
+/// Of the title and of what the colours mean.
+const MARGIN: f64 = 8.0;
+/// Between lines of the legend.
+const LINE: f64 = 14.0;
 const BAR: f64 = 11.0;
 const SPACE: f64 = 8.0;
 
@@ -29,27 +35,38 @@ impl Bars {
     #[must_use]
     pub fn inline(&self) -> Markup {
         let group = BAR * self.series.len() as f64 + SPACE;
-        let height = TOP + group * self.names.len() as f64 + 8.0;
-        framed(height, &self.title, &self.drawing(group))
+        let (legend, lines) = self.legend();
+        let top = TOP + LINE * (lines - 1) as f64;
+        let height = top + group * self.names.len() as f64 + 8.0;
+        let drawing = html! {
+            text x=(MARGIN) y="16" font-weight="bold" { (self.title) }
+            (legend)
+            @for (place, name) in self.names.iter().enumerate() {
+                (self.group(place, name, top + group * place as f64, group))
+            }
+        };
+        framed_as("strip", (WIDTH, height), &self.title, &drawing)
     }
 
-    fn drawing(&self, group: f64) -> Markup {
-        // one beside the other, above the bars
-        let places = self.series.iter().scan(LEFT, |at, (label, ..)| {
-            let from = *at;
-            *at += MARK + LETTER * label.chars().count() as f64;
-            Some(from)
-        });
-        html! {
-            text x="8" y="16" font-weight="bold" { (self.title) }
-            @for (place, name) in self.names.iter().enumerate() {
-                (self.group(place, name, TOP + group * place as f64, group))
+    /// What the colours mean, one beside the other while there is room, and its lines.
+    fn legend(&self) -> (Markup, usize) {
+        let (mut x, mut line) = (MARGIN, 0_u32);
+        let mut places = Vec::new();
+        for (label, hue, _) in &self.series {
+            let wide = MARK + LETTER * label.chars().count() as f64;
+            if x > MARGIN && x + wide > WIDTH {
+                (x, line) = (MARGIN, line + 1);
             }
-            @for (x, (label, hue, _)) in places.zip(&self.series) {
-                rect x=(tenths(x)) y=(TOP - 19.0) width="16" height="8" fill=(colour(*hue)) {}
-                text x=(tenths(x + 20.0)) y=(TOP - 11.0) { (label) }
-            }
+            places.push((x, TOP - 11.0 + LINE * f64::from(line), label, *hue));
+            x += wide;
         }
+        let drawing = html! {
+            @for (x, y, label, hue) in places {
+                rect x=(tenths(x)) y=(tenths(y - 8.0)) width="16" height="8" fill=(colour(hue)) {}
+                text x=(tenths(x + 20.0)) y=(tenths(y)) { (label) }
+            }
+        };
+        (drawing, line as usize + 1)
     }
 
     /// A name with one bar for each series.
@@ -62,7 +79,7 @@ impl Bars {
             Some((y + BAR * index as f64, wide, *hue, format!("{} {}", significant(value, 2), self.unit)))
         });
         html! {
-            text x=(LEFT - 8.0) y=(tenths(y + group / 2.0)) text-anchor="end" { (name) }
+            text x=(LEFT - MARGIN) y=(tenths(y + group / 2.0)) text-anchor="end" { (name) }
             @for (top, wide, hue, value) in bars {
                 rect x=(LEFT) y=(tenths(top)) width=(tenths(wide)) height=(BAR - 1.5) fill=(colour(hue)) {}
                 text x=(tenths(LEFT + wide + 4.0)) y=(tenths(top + BAR - 3.0)) font-size="9" { (value) }

@@ -167,6 +167,7 @@ mod tests {
             gyro_noise_rad_s: None,
             height_by_pose: None,
             position_by_receiver: false,
+            steady_voltage_v: None,
             simulated: false,
             notes: Vec::new(),
         };

@@ -1,0 +1,152 @@
+//! Free text of an autopilot: plain words and short numbers stay, everything else is covered.
+
+/// What covers a letter. It is a letter itself, so that a covered text stays as it is when it is read again.
+const COVER: u8 = b'x';
+/// Longest plain word of letters, bytes.
+const LONGEST_WORD: usize = 18;
+/// Most digits of a number that stays: it is a voltage, a count or a version, and no place and no serial number.
+const MOST_DIGITS: usize = 4;
+/// Most decimals of a number that stays: two decimals of a degree are a kilometre.
+const MOST_DECIMALS: usize = 2;
+/// Words after which the next one is covered.
+const BEFORE_SECRET: &[&str] = &[
+    "PASS",
+    "PASSWD",
+    "PASSWORD",
+    "PASSPHRASE",
+    "KEY",
+    "SECRET",
+    "TOKEN",
+    "SSID",
+    "PIN",
+    "SERIAL",
+    "SN",
+    "UID",
+];
+/// Units that may follow a number without a space.
+const UNITS: &[&str] = &[
+    "s", "ms", "us", "V", "mV", "A", "mA", "mAh", "Hz", "kHz", "m", "cm", "mm", "km", "deg", "g", "G", "kg",
+    "W", "Wh", "S",
+];
+
+/// A text's place in a longer one.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Part {
+    /// its first word may be the end of one, or follow a word before which a secret stands
+    pub(super) is_continued: bool,
+    /// its last word may be the start of one
+    pub(super) goes_on: bool,
+}
+
+/// Covers what may be a serial number, a key, a name or a place; whether something was covered.
+pub(super) fn cover(text: &mut [u8], part: Part) -> bool {
+    let before = text.to_vec();
+    let is_of_word = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'.' || byte >= 0x80;
+    let mut is_secret = part.is_continued;
+    let mut at = 0;
+    while at < text.len() && text[at] != 0 {
+        let length = text[at..].iter().take_while(|byte| is_of_word(**byte)).count();
+        if length == 0 {
+            at += 1;
+            continue;
+        }
+        let is_last = part.goes_on && at + length == text.len();
+        let word = &mut text[at..at + length];
+        if is_secret || is_last || !is_plain(word) {
+            word.iter_mut().filter(|byte| **byte != b'.').for_each(|byte| *byte = COVER);
+            is_secret = false;
+        } else {
+            is_secret = BEFORE_SECRET.iter().any(|before| before.as_bytes().eq_ignore_ascii_case(word));
+        }
+        at += length;
+    }
+    text != before
+}
+
+/// A word of letters, a short number with or without a unit, or capitals with a number as the parts of an autopilot have (`EKF3`).
+fn is_plain(word: &[u8]) -> bool {
+    let Ok(word) = std::str::from_utf8(word) else { return false };
+    let word = word.trim_matches('.');
+    if !word.is_ascii() {
+        return false;
+    }
+    if word.bytes().all(|letter| letter.is_ascii_alphabetic() || letter == b'.') {
+        let is_hexadecimal = word.len() >= 8 && word.bytes().all(|letter| letter.is_ascii_hexdigit());
+        return word.len() <= LONGEST_WORD && !is_hexadecimal;
+    }
+    let name = word.trim_end_matches(|letter: char| letter.is_ascii_digit() || letter == '.');
+    let (name, number) = (name, &word[name.len()..]);
+    if name.is_empty() {
+        return is_short(number);
+    }
+    if name.bytes().all(|letter| letter.is_ascii_uppercase()) {
+        // `V4.7.0` is a version; other names carry two digits at most
+        let most = if name == "V" { MOST_DIGITS } else { 2 };
+        return name.len() <= 8 && number.bytes().filter(u8::is_ascii_digit).count() <= most;
+    }
+    let unit = word.trim_start_matches(|letter: char| letter.is_ascii_digit() || letter == '.');
+    UNITS.contains(&unit) && is_short(&word[..word.len() - unit.len()])
+}
+
+/// A number of few digits: `12.6`, `4.7.0`.
+fn is_short(number: &str) -> bool {
+    let decimals =
+        number.split_once('.').map_or(0, |(_, after)| after.bytes().filter(u8::is_ascii_digit).count());
+    let is_version = number.matches('.').count() > 1;
+    number.bytes().filter(u8::is_ascii_digit).count() <= MOST_DIGITS
+        && (is_version || decimals <= MOST_DECIMALS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn covered(text: &str, part: Part) -> String {
+        let mut bytes = text.as_bytes().to_vec();
+        let changed = cover(&mut bytes, part);
+        assert_eq!(changed, bytes != text.as_bytes());
+        let once = bytes.clone();
+        assert!(!cover(&mut bytes, part) && bytes == once, "{text}: covered twice");
+        String::from_utf8_lossy(&bytes).into_owned()
+    }
+
+    #[test]
+    fn what_an_autopilot_says_stays() {
+        for said in [
+            "EKF3 IMU0 is using GPS",
+            "Throttle 0.25 at 12.6 V",
+            "PreArm: Battery 1 below minimum arming voltage",
+            "Takeoff detected, 10s, 400Hz, 4S",
+            "ArduCopter V4.7.0",
+            "Mission: 12 WP",
+            "RC3_MIN is greater than RC3_TRIM",
+        ] {
+            assert_eq!(covered(said, Part::default()), said);
+        }
+    }
+
+    #[test]
+    fn serial_numbers_keys_and_places_are_covered() {
+        for (said, shared) in [
+            ("CubeOrange 00340025 3433510A 30303939", "CubeOrange xxxxxxxx xxxxxxxx xxxxxxxx"),
+            ("home at 47.3977 8.5456", "home at xx.xxxx x.xxxx"),
+            ("home at 47.397, 8.545", "home at xx.xxx, x.xxx"),
+            ("wifi password hunter", "wifi password xxxxxx"),
+            ("pass: hunter2 set", "pass: xxxxxxx set"),
+            ("Serial: ab", "Serial: xx"),
+            ("ArduCopter V4.7.0-dev (c6ea8b1a)", "ArduCopter V4.7.0-dev (xxxxxxxx)"),
+            ("zażółć", "xxxxxxxxxx"),
+            ("abcdefghijklmnopqrstuvwxyz", "xxxxxxxxxxxxxxxxxxxxxxxxxx"),
+        ] {
+            assert_eq!(covered(said, Part::default()), shared);
+        }
+    }
+
+    #[test]
+    fn a_word_that_is_cut_in_two_is_covered_on_both_sides() {
+        let first = Part { is_continued: false, goes_on: true };
+        assert_eq!(covered("the key is hun", first), "the key xx xxx");
+        let second = Part { is_continued: true, goes_on: false };
+        assert_eq!(covered("ter two", second), "xxx two");
+    }
+}
