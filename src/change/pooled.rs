@@ -9,14 +9,17 @@ pub(super) const PRIOR: f64 = 4.0;
 /// in every second case.
 const LEVEL: f64 = 0.05;
 
+/// Halvings that find the common part of the error by the scatter: to a millionth of it.
+const HALVINGS: usize = 20;
+
 /// Values that were put together.
 struct Pool {
     mean: f64,
     /// of the parts of the errors that are each flight's own
     information: f64,
-    /// by which the flights scatter more than these parts say; 1 where a test does not find it
+    /// by which the flights scatter more than their whole errors say; 1 where a test does not find it
     scale: f64,
-    /// least part of the errors that goes the same way in all flights
+    /// part of the errors that goes the same way in all flights
     shared: f64,
 }
 
@@ -31,32 +34,54 @@ impl Pool {
             value.filter(is_usable).map(|(value, std)| (value, std, common.min(0.999 * std)))
         });
         let known: Vec<(f64, f64, f64)> = known.collect();
-        let shared = known.iter().map(|(.., common)| *common).fold(f64::INFINITY, f64::min);
+        let least = known.iter().map(|(.., common)| *common).fold(f64::INFINITY, f64::min);
         if known.is_empty() {
             return None;
         }
+        let free = known.len() as f64 - 1.0;
+        let is_beyond = |squares: f64| ChiSquared::new(free).is_ok_and(|of| of.sf(squares) < LEVEL);
+        let (pool, squares) = Self::sharing(&known, least);
+        if !is_beyond(squares) {
+            return Some(pool);
+        }
+        // what was taken for common to all flights is not, as far as they scatter
+        let (pool, squares) = Self::sharing(&known, 0.0);
+        if squares > free {
+            return Some(Self { scale: ((PRIOR + squares) / (PRIOR + free)).sqrt(), ..pool });
+        }
+        let (mut scattered, mut agreeing) = (least, 0.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (scattered + agreeing);
+            let too_much = Self::sharing(&known, middle).1 > free;
+            *(if too_much { &mut scattered } else { &mut agreeing }) = middle;
+        }
+        Some(Self::sharing(&known, agreeing).0)
+    }
+
+    /// The values where this part of their errors goes the same way in all flights, with the sum of the squares of their distances from the
+    /// mean over the rest of their errors (Cochran's Q).
+    fn sharing(known: &[(f64, f64, f64)], shared: f64) -> (Self, f64) {
         let weight = |std: f64| (std * std - shared * shared).recip();
         let information: f64 = known.iter().map(|(_, std, _)| weight(*std)).sum();
         let mean = known.iter().map(|(value, std, _)| value * weight(*std)).sum::<f64>() / information;
-        let squares: f64 = known.iter().map(|(value, std, _)| (value - mean).powi(2) * weight(*std)).sum();
-        let free = known.len() as f64 - 1.0;
-        let scatters = ChiSquared::new(free).is_ok_and(|expected| expected.sf(squares) < LEVEL);
-        let scale = if scatters { ((PRIOR + squares) / (PRIOR + free)).sqrt().max(1.0) } else { 1.0 };
-        Some(Self { mean, information, scale, shared })
+        let squares = known.iter().map(|(value, std, _)| (value - mean).powi(2) * weight(*std)).sum();
+        (Self { mean, information, scale: 1.0, shared }, squares)
     }
 }
 
-/// Mean of the flights' values by their information, with its standard error: larger where a test finds that they scatter by more than
-/// their errors. Of
-/// each flight's standard error the part `common` goes the same way in all of them, and no number of flights lowers the least of it. A
-/// flight without a value takes no part. `None` where no flight has one.
+/// Mean of the flights' values by their information, with its standard error.
+///
+/// Of each flight's standard error the part `common` is expected to go the same way in all of them, and no number of flights lowers the
+/// least of it. Where a test finds that the flights scatter by more than the rest of their errors, so much of that part counts as each
+/// flight's own as the scatter needs (a model of random effects whose variance is known to lie within the stated errors). Only where
+/// they scatter by more than their whole errors, these are larger. A flight without a value takes no part. `None` where no flight has one.
 #[must_use]
 pub fn pooled_mean(values: &[Option<(f64, f64)>], common: &[f64]) -> Option<(f64, f64)> {
     let Pool { mean, information, scale, shared } = Pool::of(values, common)?;
     Some((mean, (scale * information.sqrt().recip()).hypot(shared)))
 }
 
-/// Each flight's value with the standard error that the others leave it: larger where the flights scatter by more than their errors,
+/// Each flight's value with the standard error that the others leave it: larger where the flights scatter by more than their whole errors,
 /// by the same factor as that of [`pooled_mean`]. What takes no part in that mean stays as it is.
 #[must_use]
 pub fn with_scatter(values: &[Option<(f64, f64)>], common: &[f64]) -> Vec<Option<(f64, f64)>> {
@@ -98,6 +123,17 @@ mod tests {
         let (_, left) = pooled_mean(&four, &[0.1; 5]).unwrap();
         assert!((left - (0.03_f64 / 4.0 + 0.01).sqrt()).abs() < 1e-12);
         assert!(wide > 0.2);
+        // what was expected to be common and scatters is not: six flights of 1 +- 0.1, of which 0.09 was taken for common
+        let apart = [0.9, 1.1, 0.95, 1.05, 0.88, 1.12].map(|value| Some((value, 0.1)));
+        let (mean, std) = pooled_mean(&apart, &[0.09; 6]).unwrap();
+        // with a share s^2 that is common, Q = sum of squares / (0.01 - s^2) = 5: s^2 = 0.01 - 0.0538 / 5 is below zero, so all is own
+        assert!((mean - 1.0).abs() < 1e-12 && std > 0.1 / 6.0_f64.sqrt() && std < 0.045, "{std}");
+        let closer = [0.92, 1.08, 0.95, 1.05, 0.93, 1.07].map(|value| Some((value, 0.1)));
+        let (_, std) = pooled_mean(&closer, &[0.09; 6]).unwrap();
+        // here s^2 = 0.01 - 0.0276 / 5, and the rest is lowered by the number of flights
+        assert!((std * std - (0.004_48 + 0.005_52 / 6.0)).abs() < 1e-5, "{std}");
+        let (value, alone) = with_scatter(&closer, &[0.09; 6])[0].unwrap();
+        assert!(value == 0.92 && (alone - 0.1).abs() < 1e-12);
         assert!(pooled_mean(&[None, Some((f64::NAN, 1.0))], &[0.0; 2]).is_none());
     }
 }

@@ -34,8 +34,10 @@ pub(super) fn limits(traces: &[Trace], last: &[Tested], fitted: &Fitted) -> Vec<
     for tested in last.iter().filter(has_size) {
         let Candidate { id, parts, .. } = &tested.candidate;
         let mut units = tested.evidence.unit_rms.iter();
+        let mut coefficients = 0..;
         for part in parts {
             for &free in &part.free {
+                let without_name = coefficients.next().map_or(0.0, |index| seen(tested, index));
                 let material =
                     units.next().map_or(0.0, |unit| Materiality::of_rms(unit, fitted).times_to_matter());
                 let Some(parameter) = part.parameter(free) else { continue };
@@ -53,7 +55,7 @@ pub(super) fn limits(traces: &[Trace], last: &[Tested], fitted: &Fitted) -> Vec<
                 let limit = if part.is_of_sensors() {
                     certain.max(least + BEYOND * std)
                 } else if part.is_amount(free) {
-                    certain.max(material)
+                    certain.max(material).max(without_name)
                 } else {
                     certain
                 };
@@ -76,6 +78,12 @@ pub(super) fn limits(traces: &[Trace], last: &[Tested], fitted: &Fitted) -> Vec<
         }
     }
     out
+}
+
+/// The size that a flight shows for certain of an effect that gets no name all the same (0 otherwise): a smaller one would have got none either.
+fn seen(tested: &Tested, index: usize) -> f64 {
+    let size = tested.evidence.theta.get(index).map_or(0.0, |size| size.abs());
+    if size > CERTAIN * tested.evidence.std(index) { size } else { 0.0 }
 }
 
 /// The smallest standard error of a parameter among the candidates of the same form with different estimated axes.

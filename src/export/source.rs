@@ -75,7 +75,7 @@ impl<'a> Source<'a> {
         let named: Vec<String> = named.map(|(name, _)| name.clone()).collect();
         if !named.is_empty() {
             self.note(format!(
-                "the flights did not determine {}: the model, and so this file, has what the vehicle file states or guesses",
+                "the flights did not determine {}: its value here rests on what the vehicle file states or guesses (the model file says why)",
                 list(&named)
             ));
         }

@@ -49,12 +49,14 @@ pub(super) fn is_identity(name: &str) -> bool {
 pub(super) fn is_secret_parameter(name: &str) -> bool {
     let words = words(name);
     let last = words.last().map(String::as_str);
+    // a pass-through of a serial port is none
+    let is_port = words.first().is_some_and(|word| word == "SERIAL");
     let key = ["PASS", "PASSWD", "PASSWORD", "PASSPHRASE", "KEY", "SECRET", "TOKEN"];
     is_identity(name)
         || is_place(name, &words)
-        || words.iter().any(|word| key.contains(&word.as_str()))
-        // CAL_ACC0_ID, COMPASS_PRIO1_ID, INS_ACC_ID
-        || (last == Some("ID") && words.len() > 2)
+        || !is_port && words.iter().any(|word| key.contains(&word.as_str()))
+        // CAL_ACC0_ID, COMPASS_PRIO1_ID, INS_ACC_ID; not MAV_SYS_ID and MAV_COMP_ID
+        || (last == Some("ID") && words.len() > 2 && words[0] != "MAV")
 }
 
 /// Whether a parameter of this name and these words holds a place, or what is peculiar to one: the declination of the magnetic field,
@@ -131,9 +133,17 @@ mod tests {
         {
             assert!(!is_secret_parameter(name), "{name}");
         }
-        for name in
-            ["SERIAL0_BAUD", "MPC_THR_HOVER", "CA_ROTOR0_PX", "SYSID_THISMAV", "MAV_TYPE", "MOT_PWM_MAX"]
-        {
+        for name in [
+            "SERIAL0_BAUD",
+            "SERIAL_PASS2",
+            "MAV_SYS_ID",
+            "MAV_COMP_ID",
+            "MPC_THR_HOVER",
+            "CA_ROTOR0_PX",
+            "SYSID_THISMAV",
+            "MAV_TYPE",
+            "MOT_PWM_MAX",
+        ] {
             assert!(!is_secret_parameter(name), "{name}");
         }
         assert!(

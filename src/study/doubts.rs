@@ -20,6 +20,22 @@ const ORDINARY_MASS: f64 = 1.15;
 /// Standard errors of the estimate that do not count. The usual 95 %.
 const WITHIN: f64 = 2.0;
 
+/// A note on moments of inertia of a multirotor, kg m^2 with their standard errors, where the one about z is certainly smaller than one
+/// across.
+pub(in crate::study) fn of_shape(across: [(f64, f64); 2], about_z: (f64, f64)) -> Option<Note> {
+    let (largest, std) = across.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let is_smaller = largest - about_z.0 > WITHIN * std.hypot(about_z.1);
+    let text = || {
+        format!(
+            "izz is {:.2} times the larger one of ixx and iyy. Rotors and arms of a multirotor lie in a plane, so that izz is larger than \
+             both, up to their sum. One of these moments is wrong, by more than its error: do not build on them without a measurement on \
+             the bench",
+            about_z.0 / largest
+        )
+    };
+    is_smaller.then(|| Note::warning(About::Estimate, text()))
+}
+
 /// What speaks against an answer, clause by clause: what the vehicle file states and is hardly meant, rotors other
 /// than the autopilot's, and results that are far from the file's.
 pub(super) fn doubts<'a>(

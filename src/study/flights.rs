@@ -218,6 +218,10 @@ pub fn unread(path: &Path, error: LogError) -> StudyError {
         LogError::Empty | LogError::WrongContent { .. } | LogError::NoVehicle { .. } => {
             StudyError::NoFlight { file: text::path(&path), why: error.to_string() }
         }
+        // a file that holds no log, and no folder or pattern in its place
+        LogError::UnknownFormat { .. } if path.is_file() => {
+            StudyError::NoFlight { file: text::path(&path), why: error.to_string() }
+        }
         _ => StudyError::File { file: text::path(&path), why: error.to_string() },
     }
 }

@@ -89,6 +89,12 @@ function wrong() {
     if (canvas.clientWidth === 0) continue;
     const { axes, words: written } = canvas.heard || { axes: [], words: [] };
     if (axes.length < 3) found.push('a path without axes');
+    written.forEach(([text, box], index) => {
+      for (const [other, of] of written.slice(index + 1)) {
+        const across = Math.min(box.right, of.right) - Math.max(box.left, of.left), down = Math.min(box.bottom, of.bottom) - Math.max(box.top, of.top);
+        if (across > 0 && down > 0) found.push(`over each other in a path: ${text} | ${other}`);
+      }
+    });
     for (const [text, box] of written) if (axes.some((axis) => runs(axis, box))) found.push(`struck through by an axis: ${text}`);
   }
   for (const svg of document.querySelectorAll('svg')) {

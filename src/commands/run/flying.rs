@@ -84,7 +84,12 @@ pub fn fly(context: &Context<'_>, target: &Target, step: &Step) -> Result<Flight
         // half a flight of a vehicle that can be flown again at once
         set_aside(&args.out, why)?;
     }
-    match unfinished(&record.outcome, (target.is_twin, &args.out), (args.arm, &again)) {
+    let whose = match &target.embedded {
+        _ if target.is_twin => Whose::Twin,
+        Some(_) => Whose::Embedded,
+        None => Whose::Pilot,
+    };
+    match unfinished(&record.outcome, (whose, &args.out), (args.arm, &again)) {
         Some(why) => Err(with_busy(why, busy, &again)),
         None if busy.is_some() => {
             let cause = record.outcome.cause.as_ref().map_or_else(String::new, ToString::to_string);
@@ -108,7 +113,7 @@ fn with_busy(why: CommandError, busy: Option<String>, again: &str) -> CommandErr
 /// Why there is no flight to explain; `None` where it came down. `arms` as it was said; `again` continues a run that was interrupted.
 fn unfinished(
     outcome: &Outcome,
-    (is_twin, out): (bool, &Path),
+    (whose, out): (Whose, &Path),
     (arms, again): (bool, &str),
 ) -> Option<CommandError> {
     let why = || outcome.cause.as_ref().map_or_else(String::new, |cause| format!(": {cause}"));
@@ -122,20 +127,39 @@ fn unfinished(
             Some(CommandError::Failure(format!("not flown{}{arm}", why())))
         }
         Ending::InTheAir(mode) => {
-            let said = in_the_air((is_twin, out), mode, &why());
+            let said = in_the_air((whose, out), (mode, &why()), again);
             // a twin that nobody ended failed; a vehicle has its pilot or its own hold
-            let has_failed = is_twin && !outcome.is_interrupted();
+            let has_failed = whose == Whose::Twin && !outcome.is_interrupted();
             Some(if has_failed { CommandError::Failure(said) } else { CommandError::Ended(said) })
         }
     }
 }
 
+/// Who has a vehicle that is left in the air.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Whose {
+    /// nobody: it rehearses a flight
+    Twin,
+    /// nobody: it ends with the program
+    Embedded,
+    /// its pilot
+    Pilot,
+}
+
 /// What is said where it was left in the air. Whoever rehearses says where the twin's recording is.
-fn in_the_air((is_twin, out): (bool, &Path), mode: impl std::fmt::Display, why: &str) -> String {
-    match is_twin {
-        true => format!("the twin was left in the air, mode {mode}{why}"),
-        false => {
-            let kept = text::path(out);
+fn in_the_air(
+    (whose, out): (Whose, &Path),
+    (mode, why): (impl std::fmt::Display, &str),
+    again: &str,
+) -> String {
+    let kept = text::path(out);
+    match whose {
+        Whose::Twin => format!("the twin was left in the air, mode {mode}{why}"),
+        Whose::Embedded => format!(
+            "the vehicle of the program was left in the air, mode {mode}{why}, and ended with it; its recording is in {kept}. To fly \
+             again: {again}"
+        ),
+        Whose::Pilot => {
             format!(
                 "the vehicle was left in the air, mode {mode}{why}; its recording is in {kept}. Land it by the transmitter or with another \
                  ground station, and give the same command again when it is disarmed"
@@ -150,28 +174,31 @@ mod tests {
     use mavid::fly::{Cause, FlightStatistics};
 
     /// The exit status of a run whose flight ended so, and what is said; none of one that is explained.
-    fn status(cause: Option<Cause>, ending: Ending, is_twin: bool) -> Option<(u8, String)> {
+    fn status(cause: Option<Cause>, ending: Ending, whose: Whose) -> Option<(u8, String)> {
         let outcome = Outcome { cause, ending, flown: FlightStatistics::default(), losses: Vec::new() };
-        let why = unfinished(&outcome, (is_twin, Path::new("run/flight1")), (true, "mavid run --out run"))?;
+        let why = unfinished(&outcome, (whose, Path::new("run/flight1")), (true, "mavid run --out run"))?;
         Some((why.status(), why.to_string()))
     }
 
     #[test]
     fn a_run_that_was_ended_has_the_exit_status_of_a_flight_that_was() {
         let signal = || Some(Cause::Signal("Ctrl-C".to_owned()));
-        let (of_ground, said) = status(signal(), Ending::NotFlown, false).unwrap();
+        let (of_ground, said) = status(signal(), Ending::NotFlown, Whose::Pilot).unwrap();
         assert_eq!(
             (of_ground, said.as_str()),
             (3, "not flown: ended by Ctrl-C; to continue: mavid run --out run")
         );
         for cause in [signal(), Some(Cause::Override("the pilot".to_owned()))] {
-            assert_eq!(status(cause, Ending::InTheAir("hold".to_owned()), false).unwrap().0, 3);
+            assert_eq!(status(cause, Ending::InTheAir("hold".to_owned()), Whose::Pilot).unwrap().0, 3);
         }
-        assert_eq!(status(signal(), Ending::InTheAir("hold".to_owned()), true).unwrap().0, 3);
+        assert_eq!(status(signal(), Ending::InTheAir("hold".to_owned()), Whose::Twin).unwrap().0, 3);
         let refused = Some(Cause::Refused("the battery is low".to_owned()));
-        assert_eq!(status(refused, Ending::NotFlown, false).unwrap().0, 1);
-        assert_eq!(status(Some(Cause::Reboot), Ending::InTheAir("hold".to_owned()), true).unwrap().0, 1);
-        assert_eq!(status(signal(), Ending::Landed, false), None);
+        assert_eq!(status(refused, Ending::NotFlown, Whose::Pilot).unwrap().0, 1);
+        assert_eq!(
+            status(Some(Cause::Reboot), Ending::InTheAir("hold".to_owned()), Whose::Twin).unwrap().0,
+            1
+        );
+        assert_eq!(status(signal(), Ending::Landed, Whose::Pilot), None);
     }
 
     #[test]
@@ -190,9 +217,11 @@ mod tests {
     #[test]
     fn a_recording_is_named_once() {
         let out = Path::new("run/rehearsal2");
-        let said = in_the_air((false, out), "hold", ": Ctrl-C");
+        let said = in_the_air((Whose::Pilot, out), ("hold", ": Ctrl-C"), "mavid run");
         assert!(said.contains("mode hold: Ctrl-C; its recording is in run/rehearsal2"), "{said}");
-        let twin = in_the_air((true, out), "hold", "");
+        let twin = in_the_air((Whose::Twin, out), ("hold", ""), "mavid run");
         assert_eq!(twin, "the twin was left in the air, mode hold");
+        let embedded = in_the_air((Whose::Embedded, out), ("hold", ""), "mavid run --sitl");
+        assert!(embedded.ends_with("run/rehearsal2. To fly again: mavid run --sitl"), "{embedded}");
     }
 }

@@ -184,6 +184,8 @@ pub(super) fn said(name: &str) -> Option<Said> {
         return None;
     }
     let (words, unit) = without_unit(&words);
+    // `rpm1`: the number stands behind the unit
+    let unit = unit.or_else(|| words.iter().any(|word| word == "rpm").then_some("rpm"));
     let is = |all: &[&str]| words.iter().any(|word| all.contains(&word.as_str()));
     let found = KINDS.iter().find(|(_, all)| is(all)).map(|(kind, _)| *kind);
     let kind = match (found, unit) {

@@ -66,6 +66,12 @@ impl Pair {
         self.now.hypot(self.after)
     }
 
+    /// What the next flight leaves of the statistical error, as a share of it now.
+    #[must_use]
+    pub fn share_left(&self) -> f64 {
+        self.now / self.with_next()
+    }
+
     /// With the next flight the two effects are told apart.
     #[must_use]
     pub fn is_told_apart(&self) -> bool {

@@ -67,7 +67,9 @@ pub fn on_left_out(
     let other_mass = ready.iter().any(|ready| ready.pair.other_mass);
     let speed_share = other_vehicle::speed_share(&ready, explanation);
     let without_empirical = empirical.map_or_else(Vec::new, |term| without(term, &mut ready, settings));
-    notes.extend(as_written(&mut ready, empirical.is_some().then_some(&*without_empirical), settings));
+    let (as_written, note) =
+        as_written(&mut ready, empirical.is_some().then_some(&*without_empirical), settings);
+    notes.extend(note);
     tracing::info!(improvement_percent = improvement, blocks, other_vehicle = another, "hold-out predicted");
     notes.push(Note::remark(
         About::HoldOut,
@@ -77,6 +79,7 @@ pub fn on_left_out(
     Ok(HoldoutFit {
         open_loop,
         without_empirical,
+        as_written,
         no_open_loop,
         improvement_percent,
         weak: weak.compared,
@@ -96,18 +99,18 @@ fn without(term: &Empirical, ready: &mut [Ready], settings: &HoldoutSettings) ->
     open_loop::open_loop(ready, None, settings).map_or_else(|_| Vec::new(), |(open_loop, ..)| open_loop)
 }
 
-/// The errors over 0.5 s by the model as it is written, where a flight was predicted with more: a load of its own, or an empirical term,
-/// without which they are known.
+/// The errors by the model as it is written, where a flight was predicted with a load of its own, and what is said of those over 0.5 s
+/// where it was predicted with more than that model: a load, or an empirical term, without which they are known.
 fn as_written(
     ready: &mut [Ready],
     without_empirical: Option<&[OpenLoop]>,
     settings: &HoldoutSettings,
-) -> Option<Note> {
+) -> (Vec<OpenLoop>, Option<Note>) {
     let unload = |ready: &mut Ready| ready.pair.unload(&ready.trace);
     let unloaded: Vec<bool> = ready.iter_mut().map(unload).collect();
     let is_loaded = unloaded.contains(&true);
     let with = match (is_loaded, without_empirical) {
-        (false, None) => return None,
+        (false, None) => return (Vec::new(), None),
         (true, None) => "the load of each flight",
         (false, Some(_)) => "the empirical force",
         (true, Some(_)) => "the load of each flight and the empirical force",
@@ -115,7 +118,7 @@ fn as_written(
     // what was shown above stands without this, too
     let open_loop = match without_empirical.filter(|_| !is_loaded) {
         Some(known) => known.to_vec(),
-        None => open_loop::open_loop(ready, None, settings).ok()?.0,
+        None => open_loop::open_loop(ready, None, settings).map_or_else(|_| Vec::new(), |found| found.0),
     };
     let errors = OpenLoop::half_second(&open_loop).map(OpenLoop::quantities);
     let named = errors.into_iter().flatten().zip(["m", "m/s", "rad", "rad/s"]);
@@ -126,7 +129,8 @@ fn as_written(
         "the errors on the hold-out are with {with}, which no model file has: by the model as it is written they are {} over 0.5 s",
         each.join(", ")
     );
-    (!each.is_empty()).then(|| Note::warning(About::HoldOut, text))
+    let note = (!each.is_empty()).then(|| Note::warning(About::HoldOut, text));
+    (if is_loaded { open_loop } else { Vec::new() }, note)
 }
 
 /// Open-loop prediction on the flights that were used.

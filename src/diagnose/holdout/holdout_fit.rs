@@ -14,6 +14,9 @@ pub struct HoldoutFit {
     pub open_loop: Vec<OpenLoop>,
     /// where the flights were predicted with an empirical term: the same without it; otherwise none
     pub without_empirical: Vec<OpenLoop>,
+    /// where the flights were predicted with a load of their own: the same by the model as it is written, without it and without an
+    /// empirical term; otherwise none
+    pub as_written: Vec<OpenLoop>,
     /// reason why nothing could be predicted
     pub no_open_loop: Option<String>,
     /// mean over the four quantities at 0.5 s of `100 (1 - after/before)`

@@ -289,8 +289,15 @@
         x = Math.min(Math.max(x, 4), wide - long - 4);
         y = Math.min(Math.max(y, 12), tall - 4);
         // at an end there may be an axis or the path, and of a flight that is long in one direction only the ends lie together
-        var free = STEPS.filter(function (far) { return isFree(x, y + far, long); });
-        y += free.filter(function (far) { return isClear(flown, x, y + far, long); })[0] || free[0] || 0;
+        var spots = [];
+        [0, long + 10, -long - 10].forEach(function (aside) {
+          var at = Math.min(Math.max(x + aside, 4), wide - long - 4);
+          STEPS.forEach(function (far) { if (isFree(at, y + far, long)) spots.push([at, y + far]); });
+        });
+        var clear = spots.filter(function (spot) { return isClear(flown, spot[0], spot[1], long); });
+        var spot = clear[0] || spots[0] || [x, y];
+        x = spot[0];
+        y = spot[1];
         written.push([x, y, long]);
         pen.lineWidth = 4;
         pen.lineJoin = 'round';

@@ -189,7 +189,8 @@ pub(super) fn sentence(study: &CompareStudy, change: &Change) -> String {
 fn balance_sentence(study: &CompareStudy, alone: &[What]) -> String {
     let names: Vec<String> = alone.iter().map(|what| rival_name(study, *what)).collect();
     if names.is_empty() {
-        return "the balance of the vehicle moved as no single rotor and no centre of mass moves it: more than one thing changed"
+        return "the balance of the vehicle moved as no single rotor and no centre of mass moves it: more than one thing changed, or the \
+                propellers sit otherwise"
             .to_owned();
     }
     format!(
@@ -297,8 +298,9 @@ fn unseen(study: &CompareStudy, compared: &Compared) -> String {
     let [x, y, z] = balance.moved.map(|moved| with_error(moved.by.0, moved.by.1));
     let moved = if balance.by_a_load {
         format!(
-            "Its balance differs by {x} of an arm along body x and {y} along y, as a load or a battery that sits elsewhere makes it: that \
-             is the flight's own, and no change of the vehicle. The rotors along the flights have it in their values. "
+            "Its balance differs by {x} of an arm along body x and {y} along y, as a load or a battery that sits elsewhere makes it, which \
+             is the flight's own. A rotor that gives less thrust, or a centre of mass that moved, may make it as well: these flights do not tell \
+             which, and more flights on each side may. The rotors along the flights have it in their values. "
         )
     } else if balance.moved_without_name() {
         format!(
@@ -309,7 +311,12 @@ fn unseen(study: &CompareStudy, compared: &Compared) -> String {
         String::new()
     };
     let least = study.least_named().unwrap_or_default();
-    format!("{moved}{}.", capital(&would_have_shown(&least)))
+    let others = if study.tracks.is_empty() {
+        ""
+    } else {
+        "; the table of the smallest changes says it of all other parameters"
+    };
+    format!("{moved}{}{others}.", capital(&would_have_shown(&least)))
 }
 
 /// What would have shown of the balance, as a clause. Where it moved without a name, no rotor is among it: it would not have had one either.

@@ -202,10 +202,26 @@ fn gain(study: &ExplainStudy) -> String {
         rises.map_or_else(String::new, |(name, percent)| format!(", that of {name} rises by {percent:.0} %"));
     match pair.falls() {
         Some((name, percent)) => {
-            format!("; with {with} the 0.5 s {name} error on {shown} falls by {percent:.0} %{worse}")
+            let written = by_written(study, name);
+            format!("; with {with} the 0.5 s {name} error on {shown} falls by {percent:.0} %{written}{worse}")
         }
         None => format!("; with {with} the 0.5 s errors on {shown} do not fall{worse}"),
     }
+}
+
+/// By how much the error of a quantity is lower by the model as it is written, where the gain is with a load that no model file has.
+fn by_written(study: &ExplainStudy, quantity: &str) -> String {
+    let Some(percent) = study.as_written.as_ref().and_then(|written| written.improvement_of(quantity)) else {
+        return String::new();
+    };
+    let by = if percent < 0.0 {
+        format!("rises by {:.0} %", -percent)
+    } else {
+        format!("falls by {percent:.0} %")
+    };
+    format!(
+        " (with the load that is seen at the start of each flight there; by the model as it is written it {by})"
+    )
 }
 
 fn whose(study: &ExplainStudy) -> &'static str {
@@ -261,7 +277,7 @@ fn nothing(study: &ExplainStudy) -> String {
         ),
     };
     let (these, it) = (study.these_flights(), if study.given.inputs.len() > 1 { "them" } else { "it" });
-    if let Some((left_n, share)) = much_left(study) {
+    if let Some((left_n, share)) = study.much_left() {
         return format!(
             "Nothing was found that {these} could show. The rigid body with its rotors leaves a force of {} N rms, {:.0} % of the \
              weight, which follows nothing that was tested: noise, vibration or something unknown{would}.{traces}{other}",
@@ -275,17 +291,6 @@ fn nothing(study: &ExplainStudy) -> String {
         "what the rigid body with its rotors leaves follows nothing that was tested".to_owned()
     };
     format!("Nothing is missing that {these} could show: {left}{would}.{traces}{other}")
-}
-
-/// Share of the weight from which on what is left is not called noise. Set by judgement: simulated flights as noisy as real ones leave 5 %.
-const MUCH_LEFT: f64 = 0.15;
-
-/// Force that the model leaves, N rms over all axes and as a share of the weight, where that is much.
-pub(super) fn much_left(study: &ExplainStudy) -> Option<(f64, f64)> {
-    let left =
-        study.residual().iter().filter(|of| of.unit == "N").map(|of| of.after.powi(2)).sum::<f64>().sqrt();
-    let share = left / (study.vehicle().body.mass_kg * study.vehicle().gravity_m_s2);
-    (share > MUCH_LEFT).then_some((left, share))
 }
 
 /// The flights that were explained show something that the others refute: that is not the same as nothing.

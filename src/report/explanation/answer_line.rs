@@ -1,6 +1,5 @@
 //! The answer in one line of a terminal.
 
-use super::answer::much_left;
 use crate::diagnose::{Verdict, brief};
 use crate::study::ExplainStudy;
 use crate::text::list;
@@ -55,7 +54,7 @@ fn nothing(study: &ExplainStudy) -> &'static str {
         "no name holds"
     } else if has_own {
         "single flights have effects of their own; nothing else is missing"
-    } else if much_left(study).is_some() {
+    } else if study.much_left().is_some() {
         "nothing was found, and much is left over"
     } else {
         "nothing is missing that could be shown"

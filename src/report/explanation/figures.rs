@@ -33,6 +33,15 @@ pub(super) fn model_after_along(study: &ExplainStudy, axis: usize) -> &'static s
     if axis < 3 || study.effects.is_empty() { model_after(study) } else { FOUND }
 }
 
+/// The lines of the rigid body alone and of the model found: one where nothing was found, and both are the same.
+fn models(before: Line, after: Line) -> Vec<Line> {
+    if before.y == after.y {
+        vec![Line { label: format!("{ALONE}, which is the {FOUND}"), ..before }]
+    } else {
+        vec![before, after]
+    }
+}
+
 /// Displayed name of an axis.
 fn spoken(axis: &str) -> String {
     axis.replace('_', " ")
@@ -50,11 +59,10 @@ pub(super) fn recorded_and_simulated(of: &RecordedAndSimulated, after: &str) -> 
         title: format!("{quantity} along body {}, flight {}", AXIS_NAMES[of.axis % 3], of.flight + 1),
         x_label: "time (s)".to_owned(),
         y_label: unit.to_owned(),
-        lines: vec![
-            line(ALONE, &of.time_s, &of.before, BEFORE),
-            line(after, &of.time_s, &of.after, AFTER),
-            Line { stroke: Stroke::Dashed, ..line("recorded", &of.time_s, &of.recorded, RECORDED) },
-        ],
+        lines: models(line(ALONE, &of.time_s, &of.before, BEFORE), line(after, &of.time_s, &of.after, AFTER))
+            .into_iter()
+            .chain([Line { stroke: Stroke::Dashed, ..line("recorded", &of.time_s, &of.recorded, RECORDED) }])
+            .collect(),
         cursor: Some(of.flight),
         spans: of.spans_s.clone(),
         spans_label: "mismatch".to_owned(),
@@ -136,7 +144,7 @@ pub(super) fn left_along_time(of: &LeftAlongTime, after: &str) -> Panel {
         title: format!("residual of {}, recorded minus simulated", spoken(CHANNEL_NAMES[of.axis])),
         x_label: "time (s)".to_owned(),
         y_label: unit(of.axis),
-        lines: vec![line(ALONE, &of.time_s, &of.before, BEFORE), line(after, &of.time_s, &of.after, AFTER)],
+        lines: models(line(ALONE, &of.time_s, &of.before, BEFORE), line(after, &of.time_s, &of.after, AFTER)),
         cursor: Some(0),
         ..Panel::default()
     }
@@ -161,7 +169,8 @@ pub(super) fn followed(of: &Followed) -> Panel {
         Some(number) => format!("thrust of motor {number}"),
         None => spoken(&of.state),
     };
-    let after = of.after.as_deref();
+    // where nothing was found, both are the same
+    let after = of.after.as_deref().filter(|after| *after != of.before);
     Panel {
         title: format!("residual of {} over {state}", spoken(of.axis)),
         x_label: format!("{state} ({})", of.state_unit),

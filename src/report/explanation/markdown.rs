@@ -20,7 +20,8 @@ pub fn explanation_markdown(study: &ExplainStudy) -> String {
     named(&mut page, study);
     better(&mut page, study, &files);
     body(&mut page, study);
-    for said in &study.notes {
+    let of_holdout = study.shown.iter().flat_map(|shown| &shown.notes).filter(|note| note.is_warning());
+    for said in study.notes.iter().chain(of_holdout) {
         remark(&mut page, said, &files);
     }
     let flights: Vec<String> = study

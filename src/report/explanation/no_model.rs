@@ -18,7 +18,10 @@ fn not_predicted(predicted: &Predicted) -> Option<String> {
 /// A sentence of the answer: it holds over 0.5 s, or over several horizons. Empty where it does not.
 pub(super) fn no_model(study: &ExplainStudy) -> String {
     let (predicted, on) = match &study.holdout {
-        Some(holdout) => (Some(written(study).unwrap_or(holdout)), study.shown_on.words()),
+        Some(holdout) => {
+            let written = study.as_written.as_ref().or_else(|| written(study));
+            (Some(written.unwrap_or(holdout)), study.shown_on.words())
+        }
         None => (study.identify.as_ref(), "the flights that were explained"),
     };
     let told = predicted.filter(|predicted| predicted.is_no_model()).and_then(not_predicted);
@@ -28,9 +31,12 @@ pub(super) fn no_model(study: &ExplainStudy) -> String {
         (Some(_), ValidationData::HeldBack { .. }) => ", in which something changed,",
         (Some(_), _) => ", which is not of this vehicle,",
     };
+    // it is seen with its load everywhere else
+    let without =
+        if study.as_written.is_some() { " as it is written, without the load of that flight," } else { "" };
     told.map_or_else(String::new, |what| {
         format!(
-            " On {on}{other} the model is not usable for prediction of {what}: a state that does not change has smaller errors."
+            " On {on}{other} the model{without} is not usable for prediction of {what}: a state that does not change has smaller errors."
         )
     })
 }

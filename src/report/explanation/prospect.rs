@@ -84,7 +84,11 @@ fn brought(study: &ExplainStudy, next: &NextFlight) -> String {
         Some(other) => {
             format!("{seconds} tell {} from {} ({}). ", called(pair.named), called(other), sigma(pair))
         }
-        None => format!("{seconds} determine {} better ({} from zero). ", called(pair.named), sigma(pair)),
+        None => format!(
+            "{seconds} determine {} better (the statistical part of its error falls to {:.0} %). ",
+            called(pair.named),
+            100.0 * pair.share_left()
+        ),
     });
     let mut said: String = pairs.collect();
     if said.is_empty() {

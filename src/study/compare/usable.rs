@@ -145,9 +145,11 @@ impl<'a> Given<'a> {
     fn usable(self, [mut before, after]: [Vec<Made>; 2]) -> Usable {
         let (mut flights, mut legs, mut starts_utc_us) = (Prepared::default(), Vec::new(), Vec::new());
         let first = before.len();
-        let reordered = after.is_empty() && by_start_times(&mut before, |(flight, _)| flight.start_utc_us);
+        let has_one_clock = have_one_clock(before.iter().chain(&after));
+        let start_utc_us = |flight: &Flight| flight.start_utc_us.filter(|_| has_one_clock);
+        let reordered = after.is_empty() && by_start_times(&mut before, |(flight, _)| start_utc_us(flight));
         for (flight, (signals, of_flight)) in before.into_iter().chain(after) {
-            starts_utc_us.push(flight.start_utc_us);
+            starts_utc_us.push(start_utc_us(&flight));
             flights.recordings.push(flight.recording);
             flights.inputs.push(flight.input);
             flights.signals.push(signals);
@@ -162,6 +164,14 @@ impl<'a> Given<'a> {
             left_out: self.refused.iter().map(LeftOut::of).collect(),
         }
     }
+}
+
+/// Whether the start times of flights can be compared: the clock of a simulated vehicle is not that of the ground station.
+fn have_one_clock<'a>(flights: impl Iterator<Item = &'a Made> + Clone) -> bool {
+    let is_simulated = flights.clone().any(|(_, (signals, _))| signals.quality.simulated);
+    let mut loggers = flights.map(|(flight, _)| flight.logged_by);
+    let first = loggers.next();
+    !is_simulated || loggers.all(|other| Some(other) == first)
 }
 
 /// Refuses a flight whose autopilot states other places, another order or other turning directions of the motors than the given vehicle has:

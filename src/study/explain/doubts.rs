@@ -10,9 +10,14 @@ use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{Named, Verdict};
 use crate::estimate::{Contradiction, Finding, FlightApart, NAMES, ThrustScale, stated};
 use crate::note::{About, Note};
-use crate::study::doubts::{TWO_VEHICLES, doubts, of_mass};
+use crate::study::doubts::{TWO_VEHICLES, doubts, of_mass, of_shape};
 use crate::text::significant;
 use crate::vehicle::Guessed;
+
+/// Share of the weight from which on what is left is not called noise. Set by judgement: simulated flights as noisy as real ones leave 5 %.
+const MUCH_LEFT: f64 = 0.15;
+/// Share from which on nothing that the model says holds. Set by judgement: recordings that are whole leave 25 % at most.
+const MOST_LEFT: f64 = 0.5;
 
 impl ExplainStudy {
     /// Mass, thrust and moments of inertia that are far from what the vehicle file states.
@@ -88,6 +93,26 @@ impl ExplainStudy {
         }
     }
 
+    /// Force that the model leaves, N rms over all axes and as a share of the weight, where that is much.
+    #[must_use]
+    pub fn much_left(&self) -> Option<(f64, f64)> {
+        let forces = self.residual().into_iter().filter(|of| of.unit == "N");
+        let left = forces.map(|of| of.after.powi(2)).sum::<f64>().sqrt();
+        let share = left / (self.vehicle().body.mass_kg * self.vehicle().gravity_m_s2);
+        (share > MUCH_LEFT).then_some((left, share))
+    }
+
+    /// A note on a moment of inertia about z that is smaller than one across.
+    pub(super) fn tell_shape(&mut self) {
+        let body = self.body();
+        let moment = |name: &str| {
+            let of = body.iter().find(|of| of.name == name)?;
+            Some((of.after.value, if of.not_determined.is_none() { of.after.std } else { 0.0 }))
+        };
+        let all = moment("ixx").zip(moment("iyy")).zip(moment("izz"));
+        self.notes.extend(all.and_then(|((xx, yy), zz)| of_shape([xx, yy], zz)));
+    }
+
     /// Why the answer is doubtful, clause by clause; none where nothing speaks against it.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
@@ -98,6 +123,12 @@ impl ExplainStudy {
             doubts.push(TWO_VEHICLES.to_owned());
         }
         doubts.extend(self.short.iter().map(Short::doubt));
+        doubts.extend(self.much_left().filter(|(_, share)| *share > MOST_LEFT).map(|(_, share)| {
+            format!(
+                "the model leaves forces of {:.0} % of the weight, as a damaged log, wrong units or another vehicle's file do",
+                100.0 * share
+            )
+        }));
         doubts
     }
 

@@ -268,6 +268,8 @@ impl ExplainStudy {
         self.holdout = Some(Predicted::from(&shown));
         self.without_empirical = (!shown.without_empirical.is_empty())
             .then(|| Predicted { open_loop: shown.without_empirical.clone(), improvement_percent: None });
+        self.as_written = (!shown.as_written.is_empty())
+            .then(|| Predicted { open_loop: shown.as_written.clone(), improvement_percent: None });
         self.shown = Some(shown);
         self.shown_on = shown_on;
     }

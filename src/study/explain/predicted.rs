@@ -44,6 +44,14 @@ impl Predicted {
         (percent < -RISES_PERCENT).then_some((name, -percent))
     }
 
+    /// By how much the error of a quantity falls, percent; `None` where it is not predicted.
+    #[must_use]
+    pub fn improvement_of(&self, quantity: &str) -> Option<f64> {
+        let mut each = self.half_second().into_iter().zip(QUANTITIES);
+        let found = each.find(|(_, (name, _))| *name == quantity)?.0?;
+        Some(found.improvement_percent.value).filter(|percent| percent.is_finite())
+    }
+
     /// The quantity whose error falls most, and by how much, percent.
     #[must_use]
     pub fn most(&self) -> Option<(&'static str, f64)> {

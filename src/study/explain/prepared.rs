@@ -300,6 +300,7 @@ impl Task<'_> {
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
         study.tell_mass();
+        study.tell_shape();
         study.notes.extend(study.explanation.named.iter().filter_map(of_voltage).collect::<Vec<_>>());
         study.notes.extend(study.explanation.torque_law.iter().map(TorqueLaw::note));
         study.notes.extend(study.gyroscopic().iter().map(GyroscopicShare::note));

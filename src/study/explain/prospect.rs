@@ -8,10 +8,20 @@ use crate::note::{About, Note};
 /// A size whose relative standard error (-) is not larger serves a simulator or a controller: no further flight is advised for it
 /// alone. Set by judgement.
 pub const WELL_KNOWN: f64 = 0.05;
+/// A further flight has to leave at most this share of the whole error of a size. Set by judgement.
+const LEFT: f64 = 0.8;
 /// A latency that is so much longer than the stated lag, s, and so many standard errors, is told where it has no name. Only words
 /// depend on both.
 const TOLD_S: f64 = 0.02;
 const TOLD_SIGMA: f64 = 4.0;
+
+/// Whether the next flight lowers the relative standard error (-) of a size: only its statistical part becomes smaller, what the law of the
+/// effect leaves open stays.
+fn lowers(relative_std: f64, pair: &Pair) -> bool {
+    let own = pair.now.recip().min(relative_std);
+    let stays = (relative_std * relative_std - own * own).max(0.0).sqrt();
+    stays.hypot(own * pair.share_left()) < LEFT * relative_std
+}
 
 impl ExplainStudy {
     /// No further flight is needed: nothing is left over, and no name could be another one's.
@@ -32,7 +42,7 @@ impl ExplainStudy {
     pub fn worthwhile<'a>(&'a self, next: &'a NextFlight) -> impl Iterator<Item = &'a Pair> {
         next.pairs.iter().filter(|pair| match pair.other {
             Some(_) => pair.is_told_apart_by_next(),
-            None => self.relative_std(pair) > WELL_KNOWN,
+            None => self.relative_std(pair) > WELL_KNOWN && lowers(self.relative_std(pair), pair),
         })
     }
 

@@ -81,6 +81,8 @@ pub struct ExplainStudy {
     pub empirical: Option<Empirical>,
     /// where there is such a term: errors of open-loop prediction on flights that were not used, without it
     pub without_empirical: Option<Predicted>,
+    /// where flights that were not used were predicted with a load of their own: the same by the model as it is written
+    pub as_written: Option<Predicted>,
     /// such a term that was left out, because flights that were not used are predicted worse with it
     pub left_out_force: Option<LeftOutForce>,
     /// a law of the rates for open-loop predictions, where the torques predict worse than no change
@@ -139,6 +141,7 @@ impl ExplainStudy {
             worth: None,
             empirical: None,
             without_empirical: None,
+            as_written: None,
             left_out_force: None,
             rate_law: None,
             shown_on: ValidationData::Nothing { reason: "no hold-out".to_owned() },

@@ -2,12 +2,12 @@
 
 use crate::diagnose::{ExplainSettings, Explanation, GyroscopicShare, TorqueLaw, Verdict, brief, explain};
 use crate::estimate::{
-    Contradiction, Estimated, Finding, MethodResult, NAMES, Nominal, Recommendation, THETA,
+    Contradiction, Estimated, Finding, MOMENTS, MethodResult, NAMES, Nominal, Recommendation, THETA,
     moved_by_guessed_curve, stated,
 };
 use crate::note::Note;
 use crate::signals::Signals;
-use crate::study::doubts::of_mass;
+use crate::study::doubts::{of_mass, of_shape};
 use crate::study::explain::{
     Asked, BY_CONTROL, FlightLimit, KEPT, explain_prepared, kept_about_z, limits_of_flights, of_voltage,
 };
@@ -178,6 +178,7 @@ pub(super) fn joint_estimate(of: &Found, vehicle: &Vehicle) -> EstimateWithEffec
             .iter()
             .map(FlightLimit::note)
             .chain(mass_apart(&estimated, vehicle))
+            .chain(odd_shape(&estimated, &fitted.base.vehicle))
             .chain(found.named.iter().filter_map(of_voltage))
             .collect(),
     }
@@ -189,6 +190,20 @@ fn mass_apart(estimated: &Estimated, vehicle: &Vehicle) -> Option<Note> {
     let is_told = Contradiction::of(NAMES[0], mass, stated(vehicle, 0)).is_some();
     let is_asked = vehicle.anchor != Anchor::Mass && mass.0.is_finite() && !is_told;
     if is_asked { of_mass(mass, vehicle.body.mass_kg) } else { None }
+}
+
+/// A note on moments of inertia that a multirotor does not have. What is not determined is as the model has it.
+fn odd_shape(estimated: &Estimated, model: &Vehicle) -> Option<Note> {
+    let moment = |entry: usize, axis: usize| {
+        let (value, std) = (estimated.theta[entry], estimated.covariance[(entry, entry)].max(0.0).sqrt());
+        if value.is_finite() && std.is_finite() {
+            (value, std)
+        } else {
+            (model.body.inertia_kg_m2[(axis, axis)], 0.0)
+        }
+    };
+    let [about_x, about_y, about_z] = MOMENTS;
+    of_shape([moment(about_x, 0), moment(about_y, 1)], moment(about_z, 2))
 }
 
 /// The reason for the user.
