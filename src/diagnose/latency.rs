@@ -12,6 +12,7 @@ use super::fit::{Fitted, Newton, evaluate, fit};
 use super::flight_rows::residuals;
 use super::gyroscopic::left_out;
 use super::hausman::{contradict, differ};
+use super::latency_parts::{held_s, is_delay, lag_of, not_told, stated_lag_s, stated_uneven};
 use super::left_over::{of_left_over, of_tested};
 use super::rows::Rows;
 use super::signature::{EffectTerm, Signature};
@@ -19,7 +20,6 @@ use super::signatures::{ALL, with_role};
 use super::torques_by_instruments::fit_by_instruments;
 use super::trace::Trace;
 use crate::physics::{ActuationLatency, PhysicsError, delayed_wrench};
-use crate::vehicle::Vehicle;
 use nalgebra::Vector4;
 
 /// What the latency consists of.
@@ -52,9 +52,6 @@ pub const NO_LATENCY: &str = "commands or body rates are logged at too low a rat
 
 /// The kind of a shorter latency is not determined, s: sampling and a fast motor together are as long.
 const LEAST_S: f64 = 0.010;
-/// Delay of the mean command, as a share of the log's period. A command is held until the next one, and the control
-/// loop runs faster than the log.
-const HELD: f64 = 0.25;
 /// No flyable vehicle has a longer one, s: the slowest motors of large multirotors follow within 0.15 s, and an attitude loop with more does
 /// not hold the vehicle. Where a fit goes beyond, the torques of the commands are not seen in the motion.
 const LONGEST_S: f64 = 0.2;
@@ -93,7 +90,7 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         let has_lag =
             propulsion.time_constant_down_s.is_some() || propulsion.mean_time_constant_s().is_none();
         latency = if fed_back {
-            lag_of(flights, total_s, uneven)
+            not_told(flights, (total_s, finding.std_s), &fitted.base.vehicle)
         } else if both {
             let split = ActuationLatency { delay_s, lag_s: total_s - delay_s, uneven };
             not_refuted(split, lag_of(flights, total_s, uneven), flights, &fitted)?
@@ -209,18 +206,6 @@ fn not_refuted(
     Ok(if worse > SPLIT_REFUTED * fitted.rows.len() as f64 { lag } else { split })
 }
 
-/// A lag after the delay of the recording itself.
-fn lag_of(flights: &[Trace], total_s: f64, uneven: f64) -> ActuationLatency {
-    let delay_s = held_s(flights).min(0.5 * total_s);
-    ActuationLatency { delay_s, lag_s: total_s - delay_s, uneven }
-}
-
-/// Delay that is not the vehicle's, s: held commands and the filters of the inertial unit.
-pub(super) fn held_s(flights: &[Trace]) -> f64 {
-    let held = |trace: &Trace| HELD * trace.command_period_s + trace.inertial_late_s;
-    flights.iter().map(held).fold(0.0, f64::max)
-}
-
 /// Effects whose columns resemble that of a latency.
 fn look_alikes(flights: &[Trace]) -> Vec<EffectTerm> {
     let moving = flights.iter().all(|trace| trace.known.velocity && trace.known.attitude);
@@ -253,21 +238,6 @@ fn of_covariance(fitted: &Fitted) -> LatencyFinding {
         against_delay: 0.0,
         uneven_std: None,
     }
-}
-
-/// [`ActuationLatency::uneven`] by the vehicle file.
-pub(super) fn stated_uneven(vehicle: &Vehicle) -> f64 {
-    vehicle.propulsion.falling_over_rising().ln()
-}
-
-/// Mean of the stated time constants, s; 0 where none is stated.
-pub(super) fn stated_lag_s(vehicle: &Vehicle) -> f64 {
-    vehicle.propulsion.mean_time_constant_s().unwrap_or(0.0)
-}
-
-/// Whether the latency is a delay: its lag is not larger than the stated one.
-pub(super) fn is_delay(latency: ActuationLatency, vehicle: &Vehicle) -> bool {
-    latency.lag_s <= stated_lag_s(vehicle)
 }
 
 /// Standard errors by which rising and falling time constants must differ. With it, none of 12 flights with even rotors

@@ -3,8 +3,9 @@
 use super::base::Base;
 use super::fit::Newton;
 use super::floors::FORM;
-use super::latency::{FAST_MOTOR_S, LatencyFinding, REFUSED, held_s, is_delay, stated_lag_s, with_latency};
+use super::latency::{FAST_MOTOR_S, LatencyFinding, REFUSED, with_latency};
 use super::latency_distance::latency_distance;
+use super::latency_parts::{held_s, is_delay, stated_lag_s};
 use super::named::{Confusable, Named, NamedParameter, Strength};
 use super::signature::LatencyKind;
 use super::signatures::{latency_signature, signature_of};
@@ -25,7 +26,7 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     }
     let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std } = found.latency;
     let ordinary_s = ordinary_s(traces, vehicle);
-    if total_s - ordinary_s < 4.0 * std_s.hypot(ORDINARY_STD_S) {
+    if !is_long((total_s, std_s), ordinary_s) {
         return None;
     }
     // what every vehicle has beside it is known no better than that
@@ -77,8 +78,13 @@ fn unsure_s(traces: &[Trace]) -> f64 {
     traces.iter().map(|trace| trace.inertial_unsure_s).fold(0.0, f64::max)
 }
 
+/// Whether a latency, s with its standard error, is certainly longer than an ordinary one.
+pub(super) fn is_long((total_s, std_s): (f64, f64), ordinary_s: f64) -> bool {
+    total_s - ordinary_s >= 4.0 * std_s.hypot(ORDINARY_STD_S)
+}
+
 /// Latency of sampling, sensors and a fast motor, or of the one that is stated, s: no name says so much.
-fn ordinary_s(traces: &[Trace], vehicle: &Vehicle) -> f64 {
+pub(super) fn ordinary_s(traces: &[Trace], vehicle: &Vehicle) -> f64 {
     let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
     let of_sensors_s = |trace: &Trace| trace.inertial_late_s + trace.inertial_unsure_s;
     let late_s = traces.iter().map(of_sensors_s).fold(0.0, f64::max);

@@ -41,6 +41,7 @@ mod kinematic;
 mod latency;
 mod latency_distance;
 mod latency_name;
+mod latency_parts;
 mod left_over;
 mod limits;
 pub mod locate;

@@ -3,7 +3,8 @@
 use super::base::Base;
 use super::fit::{Fitted, Newton};
 use super::gates::NAME_Z;
-use super::latency::{LatencyFinding, is_delay, with_latency};
+use super::latency::{LatencyFinding, with_latency};
+use super::latency_parts::is_delay;
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;

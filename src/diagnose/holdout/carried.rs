@@ -6,7 +6,7 @@ use super::settings::{Explained, HeldOut, HoldoutSettings};
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
 use crate::diagnose::explanation::Verdict;
-use crate::diagnose::latency::{stated_lag_s, stated_uneven};
+use crate::diagnose::latency_parts::{stated_lag_s, stated_uneven};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::rows::Rows;
 use crate::diagnose::signature::EffectTerm;

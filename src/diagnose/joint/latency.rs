@@ -3,7 +3,8 @@
 use super::requested::RequestedEffects;
 use crate::diagnose::base::Base;
 use crate::diagnose::fit::{Fitted, Newton, fit};
-use crate::diagnose::latency::{LatencyFinding, held_s, lag_column, stated_lag_s, stated_uneven};
+use crate::diagnose::latency::{LatencyFinding, lag_column};
+use crate::diagnose::latency_parts::{held_s, stated_lag_s, stated_uneven};
 use crate::diagnose::signature::LatencyKind;
 use crate::diagnose::signatures::latency_kind;
 use crate::diagnose::trace::Trace;
