@@ -17,7 +17,7 @@ struct Pool {
     mean: f64,
     /// of the parts of the errors that are each flight's own
     information: f64,
-    /// by which the flights scatter more than their whole errors say; 1 where a test does not find it
+    /// by which the flights scatter more than the parts that are their own say; 1 where a test does not find it
     scale: f64,
     /// part of the errors that goes the same way in all flights
     shared: f64,
@@ -45,9 +45,13 @@ impl Pool {
             return Some(pool);
         }
         // what was taken for common to all flights is not, as far as they scatter
-        let (pool, squares) = Self::sharing(&known, 0.0);
-        if is_beyond(squares) {
-            return Some(Self { scale: ((PRIOR + squares) / (PRIOR + free)).sqrt(), ..pool });
+        let widened = |(pool, squares): (Self, f64)| Self {
+            scale: ((PRIOR + squares) / (PRIOR + free)).sqrt().max(1.0),
+            ..pool
+        };
+        let without = Self::sharing(&known, 0.0);
+        if is_beyond(without.1) {
+            return Some(widened(without));
         }
         let (mut scattered, mut agreeing) = (least, 0.0);
         for _ in 0..HALVINGS {
@@ -55,7 +59,7 @@ impl Pool {
             let is_too_much = is_beyond(Self::sharing(&known, middle).1);
             *(if is_too_much { &mut scattered } else { &mut agreeing }) = middle;
         }
-        Some(Self::sharing(&known, agreeing).0)
+        Some(widened(Self::sharing(&known, agreeing)))
     }
 
     /// The values where this part of their errors goes the same way in all flights, with the sum of the squares of their distances from the
@@ -73,8 +77,10 @@ impl Pool {
 ///
 /// Of each flight's standard error the part `common` is expected to go the same way in all of them, and no number of flights lowers the
 /// least of it. Where a test finds that the flights scatter by more than the rest of their errors, so much of that part counts as each
-/// flight's own that the test no longer does: what goes the same way in all flights cannot make them scatter. Only where
-/// they scatter by more than their whole errors, these are larger. A flight without a value takes no part. `None` where no flight has one.
+/// flight's own that the test no longer does: what goes the same way in all flights cannot make them scatter. The
+/// rest is widened by what they scatter more than it says, as where they scatter by more than their whole errors.
+///
+/// A flight without a value takes no part. `None` where no flight has one.
 #[must_use]
 pub fn pooled_mean(values: &[Option<(f64, f64)>], common: &[f64]) -> Option<(f64, f64)> {
     let Pool { mean, information, scale, shared } = Pool::of(values, common)?;
@@ -126,16 +132,17 @@ mod tests {
         // what was expected to be common and scatters is not: six flights of 1 +- 0.1, of which 0.09 was taken for common
         let apart = [0.9, 1.1, 0.95, 1.05, 0.88, 1.12].map(|value| Some((value, 0.1)));
         let (mean, std) = pooled_mean(&apart, &[0.09; 6]).unwrap();
-        // the test allows a sum of squares of 11.07: s^2 = 0.01 - 0.0538 / 11.07 stays common, the rest is lowered by the number of flights
+        // the test allows a sum of squares of 11.07: s^2 = 0.01 - 0.0538 / 11.07 stays common; the rest is lowered by the number of
+        // flights, and its square widened by 15.07 / 9
         assert!(
-            (mean - 1.0).abs() < 1e-12 && (std * std - (0.005_14 + 0.004_86 / 6.0)).abs() < 1e-5,
+            (mean - 1.0).abs() < 1e-12 && (std * std - (0.005_14 + 1.674 * 0.004_86 / 6.0)).abs() < 1e-5,
             "{std}"
         );
         let closer = [0.92, 1.08, 0.95, 1.05, 0.93, 1.07].map(|value| Some((value, 0.1)));
         let (_, std) = pooled_mean(&closer, &[0.09; 6]).unwrap();
-        assert!((std * std - (0.007_507 + 0.002_493 / 6.0)).abs() < 1e-5, "{std}");
+        assert!((std * std - (0.007_507 + 1.674 * 0.002_493 / 6.0)).abs() < 1e-5, "{std}");
         let (value, alone) = with_scatter(&closer, &[0.09; 6])[0].unwrap();
-        assert!(value == 0.92 && (alone - 0.1).abs() < 1e-12);
+        assert!(value == 0.92 && (alone * alone - (0.007_507 + 1.674 * 0.002_493)).abs() < 1e-5);
         assert!(pooled_mean(&[None, Some((f64::NAN, 1.0))], &[0.0; 2]).is_none());
     }
 }

@@ -12,7 +12,7 @@ use super::fit::{Fitted, Newton, evaluate, fit};
 use super::flight_rows::residuals;
 use super::gyroscopic::left_out;
 use super::hausman::{contradict, differ};
-use super::latency_parts::{held_s, is_delay, lag_of, not_told, stated_lag_s, stated_uneven};
+use super::latency_parts::{held_s, is_delay, lag_of, stated_lag_s, stated_uneven};
 use super::left_over::{of_left_over, of_tested};
 use super::rows::Rows;
 use super::signature::{EffectTerm, Signature};
@@ -90,7 +90,7 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
         let has_lag =
             propulsion.time_constant_down_s.is_some() || propulsion.mean_time_constant_s().is_none();
         latency = if fed_back {
-            not_told(flights, (total_s, finding.std_s), &fitted.base.vehicle)
+            lag_of(flights, total_s, uneven)
         } else if both {
             let split = ActuationLatency { delay_s, lag_s: total_s - delay_s, uneven };
             not_refuted(split, lag_of(flights, total_s, uneven), flights, &fitted)?

@@ -26,7 +26,7 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     }
     let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std } = found.latency;
     let ordinary_s = ordinary_s(traces, vehicle);
-    if !is_long((total_s, std_s), ordinary_s) {
+    if total_s - ordinary_s < 4.0 * std_s.hypot(ORDINARY_STD_S) {
         return None;
     }
     // what every vehicle has beside it is known no better than that
@@ -78,13 +78,8 @@ fn unsure_s(traces: &[Trace]) -> f64 {
     traces.iter().map(|trace| trace.inertial_unsure_s).fold(0.0, f64::max)
 }
 
-/// Whether a latency, s with its standard error, is certainly longer than an ordinary one.
-pub(super) fn is_long((total_s, std_s): (f64, f64), ordinary_s: f64) -> bool {
-    total_s - ordinary_s >= 4.0 * std_s.hypot(ORDINARY_STD_S)
-}
-
 /// Latency of sampling, sensors and a fast motor, or of the one that is stated, s: no name says so much.
-pub(super) fn ordinary_s(traces: &[Trace], vehicle: &Vehicle) -> f64 {
+fn ordinary_s(traces: &[Trace], vehicle: &Vehicle) -> f64 {
     let period_s = traces.iter().map(|trace| trace.command_period_s).fold(0.0, f64::max);
     let of_sensors_s = |trace: &Trace| trace.inertial_late_s + trace.inertial_unsure_s;
     let late_s = traces.iter().map(of_sensors_s).fold(0.0, f64::max);

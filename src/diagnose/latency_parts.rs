@@ -1,6 +1,5 @@
 //! Of what a latency consists where the flight does not tell it: delays of the recording, and the lag that the vehicle file states.
 
-use super::latency_name::{is_long, ordinary_s};
 use super::trace::Trace;
 use crate::physics::ActuationLatency;
 use crate::vehicle::Vehicle;
@@ -12,22 +11,6 @@ const HELD: f64 = 0.25;
 pub(super) fn lag_of(flights: &[Trace], total_s: f64, uneven: f64) -> ActuationLatency {
     let delay_s = held_s(flights).min(0.5 * total_s);
     ActuationLatency { delay_s, lag_s: total_s - delay_s, uneven }
-}
-
-/// The latency where noise that is fed back hides its kind. With a stated lag, an ordinary rest is that of stamps, filters and sampling: a
-/// delay. For a lag in its place moments of inertia come out too small, by the lag times that delay times the square of the motion's
-/// frequency. What is longer than ordinary is the motors'.
-pub(super) fn not_told(
-    flights: &[Trace],
-    (total_s, std_s): (f64, f64),
-    vehicle: &Vehicle,
-) -> ActuationLatency {
-    let (stated_s, uneven) = (stated_lag_s(vehicle), stated_uneven(vehicle));
-    if stated_s > 0.0 && !is_long((total_s, std_s), ordinary_s(flights, vehicle)) {
-        let lag_s = stated_s.min(total_s);
-        return ActuationLatency { delay_s: total_s - lag_s, lag_s, uneven };
-    }
-    lag_of(flights, total_s, uneven)
 }
 
 /// Delay that is not the vehicle's, s: held commands and the filters of the inertial unit.

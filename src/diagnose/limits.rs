@@ -16,6 +16,7 @@ use super::signatures::signature_of;
 use super::slight::BEYOND;
 use super::tested::Tested;
 use super::trace::Trace;
+use crate::vehicle::VehicleSize;
 
 /// Standard errors by which an effect of its usual size must differ from zero: the z of [`Gates`](super::Gates).
 const CERTAIN: f64 = NAME_Z;
@@ -37,7 +38,9 @@ pub(super) fn limits(traces: &[Trace], last: &[Tested], fitted: &Fitted) -> Vec<
         let mut coefficients = 0..;
         for part in parts {
             for &free in &part.free {
-                let without_name = coefficients.next().map_or(0.0, |index| seen(tested, index));
+                let without_name = coefficients
+                    .next()
+                    .map_or(0.0, |index| seen((tested, part), (index, free), &vehicle.size()));
                 let material =
                     units.next().map_or(0.0, |unit| Materiality::of_rms(unit, fitted).times_to_matter());
                 let Some(parameter) = part.parameter(free) else { continue };
@@ -80,10 +83,16 @@ pub(super) fn limits(traces: &[Trace], last: &[Tested], fitted: &Fitted) -> Vec<
     out
 }
 
-/// The size that a flight shows for certain of an effect that gets no name all the same (0 otherwise): a smaller one would have got none either.
-fn seen(tested: &Tested, index: usize) -> f64 {
-    let size = tested.evidence.theta.get(index).map_or(0.0, |size| size.abs());
-    if size > CERTAIN * tested.evidence.std(index) { size } else { 0.0 }
+/// The size that a flight shows for certain of an effect that gets no name all the same: a smaller one would have got none either. 0 where it
+/// shows none that the effect can have.
+fn seen((tested, part): (&Tested, &EffectTerm), (index, free): (usize, usize), size: &VehicleSize) -> f64 {
+    let by = tested.evidence.theta.get(index).copied().unwrap_or(0.0);
+    let is_possible = part.parameter(free).is_some_and(|parameter| {
+        let (low, high) = parameter.bounds.at(size);
+        let value = part.nothing_at(free) + by;
+        low < value && value < high
+    });
+    if is_possible && by.abs() > CERTAIN * tested.evidence.std(index) { by.abs() } else { 0.0 }
 }
 
 /// The smallest standard error of a parameter among the candidates of the same form with different estimated axes.

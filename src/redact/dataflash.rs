@@ -99,7 +99,7 @@ impl Definition {
             return None;
         }
         let mut out = message.to_vec();
-        let (mut at, mut named) = (3, String::new());
+        let (mut at, mut named, mut pieces) = (3, String::new(), None);
         for (letter, label) in &self.values {
             // what follows a letter that is not known cannot be told
             let size = bytes_of(*letter)?;
@@ -108,13 +108,19 @@ impl Definition {
             let of = coordinate(label).or_else(|| (*letter == b'L').then(|| by_letter(label)));
             match (letter, of) {
                 (b'N', _) => named = text(value),
-                (b'Z', _) => pass.cover(|| format!("words of {}.{label}", self.name), value, Part::default()),
+                // a long text comes in pieces with numbers
+                (b'B', _) if label == "Seq" => pieces = value.first().copied(),
                 (b'L' | b'i', Some(of)) => pass.move_in((of, Kind::E7), label, value),
                 (b'f' | b'd', Some(of)) => pass.move_in((of, Kind::Degrees), label, value),
                 (b'f' | b'd', None) if self.name == "PARM" && is_secret_parameter(&named) => {
                     pass.empty(|| named.clone(), value)
                 }
                 _ if is_identity(label) => pass.empty(|| format!("{}.{label}", self.name), value),
+                (b'Z', _) => {
+                    let goes_on = pieces.is_some() && value.last().is_some_and(|last| *last != 0);
+                    let part = Part { is_continued: pieces.is_some_and(|piece| piece > 0), goes_on };
+                    pass.cover(|| format!("words of {}.{label}", self.name), value, part);
+                }
                 _ => {}
             }
         }

@@ -1,5 +1,7 @@
 //! Free text of an autopilot: plain words and short numbers stay, everything else is covered.
 
+use std::ops::Range;
+
 /// What covers a letter. It is a letter itself, so that a covered text stays as it is when it is read again.
 const COVER: u8 = b'x';
 /// Longest plain word of letters, bytes.
@@ -8,7 +10,9 @@ const LONGEST_WORD: usize = 18;
 const MOST_DIGITS: usize = 4;
 /// Most decimals of a number that stays: two decimals of a degree are a kilometre.
 const MOST_DECIMALS: usize = 2;
-/// Words after which the next one is covered.
+/// Most digits and letters of numbers side by side that stay: `47,39` is a kilometre.
+const MOST_IN_GROUPS: usize = 5;
+/// Words after which all that follows is covered.
 const BEFORE_SECRET: &[&str] = &[
     "PASS",
     "PASSWD",
@@ -32,35 +36,78 @@ const UNITS: &[&str] = &[
 /// A text's place in a longer one.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Part {
-    /// its first word may be the end of one, or follow a word before which a secret stands
+    /// it follows another part, which may have ended with a word before which a secret stands: all of it is covered
     pub(super) is_continued: bool,
     /// its last word may be the start of one
     pub(super) goes_on: bool,
 }
 
-/// Covers what may be a serial number, a key, a name or a place; whether something was covered.
+/// Covers what may be a serial number, a key, a name or a place; whether something was covered. What stands behind the end of the text
+/// goes.
 pub(super) fn cover(text: &mut [u8], part: Part) -> bool {
     let before = text.to_vec();
-    let is_of_word = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'.' || byte >= 0x80;
-    let mut is_secret = part.is_continued;
-    let mut at = 0;
-    while at < text.len() && text[at] != 0 {
-        let length = text[at..].iter().take_while(|byte| is_of_word(**byte)).count();
-        if length == 0 {
-            at += 1;
-            continue;
+    let end = text.iter().position(|byte| *byte == 0).unwrap_or(text.len());
+    let (text, behind) = text.split_at_mut(end);
+    behind.fill(0);
+    let words = words(text);
+    let is_secret = secrets(text, &words, part);
+    let is_number = numbers(text, &words);
+    for (place, word) in words.into_iter().enumerate() {
+        let is_last = part.goes_on && behind.is_empty() && word.end == text.len();
+        let letters = &mut text[word];
+        if place >= is_secret || is_last || is_number[place] || !is_plain(letters) {
+            letters.iter_mut().filter(|byte| **byte != b'.').for_each(|byte| *byte = COVER);
         }
-        let is_last = part.goes_on && at + length == text.len();
-        let word = &mut text[at..at + length];
-        if is_secret || is_last || !is_plain(word) {
-            word.iter_mut().filter(|byte| **byte != b'.').for_each(|byte| *byte = COVER);
-            is_secret = false;
-        } else {
-            is_secret = BEFORE_SECRET.iter().any(|before| before.as_bytes().eq_ignore_ascii_case(word));
-        }
-        at += length;
     }
-    text != before
+    *text != before[..end] || before[end..].iter().any(|byte| *byte != 0)
+}
+
+/// Where the words of a text stand.
+fn words(text: &[u8]) -> Vec<Range<usize>> {
+    let is_of_word = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'.' || byte >= 0x80;
+    let (mut out, mut at) = (Vec::new(), 0);
+    while at < text.len() {
+        let length = text[at..].iter().take_while(|byte| is_of_word(**byte)).count();
+        if length > 0 {
+            out.push(at..at + length);
+        }
+        at += length.max(1);
+    }
+    out
+}
+
+/// The first word that follows one before which a secret stands; their number where none does.
+fn secrets(text: &[u8], words: &[Range<usize>], part: Part) -> usize {
+    if part.is_continued {
+        return 0;
+    }
+    let announces = |place: usize| {
+        let word = &text[words[place].clone()];
+        let end = word.iter().rposition(|byte| byte.is_ascii_alphabetic()).map_or(0, |last| last + 1);
+        let word = word[..end].trim_ascii();
+        // `S/N`
+        let is_split = word.eq_ignore_ascii_case(b"N")
+            && place > 0
+            && text[words[place - 1].start..words[place].start].eq_ignore_ascii_case(b"S/");
+        is_split || BEFORE_SECRET.iter().any(|before| before.as_bytes().eq_ignore_ascii_case(word))
+    };
+    (0..words.len()).find(|place| announces(*place)).map_or(words.len(), |place| place + 1)
+}
+
+/// Which words are parts of a long number: groups of digits that stand side by side, as in a place or a serial number.
+fn numbers(text: &[u8], words: &[Range<usize>]) -> Vec<bool> {
+    let begins_with_digit = |word: &Range<usize>| text[word.start].is_ascii_digit();
+    let mut out = vec![false; words.len()];
+    let mut first = 0;
+    while first < words.len() {
+        let length = words[first..].iter().take_while(|word| begins_with_digit(word)).count();
+        let signs = words[first..first + length].iter().flat_map(|word| &text[word.clone()]);
+        let is_long =
+            length > 1 && signs.filter(|sign| sign.is_ascii_alphanumeric()).count() > MOST_IN_GROUPS;
+        out[first..first + length].fill(is_long);
+        first += length.max(1);
+    }
+    out
 }
 
 /// A word of letters, a short number with or without a unit, or capitals with a number as the parts of an autopilot have (`EKF3`).
@@ -80,8 +127,12 @@ fn is_plain(word: &[u8]) -> bool {
         return is_short(number);
     }
     if name.bytes().all(|letter| letter.is_ascii_uppercase()) {
-        // `V4.7.0` is a version; other names carry two digits at most
-        let most = if name == "V" { MOST_DIGITS } else { 2 };
+        // `V4.7.0` is a version, `N47` a place; other names carry two digits at most
+        let most = match name.len() {
+            1 if name == "V" => MOST_DIGITS,
+            1 => 1,
+            _ => 2,
+        };
         return name.len() <= 8 && number.bytes().filter(u8::is_ascii_digit).count() <= most;
     }
     let unit = word.trim_start_matches(|letter: char| letter.is_ascii_digit() || letter == '.');
@@ -116,7 +167,7 @@ mod tests {
             "EKF3 IMU0 is using GPS",
             "Throttle 0.25 at 12.6 V",
             "PreArm: Battery 1 below minimum arming voltage",
-            "Takeoff detected, 10s, 400Hz, 4S",
+            "Takeoff detected after 10s at 400Hz with 4S",
             "ArduCopter V4.7.0",
             "Mission: 12 WP",
             "RC3_MIN is greater than RC3_TRIM",
@@ -132,8 +183,17 @@ mod tests {
             ("home at 47.3977 8.5456", "home at xx.xxxx x.xxxx"),
             ("home at 47.397, 8.545", "home at xx.xxx, x.xxx"),
             ("wifi password hunter", "wifi password xxxxxx"),
-            ("pass: hunter2 set", "pass: xxxxxxx set"),
+            ("pass: hunter2 set", "pass: xxxxxxx xxx"),
             ("Serial: ab", "Serial: xx"),
+            ("password is hunter", "password xx xxxxxx"),
+            ("secret key hunter", "secret xxx xxxxxx"),
+            ("key. hunter ... two", "key. xxxxxx ... xxx"),
+            ("NET_PASS1=hunter", "NET_PASS1=xxxxxx"),
+            ("S/N: ABCD", "S/N: xxxx"),
+            ("at 47,3977 8,5456", "at xx,xxxx x,xxxx"),
+            ("at 47 23 51.7 N 8 32 44.2 E", "at xx xx xx.x N x xx xx.x E"),
+            ("N47 23.86", "xxx 23.86"),
+            ("board 1234-5678-9012", "board xxxx-xxxx-xxxx"),
             ("ArduCopter V4.7.0-dev (c6ea8b1a)", "ArduCopter V4.7.0-dev (xxxxxxxx)"),
             ("zażółć", "xxxxxxxxxx"),
             ("abcdefghijklmnopqrstuvwxyz", "xxxxxxxxxxxxxxxxxxxxxxxxxx"),
@@ -147,6 +207,8 @@ mod tests {
         let first = Part { is_continued: false, goes_on: true };
         assert_eq!(covered("the key is hun", first), "the key xx xxx");
         let second = Part { is_continued: true, goes_on: false };
-        assert_eq!(covered("ter two", second), "xxx two");
+        assert_eq!(covered("ter two", second), "xxx xxx");
+        // what stands behind the end of a text goes
+        assert_eq!(covered("armed\0hunter", Part::default()), "armed\0\0\0\0\0\0\0");
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn steady_voltage_v(recording: &Recording) -> Option<f64> {
     let streams = recording.streams.iter().filter(|(key, stream)| {
         key.quantity == Quantity::BatteryVoltage && stream.width == 1 && stream.len() >= LEAST_SAMPLES
     });
-    streams.filter_map(|(_, stream)| stream.values.first().copied()).find(|volts| POSSIBLE_V.contains(volts))
+    streams.flat_map(|(_, stream)| stream.values.iter().copied()).find(|volts| POSSIBLE_V.contains(volts))
 }
 
 /// Mean voltage of the battery in the air over flights, V, each instant alike; that of a battery that never changes where none

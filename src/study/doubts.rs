@@ -28,8 +28,8 @@ pub(in crate::study) fn of_shape(across: [(f64, f64); 2], about_z: (f64, f64)) -
     let text = || {
         format!(
             "izz is {:.2} times the larger one of ixx and iyy. Rotors and arms of a multirotor lie in a plane, so that izz is larger than \
-             both, up to their sum. One of these moments is wrong, by more than its error: do not build on them without a measurement on \
-             the bench",
+             both, up to their sum, unless a heavy load is fixed far below or above them. Without such a load one of these moments is wrong \
+             by more than its error: do not build on them without a measurement on the bench",
             about_z.0 / largest
         )
     };

@@ -8,8 +8,8 @@ use mavid::text;
 use crate::commands::fly::is_attended;
 use crate::commands::{CommandError, output, typed_early};
 
-/// What takes the defaults of all questions.
-const YES_OPTION: &str = "--yes";
+/// What is said of a question that no option answers.
+const Y_OR_N: &str = ", and answer y or n";
 /// So often a wrong answer is asked for again.
 const TRIES: u32 = 3;
 
@@ -38,7 +38,7 @@ impl Ask {
         self.person
     }
 
-    /// A value, by `parse`, of a question that an option answers as well; `None` is the answer of return alone. Where nobody is there, `alone` says what holds.
+    /// A value, by `parse`, of a question; `option` says behind it how it can be answered otherwise; `None` is the answer of return alone. Where nobody is there, `alone` says what holds.
     pub fn value<T>(
         self,
         (question, option): (&str, &str),
@@ -61,20 +61,20 @@ impl Ask {
             }
         }
         Err(CommandError::Input(format!(
-            "{question}: no answer that can be used; give the same command with {option}"
+            "{question}: no answer that can be used; give the same command again{option}"
         )))
     }
 
     /// Yes or no; return alone is yes. Where nobody is there, `alone` is the answer.
     pub fn agreed(self, question: &str, alone: bool) -> Result<bool, CommandError> {
         let question = format!("{question} [Y/n]");
-        Ok(self.value((&question, YES_OPTION), yes_or_no, || Ok(Some(alone)))?.unwrap_or(true))
+        Ok(self.value((&question, Y_OR_N), yes_or_no, || Ok(Some(alone)))?.unwrap_or(true))
     }
 
     /// Yes or no; return alone is no, and so it is where nobody is there.
     pub fn agreed_expressly(self, question: &str) -> Result<bool, CommandError> {
         let question = format!("{question} [y/N]");
-        Ok(self.value((&question, YES_OPTION), yes_or_no, || Ok(None))?.unwrap_or(false))
+        Ok(self.value((&question, Y_OR_N), yes_or_no, || Ok(None))?.unwrap_or(false))
     }
 }
 
@@ -126,6 +126,6 @@ mod tests {
         assert!(!ask.is_person() && ask.agreed("?", true).unwrap() && !ask.agreed("?", false).unwrap());
         assert!(!ask.agreed_expressly("?").unwrap());
         let doubt = || Err(CommandError::Input("doubt".to_owned()));
-        assert!(ask.value(("?", "--mass"), |_| Ok(1), doubt).is_err());
+        assert!(ask.value(("?", " with --mass"), |_| Ok(1), doubt).is_err());
     }
 }

@@ -207,7 +207,7 @@ fn asked(ask: Ask, vehicle: &Vehicle, is_simulated: bool) -> Result<[f64; 3], Co
         )),
     }
     };
-    Ok(ask.value((&question, "--room"), |text| typed(text, vehicle), alone)?.unwrap_or(USUAL_M))
+    Ok(ask.value((&question, " with --room"), |text| typed(text, vehicle), alone)?.unwrap_or(USUAL_M))
 }
 
 /// The limits as a file, to be read and changed by people.

@@ -151,7 +151,7 @@ fn mass(context: &Context<'_>) -> Result<f64, CommandError> {
         None => {
             let parse = |text: &str| number(text, "kg", MASSES_KG);
             let question = "Mass with battery and payload, in kg? (weigh it; no default)";
-            context.ask.value((question, "--mass"), parse, || Err(missing()))?.ok_or_else(missing)
+            context.ask.value((question, " with --mass"), parse, || Err(missing()))?.ok_or_else(missing)
         }
     }
 }
@@ -168,7 +168,7 @@ fn size(context: &Context<'_>, draft: &Draft) -> Result<Option<f64>, CommandErro
              lengths ({usual_m} m is usual for its mass)"
         )))
     };
-    context.ask.value((&question, "--size"), |text| number(text, "m", SIZES_M), alone)
+    context.ask.value((&question, " with --size"), |text| number(text, "m", SIZES_M), alone)
 }
 
 /// One line on what the file rests on.

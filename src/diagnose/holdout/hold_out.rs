@@ -73,7 +73,7 @@ pub fn on_left_out(
     tracing::info!(improvement_percent = improvement, blocks, other_vehicle = another, "hold-out predicted");
     notes.push(Note::remark(
         About::HoldOut,
-        "the floor is the error that white noise of the sensors and of the logged commands would cause with the right \
+        "noise alone (`floor` in JSON) is the error that white noise of the sensors and of the logged commands would cause with the right \
          model; noise that an autopilot's estimator has smoothed is not included",
     ));
     Ok(HoldoutFit {

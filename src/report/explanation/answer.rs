@@ -203,7 +203,7 @@ fn gain(study: &ExplainStudy) -> String {
     match pair.falls() {
         Some((name, percent)) => {
             let written = by_written(study, name);
-            format!("; with {with} the 0.5 s {name} error on {shown} falls by {percent:.0} %{written}{worse}")
+            format!("; with {with} the 0.5 s {name} error on {shown} falls by {percent:.0} %{worse}{written}")
         }
         None => format!("; with {with} the 0.5 s errors on {shown} do not fall{worse}"),
     }
@@ -214,13 +214,13 @@ fn by_written(study: &ExplainStudy, quantity: &str) -> String {
     let Some(percent) = study.as_written.as_ref().and_then(|written| written.improvement_of(quantity)) else {
         return String::new();
     };
-    let by = if percent < 0.0 {
-        format!("rises by {:.0} %", -percent)
-    } else {
-        format!("falls by {percent:.0} %")
+    let by = match percent.round() {
+        rises if rises < 0.0 => format!("rises by {:.0} %", -rises),
+        falls if falls > 0.0 => format!("falls by {falls:.0} %"),
+        _ => "stays".to_owned(),
     };
     format!(
-        " (with the load that is seen at the start of each flight there; by the model as it is written it {by})"
+        " (all this with the load that is seen at the start of each flight there; by the model as it is written the {quantity} error {by})"
     )
 }
 

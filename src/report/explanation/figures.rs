@@ -170,7 +170,8 @@ pub(super) fn followed(of: &Followed) -> Panel {
         None => spoken(&of.state),
     };
     // where nothing was found, both are the same
-    let after = of.after.as_deref().filter(|after| *after != of.before);
+    let means = |bins: &[Bin]| bins.iter().map(|bin| bin.mean).collect::<Vec<_>>();
+    let after = of.after.as_deref().filter(|after| means(after) != means(&of.before));
     Panel {
         title: format!("residual of {} over {state}", spoken(of.axis)),
         x_label: format!("{state} ({})", of.state_unit),

@@ -1,6 +1,7 @@
 //! The sections of the report that hold pictures: what shows the name, and where the models miss.
 
 use super::figures;
+use crate::diagnose::Verdict;
 use crate::diagnose::locate::{Followed, Portrait};
 use crate::report::chart::inline;
 use crate::report::html::{figure, note, section};
@@ -37,7 +38,8 @@ pub(super) fn proof(study: &ExplainStudy, numbers: &Figures) -> Markup {
         div.sides { div.more { (picture) } @if let Some(drawn) = vehicle(study) { div.less { (drawn) } } }
         p.note.live-only { "Drag over a plot to zoom in, double-click to see all. The cursor shows the values." }
     };
-    section("What shows it", &content)
+    let shows_nothing = study.effects.is_empty() && study.verdict() == Verdict::NothingMissing;
+    section(if shows_nothing { "What is left" } else { "What shows it" }, &content)
 }
 
 /// Recorded and simulated motion.

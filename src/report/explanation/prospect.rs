@@ -85,7 +85,7 @@ fn brought(study: &ExplainStudy, next: &NextFlight) -> String {
             format!("{seconds} tell {} from {} ({}). ", called(pair.named), called(other), sigma(pair))
         }
         None => format!(
-            "{seconds} determine {} better (the statistical part of its error falls to {:.0} %). ",
+            "{seconds} determine {} better (the statistical part of its error falls to {:.0} % of what it is now). ",
             called(pair.named),
             100.0 * pair.share_left()
         ),

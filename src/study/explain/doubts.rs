@@ -8,7 +8,7 @@ use crate::diagnose::locate::{Quantity, Redness};
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{Named, Verdict};
-use crate::estimate::{Contradiction, Finding, FlightApart, NAMES, ThrustScale, stated};
+use crate::estimate::{Contradiction, Finding, FlightApart, MOMENTS, NAMES, ThrustScale, stated};
 use crate::note::{About, Note};
 use crate::study::doubts::{TWO_VEHICLES, doubts, of_mass, of_shape};
 use crate::text::significant;
@@ -105,11 +105,15 @@ impl ExplainStudy {
     /// A note on a moment of inertia about z that is smaller than one across.
     pub(super) fn tell_shape(&mut self) {
         let body = self.body();
-        let moment = |name: &str| {
-            let of = body.iter().find(|of| of.name == name)?;
-            Some((of.after.value, if of.not_determined.is_none() { of.after.std } else { 0.0 }))
+        let guess = self.given.vehicle.guessed(Guessed::Inertia);
+        // what is not determined is as uncertain as its guess
+        let moment = |index: usize| {
+            let of = body.get(index)?;
+            let std = if of.not_determined.is_none() { of.after.std } else { guess * of.after.value };
+            Some((of.after.value, std))
         };
-        let all = moment("ixx").zip(moment("iyy")).zip(moment("izz"));
+        let [about_x, about_y, about_z] = MOMENTS.map(moment);
+        let all = about_x.zip(about_y).zip(about_z);
         self.notes.extend(all.and_then(|((xx, yy), zz)| of_shape([xx, yy], zz)));
     }
 

@@ -17,8 +17,9 @@ const TOLD_SIGMA: f64 = 4.0;
 
 /// Whether the next flight lowers the relative standard error (-) of a size: only its statistical part becomes smaller, what the law of the
 /// effect leaves open stays.
-fn lowers(relative_std: f64, pair: &Pair) -> bool {
-    let own = pair.now.recip().min(relative_std);
+/// `amounts`: the distance from zero is that of so many parameters together, of which one has this error.
+fn lowers(relative_std: f64, pair: &Pair, amounts: usize) -> bool {
+    let own = ((amounts.max(1) as f64).sqrt() / pair.now).min(relative_std);
     let stays = (relative_std * relative_std - own * own).max(0.0).sqrt();
     stays.hypot(own * pair.share_left()) < LEFT * relative_std
 }
@@ -42,7 +43,10 @@ impl ExplainStudy {
     pub fn worthwhile<'a>(&'a self, next: &'a NextFlight) -> impl Iterator<Item = &'a Pair> {
         next.pairs.iter().filter(|pair| match pair.other {
             Some(_) => pair.is_told_apart_by_next(),
-            None => self.relative_std(pair) > WELL_KNOWN && lowers(self.relative_std(pair), pair),
+            None => {
+                let std = self.relative_std(pair);
+                std > WELL_KNOWN && lowers(std, pair, self.amounts(pair))
+            }
         })
     }
 
@@ -51,6 +55,12 @@ impl ExplainStudy {
     pub fn would_gain(&self) -> bool {
         let Some(Ok(next)) = &self.next_flight else { return false };
         self.unsettled().next().is_some() || self.worthwhile(next).next().is_some()
+    }
+
+    /// Parameters of a named effect that have a unit.
+    fn amounts(&self, pair: &Pair) -> usize {
+        let named = self.effects.iter().find(|effect| effect.id == pair.named);
+        named.map_or(1, |named| named.parameters.iter().filter(|of| of.unit != "-").count())
     }
 
     /// Of the size of a named effect; where none has a unit, of its distance from zero.

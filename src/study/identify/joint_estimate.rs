@@ -14,7 +14,7 @@ use crate::study::explain::{
 use crate::study::flights::Prepared;
 use crate::study::{Progress, StudyError};
 use crate::text::list;
-use crate::vehicle::{Anchor, Vehicle};
+use crate::vehicle::{Anchor, Guessed, Vehicle};
 
 /// The recommended estimate, and what was estimated beside mass and inertia.
 #[derive(Debug)]
@@ -192,15 +192,16 @@ fn mass_apart(estimated: &Estimated, vehicle: &Vehicle) -> Option<Note> {
     if is_asked { of_mass(mass, vehicle.body.mass_kg) } else { None }
 }
 
-/// A note on moments of inertia that a multirotor does not have. What is not determined is as the model has it.
+/// A note on moments of inertia that a multirotor does not have. What is not determined is as the model has it, and as uncertain as its
+/// guess.
 fn odd_shape(estimated: &Estimated, model: &Vehicle) -> Option<Note> {
     let moment = |entry: usize, axis: usize| {
         let (value, std) = (estimated.theta[entry], estimated.covariance[(entry, entry)].max(0.0).sqrt());
         if value.is_finite() && std.is_finite() {
-            (value, std)
-        } else {
-            (model.body.inertia_kg_m2[(axis, axis)], 0.0)
+            return (value, std);
         }
+        let kept = model.body.inertia_kg_m2[(axis, axis)];
+        (kept, model.guessed(Guessed::Inertia) * kept)
     };
     let [about_x, about_y, about_z] = MOMENTS;
     of_shape([moment(about_x, 0), moment(about_y, 1)], moment(about_z, 2))
