@@ -117,6 +117,7 @@ fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
             gyro_noise_rad_s: None,
             height_by_pose: None,
             position_by_receiver: false,
+            steady_voltage_v: None,
             simulated: false,
             notes: Vec::new(),
         },
