@@ -87,8 +87,8 @@ pub fn pooled_mean(values: &[Option<(f64, f64)>], common: &[f64]) -> Option<(f64
     Some((mean, (scale * information.sqrt().recip()).hypot(shared)))
 }
 
-/// Each flight's value with the standard error that the others leave it: larger where the flights scatter by more than their whole errors,
-/// by the same factor as that of [`pooled_mean`]. What takes no part in that mean stays as it is.
+/// Each flight's value with the standard error that the others leave it: the part that is the flight's own is larger where the flights
+/// scatter by more than it says, by the same factor as that of [`pooled_mean`]. What takes no part in that mean stays as it is.
 #[must_use]
 pub fn with_scatter(values: &[Option<(f64, f64)>], common: &[f64]) -> Vec<Option<(f64, f64)>> {
     let Some(Pool { scale, shared, .. }) = Pool::of(values, common) else { return values.to_vec() };

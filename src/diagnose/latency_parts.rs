@@ -7,6 +7,7 @@ use crate::vehicle::Vehicle;
 /// Delay of the mean command, as a share of the log's period. A command is held until the next one, and the control
 /// loop runs faster than the log.
 const HELD: f64 = 0.25;
+
 /// A lag after the delay of the recording itself.
 pub(super) fn lag_of(flights: &[Trace], total_s: f64, uneven: f64) -> ActuationLatency {
     let delay_s = held_s(flights).min(0.5 * total_s);

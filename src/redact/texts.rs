@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// What covers a letter. It is a letter itself, so that a covered text stays as it is when it is read again.
 const COVER: u8 = b'x';
-/// Longest plain word of letters, bytes.
+/// Longest plain word of letters, bytes. Set by judgement, as the limits below: words of the autopilots' messages are shorter, keys longer.
 const LONGEST_WORD: usize = 18;
 /// Most digits of a number that stays: it is a voltage, a count or a version, and no place and no serial number.
 const MOST_DIGITS: usize = 4;
@@ -42,20 +42,20 @@ pub(super) struct Part {
     pub(super) goes_on: bool,
 }
 
-/// Covers what may be a serial number, a key, a name or a place; whether something was covered. What stands behind the end of the text
-/// goes.
+/// Covers what may be a serial number, a key, a name or a place, and empties what stands behind the end of the text; whether that changed
+/// anything.
 pub(super) fn cover(text: &mut [u8], part: Part) -> bool {
     let before = text.to_vec();
     let end = text.iter().position(|byte| *byte == 0).unwrap_or(text.len());
     let (text, behind) = text.split_at_mut(end);
     behind.fill(0);
     let words = words(text);
-    let is_secret = secrets(text, &words, part);
-    let is_number = numbers(text, &words);
+    let first_secret = first_secret(text, &words, part);
+    let is_number = in_long_numbers(text, &words);
     for (place, word) in words.into_iter().enumerate() {
         let is_last = part.goes_on && behind.is_empty() && word.end == text.len();
         let letters = &mut text[word];
-        if place >= is_secret || is_last || is_number[place] || !is_plain(letters) {
+        if place >= first_secret || is_last || is_number[place] || !is_plain(letters) {
             letters.iter_mut().filter(|byte| **byte != b'.').for_each(|byte| *byte = COVER);
         }
     }
@@ -76,15 +76,15 @@ fn words(text: &[u8]) -> Vec<Range<usize>> {
     out
 }
 
-/// The first word that follows one before which a secret stands; their number where none does.
-fn secrets(text: &[u8], words: &[Range<usize>], part: Part) -> usize {
+/// The place of the first word that may be a secret: the one behind a keyword. The number of words where there is no keyword.
+fn first_secret(text: &[u8], words: &[Range<usize>], part: Part) -> usize {
     if part.is_continued {
         return 0;
     }
     let announces = |place: usize| {
         let word = &text[words[place].clone()];
         let end = word.iter().rposition(|byte| byte.is_ascii_alphabetic()).map_or(0, |last| last + 1);
-        let word = word[..end].trim_ascii();
+        let word = &word[..end];
         // `S/N`
         let is_split = word.eq_ignore_ascii_case(b"N")
             && place > 0
@@ -95,7 +95,7 @@ fn secrets(text: &[u8], words: &[Range<usize>], part: Part) -> usize {
 }
 
 /// Which words are parts of a long number: groups of digits that stand side by side, as in a place or a serial number.
-fn numbers(text: &[u8], words: &[Range<usize>]) -> Vec<bool> {
+fn in_long_numbers(text: &[u8], words: &[Range<usize>]) -> Vec<bool> {
     let begins_with_digit = |word: &Range<usize>| text[word.start].is_ascii_digit();
     let mut out = vec![false; words.len()];
     let mut first = 0;
@@ -121,8 +121,9 @@ fn is_plain(word: &[u8]) -> bool {
         let is_hexadecimal = word.len() >= 8 && word.bytes().all(|letter| letter.is_ascii_hexdigit());
         return word.len() <= LONGEST_WORD && !is_hexadecimal;
     }
-    let name = word.trim_end_matches(|letter: char| letter.is_ascii_digit() || letter == '.');
-    let (name, number) = (name, &word[name.len()..]);
+    let is_of_number = |letter: char| letter.is_ascii_digit() || letter == '.';
+    let name = word.trim_end_matches(is_of_number);
+    let number = &word[name.len()..];
     if name.is_empty() {
         return is_short(number);
     }
@@ -135,7 +136,7 @@ fn is_plain(word: &[u8]) -> bool {
         };
         return name.len() <= 8 && number.bytes().filter(u8::is_ascii_digit).count() <= most;
     }
-    let unit = word.trim_start_matches(|letter: char| letter.is_ascii_digit() || letter == '.');
+    let unit = word.trim_start_matches(is_of_number);
     UNITS.contains(&unit) && is_short(&word[..word.len() - unit.len()])
 }
 

@@ -74,3 +74,19 @@ pub(in crate::study) fn of_mass((kg, std_kg): (f64, f64), stated_kg: f64) -> Opt
     };
     (apart >= ORDINARY_MASS.ln()).then(|| Note::warning(About::Estimate, text()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_that_is_slimmer_than_any_multirotor_is_told_beyond_its_errors() {
+        let across = [(2.1e-2, 1e-3), (2.6e-2, 1e-3)];
+        let told = of_shape(across, (1.7e-2, 1e-3)).map(|note| note.text);
+        assert!(told.is_some_and(|text| text.starts_with("izz is 0.65 times")));
+        // within the errors, by a guess, and of a flat body: nothing
+        assert!(of_shape(across, (2.4e-2, 1e-3)).is_none());
+        assert!(of_shape(across, (1.7e-2, 0.3 * 1.7e-2)).is_none());
+        assert!(of_shape(across, (4.0e-2, 1e-3)).is_none());
+    }
+}

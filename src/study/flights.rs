@@ -214,12 +214,13 @@ pub fn unread(path: &Path, error: LogError) -> StudyError {
     match error {
         // these name it
         LogError::Open { .. } | LogError::Table(_) => StudyError::Log(error),
-        // a log that is damaged from its start on
-        LogError::Empty | LogError::WrongContent { .. } | LogError::NoVehicle { .. } => {
-            StudyError::NoFlight { file: text::path(&path), why: error.to_string() }
-        }
-        // a file that holds no log, and no folder or pattern in its place
-        LogError::UnknownFormat { .. } if path.is_file() => {
+        // a file that is there and holds no log
+        LogError::Empty
+        | LogError::WrongContent { .. }
+        | LogError::NoVehicle { .. }
+        | LogError::UnknownFormat { .. }
+            if path.is_file() =>
+        {
             StudyError::NoFlight { file: text::path(&path), why: error.to_string() }
         }
         _ => StudyError::File { file: text::path(&path), why: error.to_string() },

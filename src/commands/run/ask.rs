@@ -8,7 +8,7 @@ use mavid::text;
 use crate::commands::fly::is_attended;
 use crate::commands::{CommandError, output, typed_early};
 
-/// What is said of a question that no option answers.
+/// The end of the advice for a question that no option answers.
 const Y_OR_N: &str = ", and answer y or n";
 /// So often a wrong answer is asked for again.
 const TRIES: u32 = 3;
@@ -38,10 +38,11 @@ impl Ask {
         self.person
     }
 
-    /// A value, by `parse`, of a question; `option` says behind it how it can be answered otherwise; `None` is the answer of return alone. Where nobody is there, `alone` says what holds.
+    /// A value, by `parse`; `None` is the answer of return alone. `otherwise` ends the advice after wrong answers: an option, or what to
+    /// answer. Where nobody is there, `alone` says what holds.
     pub fn value<T>(
         self,
-        (question, option): (&str, &str),
+        (question, otherwise): (&str, &str),
         parse: impl Fn(&str) -> Result<T, String>,
         alone: impl FnOnce() -> Result<Option<T>, CommandError>,
     ) -> Result<Option<T>, CommandError> {
@@ -61,7 +62,7 @@ impl Ask {
             }
         }
         Err(CommandError::Input(format!(
-            "{question}: no answer that can be used; give the same command again{option}"
+            "{question}: no answer that can be used; give the same command again{otherwise}"
         )))
     }
 

@@ -31,7 +31,7 @@ pub(super) fn no_model(study: &ExplainStudy) -> String {
         (Some(_), ValidationData::HeldBack { .. }) => ", in which something changed,",
         (Some(_), _) => ", which is not of this vehicle,",
     };
-    // it is seen with its load everywhere else
+    // all other errors of the answer are with the load
     let without =
         if study.as_written.is_some() { " as it is written, without the load of that flight," } else { "" };
     told.map_or_else(String::new, |what| {
