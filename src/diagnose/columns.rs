@@ -10,6 +10,8 @@ use std::ops::Range;
 
 /// Sums that [`dot`] runs side by side.
 const LANES: usize = 8;
+/// Places of a convolution whose sums run side by side.
+const PLACES: usize = 16;
 
 /// Columns over `channels` times `rows` values, channel after channel.
 #[derive(Debug, Clone)]
@@ -45,8 +47,8 @@ impl Columns {
             })
             .collect()
         };
-        let nuisances = nuisances.iter().map(|column| of(&column.values, column.first_row));
-        let columns = nuisances.chain(effects.iter().map(|column| of(column, 0))).collect();
+        let nuisances = nuisances.par_iter().map(|column| of(&column.values, column.first_row));
+        let columns = nuisances.chain(effects.par_iter().map(|column| of(column, 0))).collect();
         Self { rows, columns }
     }
 
@@ -69,16 +71,24 @@ impl Columns {
         self.columns[index].iter().map(|piece| dot(&piece.values, &piece.values)).sum()
     }
 
-    /// `X' X`.
-    pub(super) fn gram(&self) -> DMatrix<f64> {
-        let mut out = DMatrix::zeros(self.len(), self.len());
-        for (index, column) in self.columns.iter().enumerate() {
-            for (other, known) in self.columns[..=index].iter().enumerate() {
-                let product = shared(column, known);
-                (out[(index, other)], out[(other, index)]) = (product, product);
-            }
+    /// `X' X`, the part of each channel by itself.
+    pub(super) fn grams(&self) -> [DMatrix<f64>; CHANNELS] {
+        let products = |(index, column): (usize, &Vec<Piece>)| -> Vec<[f64; CHANNELS]> {
+            self.columns[..=index].iter().map(|known| shared_by_channel(column, known)).collect()
+        };
+        let all: Vec<Vec<[f64; CHANNELS]>> = self.columns.par_iter().enumerate().map(products).collect();
+        std::array::from_fn(|channel| {
+            DMatrix::from_fn(self.len(), self.len(), |i, j| all[i.max(j)][i.min(j)][channel])
+        })
+    }
+
+    /// The same columns where each channel is divided by a standard deviation that is smaller by its factor.
+    pub(super) fn scaled(mut self, factors: &[f64; CHANNELS]) -> Self {
+        for piece in self.columns.iter_mut().flatten() {
+            let factor = factors[piece.channel];
+            piece.values.iter_mut().for_each(|value| *value *= factor);
         }
-        out
+        self
     }
 
     /// `X' y`.
@@ -218,15 +228,15 @@ impl Piece {
 fn convolved(values: &[f64], window: &[f64]) -> Vec<f64> {
     let reach = window.len() - 1;
     let count = values.len() + reach;
-    // whole groups of lanes, with nothing before and after the values
-    let groups = count.div_ceil(LANES);
-    let mut padded = vec![0.0; groups * LANES + reach];
+    // whole groups of places, with nothing before and after the values
+    let groups = count.div_ceil(PLACES);
+    let mut padded = vec![0.0; groups * PLACES + reach];
     padded[reach..reach + values.len()].copy_from_slice(values);
-    let mut out = Vec::with_capacity(groups * LANES);
+    let mut out = Vec::with_capacity(groups * PLACES);
     for group in 0..groups {
-        let mut sums = [0.0; LANES];
-        for (weight, place) in window.iter().zip(group * LANES..) {
-            let Some(near) = padded[place..].first_chunk::<LANES>() else { break };
+        let mut sums = [0.0; PLACES];
+        for (weight, place) in window.iter().zip(group * PLACES..) {
+            let Some(near) = padded[place..].first_chunk::<PLACES>() else { break };
             sums.iter_mut().zip(near).for_each(|(sum, value)| *sum += weight * value);
         }
         out.extend_from_slice(&sums);
@@ -251,18 +261,24 @@ fn boxed(values: &[f64], width: usize) -> Vec<f64> {
 
 /// Product of two columns.
 fn shared(a: &[Piece], b: &[Piece]) -> f64 {
-    let mut sum = 0.0;
+    shared_by_channel(a, b).iter().sum()
+}
+
+/// The same, of each channel.
+fn shared_by_channel(a: &[Piece], b: &[Piece]) -> [f64; CHANNELS] {
+    let mut sums = [0.0; CHANNELS];
     for one in a {
         for other in b.iter().filter(|other| other.channel == one.channel) {
             let (first, end) = (one.first.max(other.first), one.end().min(other.end()));
             if first < end {
                 let (of_one, of_other) = (first - one.first, first - other.first);
                 let length = end - first;
-                sum += dot(&one.values[of_one..of_one + length], &other.values[of_other..of_other + length]);
+                sums[one.channel] +=
+                    dot(&one.values[of_one..of_one + length], &other.values[of_other..of_other + length]);
             }
         }
     }
-    sum
+    sums
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -304,7 +320,8 @@ mod tests {
         assert_eq!(short.columns[1].iter().map(|piece| piece.values.len()).sum::<usize>(), 7);
         let theta = DVector::from_vec(vec![0.5, -2.0, 3.0]);
         let y = matrix.column(0) + matrix.column(2);
-        assert!((short.gram() - matrix.tr_mul(&matrix)).amax() < 1e-9);
+        let gram: DMatrix<f64> = short.grams().iter().sum();
+        assert!((gram - matrix.tr_mul(&matrix)).amax() < 1e-9);
         assert!((short.times(&theta) - &matrix * &theta).amax() < 1e-9);
         assert!((short.transposed_times(y.as_slice()) - matrix.tr_mul(&y)).amax() < 1e-9);
         assert!((short.transposed_times_each(&matrix) - matrix.tr_mul(&matrix)).amax() < 1e-9);

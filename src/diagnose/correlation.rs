@@ -5,6 +5,7 @@ use super::columns::Columns;
 use super::evidence::Weighted;
 use crate::estimate::SCORE_LAGS;
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Number of neighbouring rows whose kernels overlap: the kernel is 0.4 s wide and rows are 0.05 s apart.
@@ -14,7 +15,7 @@ pub(super) const OVERLAP: usize = 8;
 const MOST_LAGS: usize = 120;
 
 /// Lags whose sums run side by side: one alone waits for every addition.
-const SIDE_BY_SIDE: usize = 4;
+const SIDE_BY_SIDE: usize = 16;
 
 /// Autocovariance of a series at some lags from `first` on, over runs without a break.
 fn autocovariances<const N: usize>(series: &[f64], runs: &[Range<usize>], first: usize) -> [f64; N] {
@@ -40,7 +41,7 @@ impl Weighted {
     /// Autocovariance of each channel up to the lag at which it has decayed, at least the kernels' overlap. Noise of an
     /// estimator or of a poor accelerometer is correlated for seconds.
     pub(super) fn gammas(&self, residual: &DVector<f64>) -> Vec<Vec<f64>> {
-        (0..CHANNELS).map(|channel| self.gamma(residual, channel)).collect()
+        (0..CHANNELS).into_par_iter().map(|channel| self.gamma(residual, channel)).collect()
     }
 
     /// Autocovariance of one channel.

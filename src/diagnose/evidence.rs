@@ -10,6 +10,7 @@ use super::priors::{Alike, Priors};
 use super::rows::Rows;
 use crate::stats::{chance_by_stretches, normal_deviate};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Least number of rows for the cluster test over twelve blocks. Set by judgement: ten rows a block.
@@ -84,14 +85,19 @@ impl Weighted {
     /// its residual.
     #[must_use]
     pub fn new(rows: &Rows) -> Self {
-        let mut sigma: [f64; CHANNELS] = std::array::from_fn(|channel| spread(rows, channel));
-        let mut this = Self::at(rows, &sigma);
+        let first: [f64; CHANNELS] = std::array::from_fn(|channel| spread(rows, channel));
+        let columns = Columns::weighted(&rows.nuisances, &rows.effects, &first, rows.len());
+        // other standard deviations only scale the products of each channel
+        let grams = columns.grams();
+        let mut this = Self::of(rows, (&first, Alike::OF_WHITE_NOISE), columns, grams.iter().sum());
         for _ in 0..2 {
-            sigma = this.residual_sigma();
-            let alike = this.alike();
+            let (sigma, alike) = (this.residual_sigma(), this.alike());
+            let factors = smaller(&this.sigma, &sigma);
             // two of a long flight at a time take much memory
-            drop(this);
-            this = Self::with(rows, &sigma, alike);
+            let columns = this.nuisances.scaled(&factors);
+            let by_channel = grams.iter().zip(smaller(&first, &sigma));
+            let gram = by_channel.map(|(gram, factor)| gram * factor.powi(2)).sum();
+            this = Self::of(rows, (&sigma, alike), columns, gram);
         }
         this
     }
@@ -130,9 +136,20 @@ impl Weighted {
 
     /// The same if so many rows of a reading count as one independent measurement.
     fn with(rows: &Rows, sigma: &[f64; CHANNELS], alike: Alike) -> Self {
-        let nuisances = Columns::weighted(&rows.nuisances, &rows.effects, sigma, rows.len());
+        let columns = Columns::weighted(&rows.nuisances, &rows.effects, sigma, rows.len());
+        let gram = columns.grams().iter().sum();
+        Self::of(rows, (sigma, alike), columns, gram)
+    }
+
+    /// The same with the weighted columns and the products of each two of them.
+    fn of(
+        rows: &Rows,
+        (sigma, alike): (&[f64; CHANNELS], Alike),
+        nuisances: Columns,
+        gram: DMatrix<f64>,
+    ) -> Self {
         let priors = Priors::of(&rows.nuisances, nuisances.len(), alike);
-        let mut normal = nuisances.gram() + DMatrix::from_diagonal(&priors.precision);
+        let mut normal = gram + DMatrix::from_diagonal(&priors.precision);
         // a column that is nowhere excited drops out
         let most = normal.diagonal().max();
         for index in 0..normal.nrows() {
@@ -199,13 +216,14 @@ impl Weighted {
 
     /// Rows of the residual that count as one independent measurement: its long-run variance relative to independent rows.
     pub(super) fn alike(&self) -> Alike {
-        let variances: [Option<f64>; CHANNELS] = std::array::from_fn(|channel| {
+        let variance = |channel: usize| {
             if self.averaged_torques && (3..AXES).contains(&channel) {
                 return None;
             }
             let gamma = self.gamma(&self.left, channel);
             (gamma[0] > 0.0).then(|| (gamma[0] + 2.0 * gamma[1..].iter().sum::<f64>()).max(gamma[0]))
-        });
+        };
+        let variances: Vec<Option<f64>> = (0..CHANNELS).into_par_iter().map(variance).collect();
         let mean = |channels: &[Option<f64>]| {
             let used = || channels.iter().flatten();
             (used().sum::<f64>() / used().count().max(1) as f64).max(1.0)
@@ -355,13 +373,18 @@ fn scaled_trace(covariance: &DMatrix<f64>, normal: &DMatrix<f64>) -> f64 {
 /// The channels one after another, each divided by its sigma.
 pub(super) fn weighted(column: &Channels, sigma: &[f64; CHANNELS]) -> DVector<f64> {
     let count = column[0].len();
-    DVector::from_iterator(
-        CHANNELS * count,
-        column.iter().zip(sigma).flat_map(|(values, sigma)| {
-            let weight = if *sigma > 0.0 { 1.0 / sigma } else { 0.0 };
-            values.iter().map(move |value| value * weight)
-        }),
-    )
+    let mut out = DVector::zeros(CHANNELS * count);
+    let each = out.as_mut_slice().chunks_exact_mut(count.max(1)).zip(column).zip(sigma);
+    for ((to, values), sigma) in each.filter(|(_, sigma)| **sigma > 0.0) {
+        let weight = 1.0 / sigma;
+        to.iter_mut().zip(values).for_each(|(to, value)| *to = value * weight);
+    }
+    out
+}
+
+/// By which factor the standard deviation of each channel is smaller; 1 where there is none.
+fn smaller(from: &[f64; CHANNELS], to: &[f64; CHANNELS]) -> [f64; CHANNELS] {
+    std::array::from_fn(|channel| if to[channel] > 0.0 { from[channel] / to[channel] } else { 1.0 })
 }
 
 /// Standard deviation of a channel's residual about its mean, over the rows at which it is measured.

@@ -1,6 +1,7 @@
 //! Weighted least squares over several channels, with standard errors for coloured residuals.
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// One equation, repeated over time: `y = X theta + e`.
@@ -185,17 +186,19 @@ impl Problem {
     /// One channel's `sum_|l|<=L gamma(l) sum_t x(t) x(t+l)^T`, as `X^T (gamma * X)`.
     pub(super) fn meat_of(&self, x: &DMatrix<f64>, gamma: &[f64]) -> DMatrix<f64> {
         let lags = gamma.len().saturating_sub(1);
-        let mut smeared = DMatrix::<f64>::zeros(x.nrows(), x.ncols());
-        for run in &self.runs {
-            for (mut out, column) in smeared.column_iter_mut().zip(x.column_iter()) {
+        let smeared = |column: &[f64]| {
+            let mut out = vec![0.0; column.len()];
+            for run in &self.runs {
                 for t in run.clone() {
                     let first = t.saturating_sub(lags).max(run.start);
                     let last = (t + lags).min(run.end - 1);
                     out[t] = (first..=last).map(|s| gamma[s.abs_diff(t)] * column[s]).sum();
                 }
             }
-        }
-        x.tr_mul(&smeared)
+            out
+        };
+        let each: Vec<Vec<f64>> = x.as_slice().par_chunks_exact(x.nrows().max(1)).map(smeared).collect();
+        x.tr_mul(&DMatrix::from_vec(x.nrows(), x.ncols(), each.concat()))
     }
 
     fn meat_of_scores(&self, scaled: &Scaled<'_>) -> DMatrix<f64> {

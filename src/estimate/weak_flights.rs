@@ -10,6 +10,7 @@ use crate::physics::ActuationLatency;
 use crate::regression::{WeakMotion, WeakRows, weak_rows};
 use crate::signals::{Signals, WeakKernel};
 use crate::vehicle::{Guessed, Vehicle};
+use rayon::prelude::*;
 
 /// The flights as rows of the weak form.
 pub(super) struct WeakFlights {
@@ -29,8 +30,8 @@ impl WeakFlights {
         let gravity_m_s2 = vehicle.gravity_m_s2;
         let kernels: Vec<WeakKernel> =
             signals.iter().map(|s| WeakKernel::new(half_width_s, s.grid.step_s)).collect();
-        let motions: Vec<WeakMotion> =
-            signals.iter().zip(&kernels).map(|(s, k)| WeakMotion::measured(s, k, gravity_m_s2)).collect();
+        let each = signals.par_iter().zip(&kernels);
+        let motions: Vec<WeakMotion> = each.map(|(s, k)| WeakMotion::measured(s, k, gravity_m_s2)).collect();
         let accelerometer_bias =
             motions.iter().map(|m| m.vertical.as_ref().and_then(|v| v.accelerometer_bias)).collect();
         let guesses = vehicle.guessed(Guessed::TorqueRatio) > 0.0 || vehicle.guessed(Guessed::Arms) > 0.0;
@@ -50,7 +51,7 @@ impl WeakFlights {
     fn refresh(&mut self) {
         self.rows = self
             .signals
-            .iter()
+            .par_iter()
             .zip(&self.motions)
             .zip(&self.kernels)
             .map(|((signals, motion), kernel)| weak_rows(signals, motion, kernel))
@@ -74,9 +75,7 @@ impl WeakFlights {
         if compensation.total_s() == 0.0 {
             return (Some(found), compensation);
         }
-        for signals in &mut self.signals {
-            take_out(signals, vehicle, compensation);
-        }
+        self.signals.par_iter_mut().for_each(|signals| take_out(signals, vehicle, compensation));
         self.refresh();
         (Some(found), compensation)
     }
@@ -87,7 +86,7 @@ impl WeakFlights {
             return Vec::new();
         }
         let alone = |rows: &WeakRows| solve_weak(std::slice::from_ref(rows), nominal);
-        let found: Vec<Option<WeakEstimate>> = self.rows.iter().map(alone).collect();
+        let found: Vec<Option<WeakEstimate>> = self.rows.par_iter().map(alone).collect();
         let each: Vec<Option<Estimated>> =
             found.iter().map(|found| found.as_ref().map(Estimated::of)).collect();
         if flights_apart(&each).is_empty() {
@@ -100,7 +99,7 @@ impl WeakFlights {
                 by_wider_window(std::slice::from_ref(signals), (found, nominal), self.wider(half_width_s));
             Some(Estimated::of(found).with_wider_window(wider))
         };
-        flights_apart(&self.signals.iter().zip(&found).map(assessed).collect::<Vec<_>>())
+        flights_apart(&self.signals.par_iter().zip(&found).map(assessed).collect::<Vec<_>>())
     }
 
     /// Moments of inertia by a window of twice the width, as shares of those of `narrow`.

@@ -8,6 +8,7 @@ use super::theta::{MOMENTS, Theta};
 use super::weak::{WeakEstimate, solve_weak};
 use crate::regression::{WeakMotion, WeakRows, weak_rows};
 use crate::signals::{Signals, WeakKernel};
+use rayon::prelude::*;
 
 /// How rows of a wider window are made.
 #[derive(Debug, Clone, Copy)]
@@ -27,7 +28,7 @@ pub(super) fn by_wider_window(
     of: Wider,
 ) -> [f64; 3] {
     let rows: Vec<WeakRows> = flights
-        .iter()
+        .par_iter()
         .map(|signals| {
             let kernel = WeakKernel::new(2.0 * of.half_width_s, signals.grid.step_s);
             let motion = WeakMotion::measured(signals, &kernel, of.gravity_m_s2);
