@@ -2,7 +2,7 @@
 
 use super::actuators::{thrusts_from_commands, thrusts_from_speeds};
 use super::rotor_count::{channels_that_move, refuse_stated_count};
-use super::rotor_thrusts::{RotorThrusts, ThrustSource};
+use super::rotor_thrusts::{RotorThrusts, ThrustSource, before_hold};
 use super::select::{best, too_short};
 use super::stated_rotors::rotor_difference;
 use super::sufficient::{LEAST_TORQUE_HZ, flowing_rate_hz};
@@ -174,9 +174,13 @@ impl Actuation {
         }
     }
 
-    /// Rotor thrusts and `F` on the grid, by first-order hold.
+    /// Rotor thrusts and `F` on the grid, by first-order hold between samples that make up for it.
     pub(super) fn onto(&self, grid: &Grid, vehicle: &Vehicle) -> Felt {
-        let flat = linear_onto(self.stream(), 0.0, grid).unwrap_or_default();
+        let flat = |stream: &Stream| linear_onto(stream, 0.0, grid).unwrap_or_default();
+        let flat = match self {
+            Self::Rotors(rotors) => flat(&before_hold(&rotors.stream)),
+            Self::Wrench(_, stream) => flat(stream),
+        };
         let Self::Rotors(rotors) = self else {
             let wrench = flat.chunks_exact(4).map(Vector4::from_column_slice).collect();
             return Felt { rotor_thrust_n: Vec::new(), wrench, jitter_wrench: None };

@@ -1,5 +1,6 @@
 //! One thrust a rotor along time, and where it comes from.
 
+use super::sufficient::LEAST_TORQUE_HZ;
 use crate::note::Note;
 use crate::recording::Stream;
 
@@ -48,4 +49,82 @@ pub(super) fn jitter_thrust(command: &Stream, curvature_n: f64) -> Stream {
         }
     }
     out
+}
+
+/// Samples further apart than this tell nothing of a curvature between them, s: those at the least rate at which torques are compared, with
+/// a fifth of it for their jitter.
+const CURVED_S: f64 = 1.2 / LEAST_TORQUE_HZ;
+
+/// Samples of thrusts whose straight lines have the mean of the curve that passes through the given ones.
+///
+/// Over an interval of length L a chord lies above its curve `T` by `L^2 T'' / 12` in the mean, so that what turns at f is seen with
+/// `1 - (2 pi f L)^2 / 12` of its size: 3 % less at 2.4 Hz and 25 samples a second. Half of that of both intervals is taken from the
+/// sample between them, `T''` by the second divided difference. No thrust becomes negative by it.
+pub(super) fn before_hold(stream: &Stream) -> Stream {
+    let mut out = stream.clone();
+    let width = stream.width;
+    for index in 1..stream.len().saturating_sub(1) {
+        let [before_s, here_s, after_s] = [index - 1, index, index + 1].map(|at| stream.time_s[at]);
+        let (a, b) = (here_s - before_s, after_s - here_s);
+        if !(a > 0.0 && b > 0.0 && a.max(b) < CURVED_S) {
+            continue;
+        }
+        let share = (a.powi(3) + b.powi(3)) / (12.0 * (a + b));
+        let around = stream.sample(index - 1).iter().zip(stream.sample(index)).zip(stream.sample(index + 1));
+        let to = &mut out.values[index * width..(index + 1) * width];
+        for (to, ((before, here), after)) in to.iter_mut().zip(around) {
+            let curvature = 2.0 * ((after - here) / b - (here - before) / a) / (a + b);
+            *to = (here - share * curvature).max(here.min(0.0));
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// What a straight line between samples leaves of a sine of 2 N at 2.4 Hz about 5 N, as a share of it.
+    fn seen(stream: &Stream) -> f64 {
+        const STEP_S: f64 = 1e-3;
+        let at = |time_s: f64| {
+            let after = stream.time_s.partition_point(|sample_s| *sample_s <= time_s);
+            let (from, to) = (after - 1, after.min(stream.len() - 1));
+            let apart = (stream.time_s[to] - stream.time_s[from]).max(f64::MIN_POSITIVE);
+            let share = (time_s - stream.time_s[from]) / apart;
+            stream.values[from] + share * (stream.values[to] - stream.values[from])
+        };
+        // 24 whole periods
+        let part = |index: u32| {
+            let time_s = 1.0 + f64::from(index) * STEP_S;
+            at(time_s) * (TAU * 2.4 * time_s).sin()
+        };
+        (0..10_000).map(part).sum::<f64>() / 10_000.0
+    }
+
+    fn sine(time_s: Vec<f64>) -> Stream {
+        let values = time_s.iter().map(|time_s| 5.0 + 2.0 * (TAU * 2.4 * time_s).sin()).collect();
+        Stream { time_s, width: 1, values }
+    }
+
+    #[test]
+    fn a_chord_takes_its_share_and_the_samples_make_up_for_it() {
+        let even = sine((0..400).map(|index| 0.04 * f64::from(index)).collect());
+        assert!((seen(&even) - 0.9702).abs() < 2e-3, "{}", seen(&even));
+        assert!((seen(&before_hold(&even)) - 1.0).abs() < 3e-3, "{}", seen(&before_hold(&even)));
+        // of two intervals of different lengths the longer one takes more
+        let uneven =
+            sine((0..400).map(|index| 0.04 * f64::from(index) + 0.008 * f64::from(index % 2)).collect());
+        let (plain, made_up) = (seen(&uneven), seen(&before_hold(&uneven)));
+        assert!((plain - 1.0).abs() > 0.02 && (made_up - 1.0).abs() < 5e-3, "{plain} {made_up}");
+    }
+
+    #[test]
+    fn what_lies_far_apart_tells_nothing_between_and_no_thrust_turns_negative() {
+        let slow = sine((0..40).map(|index| 0.1 * f64::from(index)).collect());
+        assert_eq!(before_hold(&slow), slow);
+        let stopped = Stream { time_s: vec![0.0, 0.02, 0.04], width: 1, values: vec![4.0, 0.0, 4.0] };
+        assert_eq!(before_hold(&stopped).values, [4.0, 0.0, 4.0]);
+    }
 }
