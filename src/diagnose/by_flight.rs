@@ -6,7 +6,6 @@
 use super::base::Base;
 use super::explain::ExplainSettings;
 use super::explanation::{Explanation, Verdict};
-use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
 use super::floors::add_floors;
 use super::latency::LatencyFinding;
@@ -27,6 +26,7 @@ use super::trace::Trace;
 use super::vehicle_terms::{Owner, add_term, is_same, of_the_vehicle, owner};
 use crate::estimate::{NAMES, UNITS};
 use crate::physics::PhysicsError;
+use crate::reconstruction::Path;
 use crate::signals::{OwnOfFlight, Signals};
 use crate::vehicle::Vehicle;
 use nalgebra::DMatrix;
@@ -71,7 +71,9 @@ pub fn by_flight(
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let base = with_terms(explanation, &terms, (vehicle, &trace));
         let latency = latency_of(&trace, vehicle, &explanation.search.latency);
-        let fit = flight_fit((signals, &[trace]), base, (explanation.search.latency, Forms::Chosen)).ok()?;
+        let path = explanation.search.paths.first();
+        let of = (explanation.search.latency, Forms::Chosen);
+        let fit = flight_fit((signals, &[trace]), (base, path), of).ok()?;
         let mut out = parameters(&fit, explanation, &terms, None);
         out.extend(latency.map(FlightParameter::from));
         Some(out)
@@ -112,7 +114,8 @@ pub fn each_with_model_of_all(
         }
         let latency = explanation.search.latency;
         let of_latency = flight_latency((own, &base), &explanation.named, vehicle).ok().flatten();
-        let fit = flight_fit((signals, own), base, (latency, Forms::Known)).ok()?;
+        let path = explanation.search.paths.get(flight);
+        let fit = flight_fit((signals, own), (base, path), (latency, Forms::Known)).ok()?;
         let alone = of_other_laws(own, &[], &fit.0);
         let laws = OtherLaws { alone: &alone, together: &together, of_all: &explanation.search.after };
         let mut out = parameters(&fit, explanation, &terms, Some(&laws));
@@ -186,7 +189,8 @@ pub fn of_one_flight(
         terms.extend(forms.into_iter().map(|form| form.term).find(drags));
     }
     let base = with_terms(explanation, &terms, (vehicle, &trace));
-    let fit = flight_fit((signals, &[trace]), base, (explanation.search.latency, Forms::Chosen)).ok();
+    let path = explanation.search.paths.first();
+    let fit = flight_fit((signals, &[trace]), (base, path), (explanation.search.latency, Forms::Chosen)).ok();
     fit.map_or_else(Vec::new, |fit| parameters(&fit, explanation, &terms, None))
 }
 
@@ -209,7 +213,8 @@ pub fn rigid_by_flight(
     let one = |signals: &Signals| {
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let (base, own) = (explanation.search.before.base.clone(), std::slice::from_ref(&trace));
-        let fit = flight_fit((signals, own), base, (explanation.search.latency, Forms::Known)).ok()?;
+        let fit =
+            flight_fit((signals, own), (base, None), (explanation.search.latency, Forms::Known)).ok()?;
         let mut out = parameters(&fit, explanation, &[], None);
         add_payload(&mut out, &trace);
         Some(out)
@@ -245,20 +250,16 @@ fn with_terms(explanation: &Explanation, terms: &[EffectTerm], (vehicle, trace):
 }
 
 /// One flight fitted to a model, its sizes and errors as an explanation has them, but for what all flights have in common; and which
-/// coefficients the instruments have told.
+/// coefficients the instruments have told. It begins at the path of the flight where an explanation found one.
 fn flight_fit(
     (signals, traces): (&Signals, &[Trace]),
-    base: Base,
+    (base, path): (Base, Option<&Path>),
     (latency, forms): (LatencyFinding, Forms),
 ) -> Result<(Fitted, Vec<usize>), PhysicsError> {
     let after = fit(traces, base, Newton::Held)?;
-    let mut found = Search::of(after, latency);
+    let mut found = Search { paths: path.cloned().into_iter().collect(), ..Search::of(after, latency) };
     reconstruct(std::slice::from_ref(signals), traces, (forms, &mut found), None)?;
-    let by_instruments = if is_fed_back(traces) {
-        torques_by_instruments(traces, latency.std_s, &mut found.after)?
-    } else {
-        Vec::new()
-    };
+    let by_instruments = torques_by_instruments(traces, latency.std_s, &mut found.after)?;
     Ok((found.after, by_instruments))
 }
 

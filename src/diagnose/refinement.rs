@@ -92,10 +92,8 @@ fn estimate_sizes(
             found.after.clone_from(&by_search);
             reconstruct(flights, traces, (Forms::Chosen, found), None)?;
         }
-        if is_fed_back(traces) {
-            by_instruments = tracing::info_span!("instruments")
-                .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
-        }
+        by_instruments = tracing::info_span!("instruments")
+            .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
         pace.reconstructed();
         if left == 0 || !leave_out_unnamed((traces, (flights, vehicle)), trim, found)? {
             break;

@@ -1,24 +1,29 @@
 //! Torques by instruments (two-stage least squares).
 //!
-//! The controller answers the noise of the measured motion, so commands and motion share it, and least squares takes the
-//! answer for the vehicle. Only what of each column goes with the commanded trajectory is compared.
+//! The controller answers the noise of the measured motion, and what else turns the vehicle, so commands and motion share both, and least
+//! squares takes the answer for the vehicle. Only what of each column goes with the commanded trajectory is compared.
 
+use super::base::Base;
 use super::channels::{AXES, CHANNELS, Channels, Nuisance};
 use super::columns::Columns;
 use super::evidence::weighted;
+use super::feedback_noise::is_fed_back;
 use super::fit::{CONVERGED, Coefficients, Fitted, Newton, PASSES, linearised, step};
 use super::hausman::holds;
 use super::left_over::of_left_over;
 use super::priors::Priors;
 use super::trace::Trace;
-use crate::estimate::{Estimated, MOMENTS};
+use crate::estimate::{Estimated, INERTIA_ENTRIES, MOMENTS};
 use crate::physics::PhysicsError;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// Inertia and damping of a model as instruments tell them, where least squares contradicts them or is the less certain. The
-/// latency of the model and its standard error, s, are known. Returns the places of the coefficients that
-/// the instruments have told.
+/// Inertia and damping of a model as instruments tell them, where least squares contradicts them or is the less certain. The latency of the
+/// model and its standard error, s, are known. Returns the places of the coefficients that the instruments have told.
+///
+/// Noise that is fed back moves all of them: where it is, one such moment speaks for all. Elsewhere each axis is judged alone, its damping
+/// stays, which an error of the latency moves more than what turns the vehicle does, and no place is returned: what the torques leave over
+/// is in the errors as it is by least squares.
 ///
 /// # Errors
 /// [`PhysicsError`] where the base is not physical.
@@ -39,22 +44,63 @@ pub(super) fn torques_by_instruments(
         let left_over = place.map_or(0.0, |place| of_left_over(&fitted.weighted, place));
         holds(told.theta[at] - plain.theta[at], variance(&plain), left_over, variance(&told))
     };
-    if !MOMENTS.into_iter().any(contradicts) {
+    let told_about = MOMENTS.map(contradicts);
+    if !told_about.contains(&true) {
         return Ok(Vec::new());
     }
-    let places: Vec<usize> =
-        (0..by.covariance.nrows()).filter(|&place| by.covariance[(place, place)] > 0.0).collect();
-    // what the torques do not tell stays as it is known
-    let mut after = fitted.moved_to(flights, by.base)?;
+    let fed_back = is_fed_back(flights);
+    let is_told = |place: &usize| {
+        let about =
+            || inertia_about(&by, *place).is_some_and(|axes| axes.iter().all(|&axis| told_about[axis]));
+        by.covariance[(*place, *place)] > 0.0 && (fed_back || about())
+    };
+    let places: Vec<usize> = (0..by.covariance.nrows()).filter(is_told).collect();
+    // what they do not tell stays as it is known
+    let mut base = fitted.base.clone();
+    places.iter().for_each(|&place| put(&mut base, &by, place));
+    let mut after = fitted.moved_to(flights, base)?;
     let others = 0..after.covariance.nrows();
     for &place in &places {
         for other in others.clone() {
-            let shared = by.covariance[(place, other)];
+            let shared = if places.contains(&other) { by.covariance[(place, other)] } else { 0.0 };
             (after.covariance[(place, other)], after.covariance[(other, place)]) = (shared, shared);
         }
     }
     *fitted = after;
-    Ok(places)
+    Ok(if fed_back { places } else { Vec::new() })
+}
+
+/// The two body axes of an entry of the inertia; `None` of any other coefficient.
+fn inertia_about(by: &Fitted, place: usize) -> Option<[usize; 2]> {
+    match by.rows.nuisances.get(place)?.nuisance {
+        Nuisance::Inertia(entry) => Some(INERTIA_ENTRIES[entry].into()),
+        _ => None,
+    }
+}
+
+/// The effect whose value has this place among the coefficients, and the slot of the value.
+fn effect_at(by: &Fitted, place: usize) -> Option<(usize, usize)> {
+    let terms = by.base.effects.iter().enumerate();
+    let mut slots = terms.flat_map(|(effect, term)| term.free.iter().map(move |&slot| (effect, slot)));
+    slots.nth(place - by.rows.nuisances.len())
+}
+
+/// Puts the value of a coefficient of one model into another one with the same effects.
+fn put(base: &mut Base, by: &Fitted, place: usize) {
+    match by.rows.nuisances.get(place).map(|column| column.nuisance) {
+        Some(Nuisance::Inertia(entry)) => {
+            let (row, column) = INERTIA_ENTRIES[entry];
+            let value = by.base.vehicle.body.inertia_kg_m2[(row, column)];
+            base.vehicle.body.inertia_kg_m2[(row, column)] = value;
+            base.vehicle.body.inertia_kg_m2[(column, row)] = value;
+        }
+        Some(_) => {}
+        None => {
+            if let Some((effect, slot)) = effect_at(by, place) {
+                base.effects[effect].values[slot] = by.base.effects[effect].values[slot];
+            }
+        }
+    }
 }
 
 /// The fit with inertia, latency and what damps the rotation by instruments, iterated; `None` where they cannot be had so.
