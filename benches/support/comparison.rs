@@ -57,11 +57,8 @@ pub struct Pooled {
 pub struct PooledParameter {
     pub name: String,
     pub vehicles: usize,
-    /// the standard error is smaller than that of the best single flight, by that flight alone
+    /// the standard error is smaller than that of the best single flight
     pub smaller: usize,
-    /// and than that as it is told beside the other flights, whose scatter it has
-    #[serde(default)]
-    pub smaller_beside: usize,
     /// the truth is known
     pub known: usize,
     /// and lies within 1.96 standard errors

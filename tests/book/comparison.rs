@@ -52,7 +52,6 @@ fn pooled(of: &Pooled) -> String {
         vec![
             name,
             one.vehicles.to_string(),
-            one.smaller_beside.to_string(),
             one.smaller.to_string(),
             format!("{} of {}", one.covered, one.known),
             significant(one.error_ratio, 2),
@@ -65,8 +64,7 @@ fn pooled(of: &Pooled) -> String {
     let head = [
         "parameter",
         "vehicles",
-        "smaller error than the best single flight has beside the others",
-        "than it has by itself",
+        "smaller error than the best single flight",
         "truth within 1.96 standard errors",
         "median error over that of the best single flight",
     ];

@@ -14,10 +14,8 @@ struct Estimate {
     name: String,
     value: f64,
     std: f64,
-    /// error of the flight that tells it best, by that flight alone
+    /// error of the flight that tells it best, by that flight
     single: f64,
-    /// the same as it is told beside the other flights, whose scatter it has
-    beside: f64,
     /// that flight's value
     best: f64,
     truth: Option<f64>,
@@ -58,14 +56,14 @@ pub fn run(seed: u64, count: u64, flights: u64) -> Pooled {
         by_name.iter().map(|(name, of)| figures(name, of)).filter(|of| of.known > 0).collect();
     let whole = figures("all", &all.iter().collect::<Vec<_>>());
     println!(
-        "parameter, vehicles, smaller than the best single flight's by itself and as told beside the others, with a truth, \
-         covered, covered by the best single flight, median error over best single"
+        "parameter, vehicles, smaller than the best single flight's, with a truth, covered, \
+         covered by the best single flight, median error over best single"
     );
     for of in parameters.iter().chain([&whole]) {
-        let PooledParameter { name, vehicles, smaller, smaller_beside, known, covered, error_ratio, .. } = of;
+        let PooledParameter { name, vehicles, smaller, known, covered, error_ratio, .. } = of;
         let single = of.covered_by_single;
         println!(
-            "  {name:<18} {vehicles:>3} {smaller:>3} {smaller_beside:>3} {known:>3} {covered:>3} {single:>3}  {error_ratio:.2}"
+            "  {name:<18} {vehicles:>3} {smaller:>3} {known:>3} {covered:>3} {single:>3}  {error_ratio:.2}"
         );
     }
     spread("time for each vehicle's flights", &mut seconds);
@@ -102,11 +100,9 @@ fn estimates_of(seed: u64, case: &RealCase, study: &ExplainStudy) -> Vec<Estimat
                 },
             )?;
             let (best, single) = track.values[place]?;
-            let told = (0..track.values.len()).filter_map(|flight| track.alone(flight));
-            let beside = told.map(|(_, std)| std).fold(f64::INFINITY, f64::min);
             let several = track.values.iter().flatten().count() > 1;
             let truth = truth(case, &track.name);
-            several.then_some(Estimate { name: track.name.clone(), value, std, single, beside, best, truth })
+            several.then_some(Estimate { name: track.name.clone(), value, std, single, best, truth })
         })
         .collect();
     for one in estimates.iter().filter(|one| one.std >= one.single || one.is_off()) {
@@ -157,7 +153,6 @@ fn figures(name: &str, estimates: &[&Estimate]) -> PooledParameter {
         name: name.to_owned(),
         vehicles: estimates.len(),
         smaller: estimates.iter().filter(|estimate| estimate.std < estimate.single).count(),
-        smaller_beside: estimates.iter().filter(|estimate| estimate.std < estimate.beside).count(),
         known: known.len(),
         covered: known.iter().filter(|estimate| !estimate.is_off()).count(),
         covered_by_single: known.iter().filter(|estimate| !estimate.is_single_off()).count(),
