@@ -71,7 +71,7 @@ pub fn by_flight(
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
         let base = with_terms(explanation, &terms, (vehicle, &trace));
         let latency = latency_of(&trace, vehicle, &explanation.search.latency);
-        let path = explanation.search.paths.first();
+        let path = path_of(&base, explanation, 0);
         let of = (explanation.search.latency, Forms::Chosen);
         let fit = flight_fit((signals, &[trace]), (base, path), of).ok()?;
         let mut out = parameters(&fit, explanation, &terms, None);
@@ -114,7 +114,7 @@ pub fn each_with_model_of_all(
         }
         let latency = explanation.search.latency;
         let of_latency = flight_latency((own, &base), &explanation.named, vehicle).ok().flatten();
-        let path = explanation.search.paths.get(flight);
+        let path = path_of(&base, explanation, flight);
         let fit = flight_fit((signals, own), (base, path), (latency, Forms::Known)).ok()?;
         let alone = of_other_laws(own, &[], &fit.0);
         let laws = OtherLaws { alone: &alone, together: &together, of_all: &explanation.search.after };
@@ -189,7 +189,7 @@ pub fn of_one_flight(
         terms.extend(forms.into_iter().map(|form| form.term).find(drags));
     }
     let base = with_terms(explanation, &terms, (vehicle, &trace));
-    let path = explanation.search.paths.first();
+    let path = path_of(&base, explanation, 0);
     let fit = flight_fit((signals, &[trace]), (base, path), (explanation.search.latency, Forms::Chosen)).ok();
     fit.map_or_else(Vec::new, |fit| parameters(&fit, explanation, &terms, None))
 }
@@ -249,8 +249,17 @@ fn with_terms(explanation: &Explanation, terms: &[EffectTerm], (vehicle, trace):
     base
 }
 
+/// The path of a flight that an explanation found, if the model is as it had it: a fit that begins there keeps its noise levels, and those
+/// hold what effects beside would explain.
+fn path_of<'a>(base: &Base, explanation: &'a Explanation, flight: usize) -> Option<&'a Path> {
+    let (own, found) = (&base.effects, &explanation.search.after.base.effects);
+    let is_same_model =
+        own.len() == found.len() && own.iter().zip(found).all(|(own, found)| is_same(own, found));
+    explanation.search.paths.get(flight).filter(|_| is_same_model)
+}
+
 /// One flight fitted to a model, its sizes and errors as an explanation has them, but for what all flights have in common; and which
-/// coefficients the instruments have told. It begins at the path of the flight where an explanation found one.
+/// coefficients need no error for what the torques leave over. It begins at a path that is known.
 fn flight_fit(
     (signals, traces): (&Signals, &[Trace]),
     (base, path): (Base, Option<&Path>),

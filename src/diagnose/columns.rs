@@ -71,18 +71,15 @@ impl Columns {
         self.columns[index].iter().map(|piece| dot(&piece.values, &piece.values)).sum()
     }
 
-    /// `X' X`, the part of each channel by itself.
-    pub(super) fn grams(&self) -> [DMatrix<f64>; CHANNELS] {
-        let products = |(index, column): (usize, &Vec<Piece>)| -> Vec<[f64; CHANNELS]> {
+    /// The products of each two columns.
+    pub(super) fn products(&self) -> Products {
+        let of = |(index, column): (usize, &Vec<Piece>)| -> Vec<[f64; CHANNELS]> {
             self.columns[..=index].iter().map(|known| shared_by_channel(column, known)).collect()
         };
-        let all: Vec<Vec<[f64; CHANNELS]>> = self.columns.par_iter().enumerate().map(products).collect();
-        std::array::from_fn(|channel| {
-            DMatrix::from_fn(self.len(), self.len(), |i, j| all[i.max(j)][i.min(j)][channel])
-        })
+        Products(self.columns.par_iter().enumerate().map(of).collect())
     }
 
-    /// The same columns where each channel is divided by a standard deviation that is smaller by its factor.
+    /// Each channel times its factor.
     pub(super) fn scaled(mut self, factors: &[f64; CHANNELS]) -> Self {
         for piece in self.columns.iter_mut().flatten() {
             let factor = factors[piece.channel];
@@ -190,6 +187,27 @@ impl Columns {
         };
         let parts: Vec<Vec<f64>> = self.columns.par_iter().map(along).collect();
         DMatrix::from_fn(self.len(), self.len(), |i, j| 0.5 * (parts[i][j] + parts[j][i]))
+    }
+}
+
+/// Products of each two columns, of each channel by itself; of two the one with the greater index comes first.
+pub(super) struct Products(Vec<Vec<[f64; CHANNELS]>>);
+
+impl Products {
+    /// `X' X` of columns of which each channel is the given ones' times its factor.
+    pub(super) fn gram(&self, factors: &[f64; CHANNELS]) -> DMatrix<f64> {
+        let product = |by_channel: &[f64; CHANNELS]| -> f64 {
+            by_channel.iter().zip(factors).map(|(product, factor)| product * factor.powi(2)).sum()
+        };
+        let Self(all) = self;
+        let mut out = DMatrix::zeros(all.len(), all.len());
+        for (index, row) in all.iter().enumerate() {
+            for (other, by_channel) in row.iter().enumerate() {
+                let product = product(by_channel);
+                (out[(index, other)], out[(other, index)]) = (product, product);
+            }
+        }
+        out
     }
 }
 
@@ -320,8 +338,10 @@ mod tests {
         assert_eq!(short.columns[1].iter().map(|piece| piece.values.len()).sum::<usize>(), 7);
         let theta = DVector::from_vec(vec![0.5, -2.0, 3.0]);
         let y = matrix.column(0) + matrix.column(2);
-        let gram: DMatrix<f64> = short.grams().iter().sum();
-        assert!((gram - matrix.tr_mul(&matrix)).amax() < 1e-9);
+        assert!((short.products().gram(&[1.0; CHANNELS]) - matrix.tr_mul(&matrix)).amax() < 1e-9);
+        let factors = [2.0; CHANNELS];
+        let scaled = short.clone().scaled(&factors);
+        assert!((short.products().gram(&factors) - scaled.products().gram(&[1.0; CHANNELS])).amax() < 1e-9);
         assert!((short.times(&theta) - &matrix * &theta).amax() < 1e-9);
         assert!((short.transposed_times(y.as_slice()) - matrix.tr_mul(&y)).amax() < 1e-9);
         assert!((short.transposed_times_each(&matrix) - matrix.tr_mul(&matrix)).amax() < 1e-9);

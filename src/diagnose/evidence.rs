@@ -88,16 +88,13 @@ impl Weighted {
         let first: [f64; CHANNELS] = std::array::from_fn(|channel| spread(rows, channel));
         let columns = Columns::weighted(&rows.nuisances, &rows.effects, &first, rows.len());
         // other standard deviations only scale the products of each channel
-        let grams = columns.grams();
-        let mut this = Self::of(rows, (&first, Alike::OF_WHITE_NOISE), columns, grams.iter().sum());
+        let products = columns.products();
+        let gram = products.gram(&[1.0; CHANNELS]);
+        let mut this = Self::of(rows, (&first, Alike::OF_WHITE_NOISE), columns, gram);
         for _ in 0..2 {
             let (sigma, alike) = (this.residual_sigma(), this.alike());
-            let factors = smaller(&this.sigma, &sigma);
-            // two of a long flight at a time take much memory
-            let columns = this.nuisances.scaled(&factors);
-            let by_channel = grams.iter().zip(smaller(&first, &sigma));
-            let gram = by_channel.map(|(gram, factor)| gram * factor.powi(2)).sum();
-            this = Self::of(rows, (&sigma, alike), columns, gram);
+            let columns = this.nuisances.scaled(&factors(&this.sigma, &sigma));
+            this = Self::of(rows, (&sigma, alike), columns, products.gram(&factors(&first, &sigma)));
         }
         this
     }
@@ -137,7 +134,7 @@ impl Weighted {
     /// The same if so many rows of a reading count as one independent measurement.
     fn with(rows: &Rows, sigma: &[f64; CHANNELS], alike: Alike) -> Self {
         let columns = Columns::weighted(&rows.nuisances, &rows.effects, sigma, rows.len());
-        let gram = columns.grams().iter().sum();
+        let gram = columns.products().gram(&[1.0; CHANNELS]);
         Self::of(rows, (sigma, alike), columns, gram)
     }
 
@@ -382,8 +379,8 @@ pub(super) fn weighted(column: &Channels, sigma: &[f64; CHANNELS]) -> DVector<f6
     out
 }
 
-/// By which factor the standard deviation of each channel is smaller; 1 where there is none.
-fn smaller(from: &[f64; CHANNELS], to: &[f64; CHANNELS]) -> [f64; CHANNELS] {
+/// Factors of the weighted channels from one set of their standard deviations to another; 1 where there is none.
+fn factors(from: &[f64; CHANNELS], to: &[f64; CHANNELS]) -> [f64; CHANNELS] {
     std::array::from_fn(|channel| if to[channel] > 0.0 { from[channel] / to[channel] } else { 1.0 })
 }
 

@@ -2,7 +2,7 @@
 
 use super::actuators::{thrusts_from_commands, thrusts_from_speeds};
 use super::rotor_count::{channels_that_move, refuse_stated_count};
-use super::rotor_thrusts::{RotorThrusts, ThrustSource, before_hold};
+use super::rotor_thrusts::{RotorThrusts, ThrustSource, with_mean_of_curve};
 use super::select::{best, too_short};
 use super::stated_rotors::rotor_difference;
 use super::sufficient::{LEAST_TORQUE_HZ, flowing_rate_hz};
@@ -174,11 +174,12 @@ impl Actuation {
         }
     }
 
-    /// Rotor thrusts and `F` on the grid, by first-order hold between samples that make up for it.
+    /// Rotor thrusts and `F` on the grid, by first-order hold, of rotors between samples that make up for it. A recorded wrench is taken as
+    /// it is: nothing says whether its samples are those of an instant.
     pub(super) fn onto(&self, grid: &Grid, vehicle: &Vehicle) -> Felt {
         let flat = |stream: &Stream| linear_onto(stream, 0.0, grid).unwrap_or_default();
         let flat = match self {
-            Self::Rotors(rotors) => flat(&before_hold(&rotors.stream)),
+            Self::Rotors(rotors) => flat(&with_mean_of_curve(&rotors.stream, grid.step_s)),
             Self::Wrench(_, stream) => flat(stream),
         };
         let Self::Rotors(rotors) = self else {
