@@ -6,6 +6,7 @@
 use super::base::Base;
 use super::explain::ExplainSettings;
 use super::explanation::{Explanation, Verdict};
+use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
 use super::floors::add_floors;
 use super::latency::LatencyFinding;
@@ -259,7 +260,7 @@ fn path_of<'a>(base: &Base, explanation: &'a Explanation, flight: usize) -> Opti
 }
 
 /// One flight fitted to a model, its sizes and errors as an explanation has them, but for what all flights have in common; and which
-/// coefficients need no error for what the torques leave over. It begins at a path that is known.
+/// coefficients the instruments have told. It begins at a path that is known.
 fn flight_fit(
     (signals, traces): (&Signals, &[Trace]),
     (base, path): (Base, Option<&Path>),
@@ -268,7 +269,11 @@ fn flight_fit(
     let after = fit(traces, base, Newton::Held)?;
     let mut found = Search { paths: path.cloned().into_iter().collect(), ..Search::of(after, latency) };
     reconstruct(std::slice::from_ref(signals), traces, (forms, &mut found), None)?;
-    let by_instruments = torques_by_instruments(traces, latency.std_s, &mut found.after)?;
+    let by_instruments = if is_fed_back(traces) {
+        torques_by_instruments(traces, latency.std_s, &mut found.after)?
+    } else {
+        Vec::new()
+    };
     Ok((found.after, by_instruments))
 }
 

@@ -65,12 +65,8 @@ pub(super) fn refine(
     found.by_other_law = add_other_laws(traces, &found.last, &mut found.after);
     add_floors(&mut found.after);
     // the model where nothing serves
-    if found.after.base.effects.is_empty() {
-        found.before.clone_from(&found.after);
-    } else {
-        add_left_over(&mut found.before, &[]);
-        add_floors(&mut found.before);
-    }
+    add_left_over(&mut found.before, &[]);
+    add_floors(&mut found.before);
     found.latency.std_s = found.latency.std_s.hypot(FORM * found.latency.total_s);
     found.by_wider_window = inertia_by_wider_window(flights, vehicle);
     make_physical(traces, (vehicle, found.by_wider_window), &mut found.before)?;
@@ -96,9 +92,9 @@ fn estimate_sizes(
             found.after.clone_from(&by_search);
             reconstruct(flights, traces, (Forms::Chosen, found), None)?;
         }
-        // without such noise instruments move moments alone, and no effect leaves by that
         if is_fed_back(traces) {
-            by_instruments = instruments(traces, found)?;
+            by_instruments = tracing::info_span!("instruments")
+                .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
         }
         pace.reconstructed();
         if left == 0 || !leave_out_unnamed((traces, (flights, vehicle)), trim, found)? {
@@ -106,17 +102,8 @@ fn estimate_sizes(
         }
         pace.again();
     }
-    if !is_fed_back(traces) {
-        by_instruments = instruments(traces, found)?;
-    }
     add_left_over(&mut found.after, &by_instruments);
     Ok(())
-}
-
-/// The torques of the model by instruments, where those serve: see [`torques_by_instruments`].
-fn instruments(traces: &[Trace], found: &mut Search) -> Result<Vec<usize>, PhysicsError> {
-    let _stage = tracing::info_span!("instruments").entered();
-    torques_by_instruments(traces, found.latency.std_s, &mut found.after)
 }
 
 /// The place of the effect that is nearest to nothing, where that is nearer than the usual two standard errors with what is left over in
