@@ -13,7 +13,8 @@ pub(super) fn scale(study: &CompareStudy) -> String {
     let [first, last] = moved.flights.map_or_else(Default::default, |flights| flights.map(path));
     format!(
         " The thrust for a command over the weight went from {}{first} to {}{last}: a payload, another battery or air density. These are \
-         each flight's own. Rotors that all give another thrust for a command do the same: weigh the vehicle to tell them from a payload.",
+         each flight's own. Rotors that give another thrust for a command do the same, one of them by its share: weigh the vehicle to \
+         tell them from a payload.",
         significant(moved.before.0, 3),
         significant(moved.after.0, 3)
     )
