@@ -250,8 +250,8 @@ fn with_terms(explanation: &Explanation, terms: &[EffectTerm], (vehicle, trace):
     base
 }
 
-/// The path of a flight that an explanation found, if the model is as it had it: a fit that begins there keeps its noise levels, and those
-/// hold what effects beside would explain.
+/// The path of a flight that an explanation found, if the model has the same effects. A fit that begins there keeps the noise levels, which
+/// contain all that those effects do not explain.
 fn path_of<'a>(base: &Base, explanation: &'a Explanation, flight: usize) -> Option<&'a Path> {
     let (own, found) = (&base.effects, &explanation.search.after.base.effects);
     let is_same_model =

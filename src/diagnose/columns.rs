@@ -196,14 +196,12 @@ pub(super) struct Products(Vec<Vec<[f64; CHANNELS]>>);
 impl Products {
     /// `X' X` of columns of which each channel is the given ones' times its factor.
     pub(super) fn gram(&self, factors: &[f64; CHANNELS]) -> DMatrix<f64> {
-        let product = |by_channel: &[f64; CHANNELS]| -> f64 {
-            by_channel.iter().zip(factors).map(|(product, factor)| product * factor.powi(2)).sum()
-        };
         let Self(all) = self;
         let mut out = DMatrix::zeros(all.len(), all.len());
         for (index, row) in all.iter().enumerate() {
             for (other, by_channel) in row.iter().enumerate() {
-                let product = product(by_channel);
+                let each = by_channel.iter().zip(factors);
+                let product: f64 = each.map(|(product, factor)| product * factor.powi(2)).sum();
                 (out[(index, other)], out[(other, index)]) = (product, product);
             }
         }

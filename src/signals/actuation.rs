@@ -174,18 +174,18 @@ impl Actuation {
         }
     }
 
-    /// Rotor thrusts and `F` on the grid, by first-order hold, of rotors between samples that make up for it. A recorded wrench is taken as
-    /// it is: nothing says whether its samples are those of an instant.
+    /// Rotor thrusts and `F` on the grid, by first-order hold. Samples of rotors are mended for what that takes. A recorded wrench is taken
+    /// as it is: nothing says whether its samples are those of an instant.
     pub(super) fn onto(&self, grid: &Grid, vehicle: &Vehicle) -> Felt {
-        let flat = |stream: &Stream| linear_onto(stream, 0.0, grid).unwrap_or_default();
-        let flat = match self {
-            Self::Rotors(rotors) => flat(&with_mean_of_curve(&rotors.stream, grid.step_s)),
-            Self::Wrench(_, stream) => flat(stream),
+        let held = |stream: &Stream| linear_onto(stream, 0.0, grid).unwrap_or_default();
+        let rotors = match self {
+            Self::Rotors(rotors) => rotors,
+            Self::Wrench(_, stream) => {
+                let wrench = held(stream).chunks_exact(4).map(Vector4::from_column_slice).collect();
+                return Felt { rotor_thrust_n: Vec::new(), wrench, jitter_wrench: None };
+            }
         };
-        let Self::Rotors(rotors) = self else {
-            let wrench = flat.chunks_exact(4).map(Vector4::from_column_slice).collect();
-            return Felt { rotor_thrust_n: Vec::new(), wrench, jitter_wrench: None };
-        };
+        let flat = held(&with_mean_of_curve(&rotors.stream, grid.step_s));
         let mixer = vehicle.mixer();
         let mixed = |flat: &[f64]| -> Vec<Vector4<f64>> {
             flat.chunks_exact(rotors.stream.width).map(|thrusts| mixer.wrench(thrusts)).collect()
