@@ -67,7 +67,11 @@ pub enum CsvError {
         column: String,
     },
     /// the mapping found no quantity besides time
-    #[error("{origin}: none of the mapped quantities is in the header, which has {}", text::listed(present.iter()))]
+    #[error(
+        "{origin}: none of the mapped quantities is in the header, which has {}: say with --csv-map which is which (`mavid csv-map` \
+         proposes it)",
+        text::listed(present.iter())
+    )]
     NothingMapped {
         /// file name, or what the bytes are
         origin: String,
