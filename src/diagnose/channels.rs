@@ -55,6 +55,8 @@ pub enum Nuisance {
     AirMoment(usize),
     /// N m, about body x, y, z, of a balance that is a guess, in averaged torques
     Balance(usize),
+    /// s, by which the frame of the accelerometer's samples lags the body as it turns
+    TurnedAccelerometer,
     /// share of the commands' jitter that the rotors do not follow, less one half
     Jitter,
     /// m/s^2, on body x, y, z of the accelerometer

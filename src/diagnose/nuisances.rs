@@ -6,6 +6,7 @@ use super::feedback_noise::{UNCONFIRMED_S, is_fed_back};
 use super::rotors::RotorMotion;
 use super::trace::Trace;
 use crate::estimate::{INERTIA_ENTRIES, JITTER_STD};
+use crate::reconstruction::ACCELEROMETER_TURN_STD_S;
 use crate::signals::central_difference;
 use crate::trim::mean_arm_m;
 use crate::vehicle::{Guess, Guessed, RigidBody, Vehicle};
@@ -159,6 +160,9 @@ fn latencies(trace: &Trace, base: &Base, thrust_n: &[f64]) -> Vec<NuisanceColumn
         out.push(column(Nuisance::KinematicLatency, Some(KINEMATIC_LATENCY_STD_S), values));
         out.push(lateral_latency(trace, thrust_n));
     }
+    if trace.has_accelerometer() {
+        out.push(turned_accelerometer(trace, thrust_n));
+    }
     let late = force_channels(trace, [none(), none(), late]);
     // where the gyroscopes' noise is fed back, the torques do not tell the latency as well as that
     let unsure_s = if is_fed_back(std::slice::from_ref(trace)) { UNCONFIRMED_S } else { 0.0 };
@@ -210,15 +214,27 @@ fn column(nuisance: Nuisance, prior_std: Option<f64>, values: Channels) -> Nuisa
 /// The kinematics along body x and y as they come late: the force in the world changes as the thrust, N, turns with the body. It
 /// goes with the velocity as a drag does, the faster the motion the more.
 fn lateral_latency(trace: &Trace, thrust_n: &[f64]) -> NuisanceColumn {
+    let values = turned_thrust(trace, thrust_n, SECOND);
+    column(Nuisance::LateralLatency, Some(LATERAL_LATENCY_STD_S), values)
+}
+
+/// The accelerometer's samples in a frame that lags the body: the thrust, N, leans in it as the body turns.
+fn turned_accelerometer(trace: &Trace, thrust_n: &[f64]) -> NuisanceColumn {
+    let values = turned_thrust(trace, thrust_n, 0);
+    column(Nuisance::TurnedAccelerometer, Some(ACCELEROMETER_TURN_STD_S), values)
+}
+
+/// Change of the force across the rotor axis, N/s, in a reading that begins with this channel, as the thrust, N, turns with the body.
+fn turned_thrust(trace: &Trace, thrust_n: &[f64], first: usize) -> Channels {
     let turning = trace.states.iter().zip(thrust_n).map(|(state, thrust_n)| {
         let rates = state.rates_rad_s;
         (-thrust_n * rates.y, thrust_n * rates.x)
     });
     let (along_x, along_y): (Vec<f64>, Vec<f64>) = turning.unzip();
     let mut values: Channels = std::array::from_fn(|_| vec![0.0; trace.rows()]);
-    values[SECOND] = trace.weak(0, &along_x);
-    values[SECOND + 1] = trace.weak(0, &along_y);
-    column(Nuisance::LateralLatency, Some(LATERAL_LATENCY_STD_S), values)
+    values[first] = trace.weak(0, &along_x);
+    values[first + 1] = trace.weak(0, &along_y);
+    values
 }
 
 /// The accelerometer's bias, and the level of the attitude for the kinematics, unless the base has an effect for it.

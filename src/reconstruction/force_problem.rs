@@ -12,7 +12,10 @@ use super::place::STEP_S;
 use super::places::{BASE, ERROR, TILT, VELOCITY};
 use super::problem::{Problem, Unknown};
 use super::residuals::{Group, Residuals};
-use super::sensors::{Accelerometer, EstimatedVelocity, Mechanization, ReceiverVelocity, Start, TiltWalk};
+use super::sensors::{
+    ACCELEROMETER_TURN_STD_S, Accelerometer, EstimatedVelocity, Mechanization, ReceiverVelocity, Start,
+    TiltWalk,
+};
 use super::thrusts::LATENESS_S;
 use crate::physics::Airframe;
 use crate::signals::Signals;
@@ -74,6 +77,7 @@ pub fn force_problem(
         unknown("late_attitude", 0.0, LATE_ATTITUDE_STD_S),
         unknown("late_velocity", 0.0, LATE_VELOCITY_STD_S),
         unknown("late_receiver", 0.0, LATE_RECEIVER_STD_S),
+        unknown("turned", 0.0, ACCELEROMETER_TURN_STD_S),
     ];
     debug_assert_eq!(unknowns.len(), BASE);
     for term in &mut terms {

@@ -27,3 +27,4 @@ pub use forces::Term;
 pub use problem::{Path, Problem, Unknown};
 pub use receiver::velocity_error_m_s;
 pub use residuals::{Group, Residuals, Row};
+pub use sensors::ACCELEROMETER_TURN_STD_S;

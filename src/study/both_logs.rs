@@ -28,6 +28,16 @@ const STATES: [Quantity; 3] = [Quantity::Armed, Quantity::LandedState, Quantity:
 /// less the flight would have two readings of one quantity.
 const LEAST_COVERED: f64 = 0.9;
 
+/// The same of what the ground station commanded. A log holds time on the ground as well, where nothing is commanded.
+const LEAST_COMMANDED: f64 = 0.3;
+/// What the ground station commanded, before the autopilot made it its own.
+const COMMANDED: [Quantity; 4] = [
+    Quantity::PositionSetpoint,
+    Quantity::VelocitySetpoint,
+    Quantity::AccelerationSetpoint,
+    Quantity::YawSetpoint,
+];
+
 /// Each flight once: what the ground station logged of a flight that the vehicle logged as well is brought to the vehicle's
 /// clock and becomes part of that flight. A log without another flight is left out.
 pub(super) fn each_flight_once(logs: Vec<Vec<Flight>>) -> Vec<Vec<Flight>> {
@@ -97,10 +107,11 @@ fn leave_out_parts(sent: &mut Recording, onboard: &Recording, offset: &ClockOffs
     let (Some(from_s), Some(to_s)) = (attitude.time_s.first(), attitude.time_s.last()) else { return "" };
     let before = sent.streams.len();
     sent.streams.retain(|key, stream| {
+        let least = if COMMANDED.contains(&key.quantity) { LEAST_COMMANDED } else { LEAST_COVERED };
         let covers = match (stream.time_s.first(), stream.time_s.last()) {
             (Some(first), Some(last)) => {
                 offset.on_first(*last).min(*to_s) - offset.on_first(*first).max(*from_s)
-                    > LEAST_COVERED * (to_s - from_s)
+                    > least * (to_s - from_s)
             }
             _ => false,
         };
