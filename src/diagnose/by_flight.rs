@@ -10,6 +10,7 @@ use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
 use super::floors::add_floors;
 use super::latency::LatencyFinding;
+use super::latency_error::add_latency_error;
 use super::latency_name::{FlightLatency, flight_latency, latency_of};
 use super::left_over::add_left_over;
 use super::limits::is_beyond_showing;
@@ -286,6 +287,7 @@ fn parameters(
 ) -> Vec<FlightParameter> {
     let mut whole = fitted.clone();
     add_left_over(&mut whole, by_instruments);
+    add_latency_error(&mut whole, explanation.search.latency.std_s, by_instruments);
     add_floors(&mut whole);
     let common = |own: f64, all: f64| (all - own).max(0.0).sqrt();
     let mut out = Vec::new();

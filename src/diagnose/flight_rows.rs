@@ -72,10 +72,17 @@ pub(super) fn one_flight((trace, flights): (&Trace, usize), base: &Base, model: 
         || residual(trace, base, model, &along),
         || {
             let own = velocity_error((trace, flights), (base, model), &along.commanded, &along.force_n);
-            (nuisances(trace, base, &along.commanded, &along.force_n), own)
+            let by_rotors_nm = torque_of_rotors(trace, model, &along.motion);
+            (nuisances(trace, base, &along.commanded, (&along.force_n, &by_rotors_nm)), own)
         },
     );
     Part { along, residual, nuisances, own }
+}
+
+/// Torque of the rotors by the motion at each instant, body, N m: what the motion needs beyond the effects.
+fn torque_of_rotors(trace: &Trace, model: &Model, motion: &RotorMotion) -> Vec<Vector3<f64>> {
+    let at = |index| model.airframe.thrust_wrench(&motion.thrust_n.at(index)).torque_nm;
+    (0..trace.grid.count).map(at).collect()
 }
 
 /// Base and model are those on this flight: `m K(a) - K(F)` and `D(J w) + K(w x J w) - K(M)`, with the effects' part from the smooth thrusts.

@@ -33,8 +33,8 @@ pub(super) fn of_tested(weighted: &Weighted, evidence: &Evidence, index: usize) 
     if own > 0.0 { CORRELATION * (weighted.count_of(AXES - 1) as f64 / own).sqrt() } else { 0.0 }
 }
 
-/// Adds it to the covariance of a fit: to the inertia, and to effects that need torques, except where `by_instruments` has told them.
-pub(super) fn add_left_over(fitted: &mut Fitted, by_instruments: &[usize]) {
+/// Places among the coefficients of a fit of what only torques tell: the inertia, and the amounts of effects that need torques.
+pub(super) fn of_torques(fitted: &Fitted) -> Vec<usize> {
     let of_nuisances = fitted.rows.nuisances.iter();
     let mut places: Vec<usize> = of_nuisances
         .enumerate()
@@ -50,10 +50,14 @@ pub(super) fn add_left_over(fitted: &mut Fitted, by_instruments: &[usize]) {
             place += 1;
         }
     }
-    for place in places.into_iter().filter(|place| !by_instruments.contains(place)) {
-        // what no row bears on stays undetermined
-        if fitted.covariance[(place, place)] > 0.0 {
-            fitted.covariance[(place, place)] += of_left_over(&fitted.weighted, place);
-        }
+    // what no row bears on stays undetermined
+    places.retain(|&place| fitted.covariance[(place, place)] > 0.0);
+    places
+}
+
+/// Adds it to the covariance of a fit: to what only torques tell, except where `by_instruments` has told it.
+pub(super) fn add_left_over(fitted: &mut Fitted, by_instruments: &[usize]) {
+    for place in of_torques(fitted).into_iter().filter(|place| !by_instruments.contains(place)) {
+        fitted.covariance[(place, place)] += of_left_over(&fitted.weighted, place);
     }
 }

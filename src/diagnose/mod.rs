@@ -40,6 +40,7 @@ pub mod joint;
 mod kinematic;
 mod latency;
 mod latency_distance;
+mod latency_error;
 mod latency_name;
 mod latency_parts;
 mod left_over;

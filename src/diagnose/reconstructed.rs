@@ -246,20 +246,11 @@ fn fitted_flight(
     let problem = || force_problem(signals, &base.vehicle, lag, terms.clone());
     let begun = problem()?.from_path(path);
     let free: Vec<usize> = (0..begun.unknowns.len()).collect();
-    let fit = match estimate(begun, &free) {
-        Err(_) if path.is_some() => estimate(problem()?, &free)?,
-        found => found?,
-    };
-    for name in NUISANCES {
-        let Some((value, std, std_of_blocks)) = fit.value(name) else { continue };
-        tracing::debug!(name, value, std, std_of_blocks, "nuisance of the flight path");
+    match estimate(begun, &free) {
+        Err(_) if path.is_some() => Ok(estimate(problem()?, &free)?),
+        found => Ok(found?),
     }
-    Ok(fit)
 }
-
-/// Parameters of the flight path that are no sizes of effects.
-const NUISANCES: [&str; 7] =
-    ["scale", "late_force", "lag", "late_attitude", "late_velocity", "late_receiver", "turned"];
 
 /// A value of the reconstruction: its place among the effects and its slot, where it stands in [`PooledEstimate`], the value.
 struct Size {

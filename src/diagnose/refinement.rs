@@ -7,6 +7,7 @@ use super::drag_law::settle_laws;
 use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
 use super::floors::{FORM, add_floors};
+use super::latency_error::add_latency_error;
 use super::left_over::add_left_over;
 use super::limits::is_beyond_showing;
 use super::measured_force::{Felt, shows_in_forces};
@@ -103,6 +104,7 @@ fn estimate_sizes(
         pace.again();
     }
     add_left_over(&mut found.after, &by_instruments);
+    add_latency_error(&mut found.after, found.latency.std_s, &by_instruments);
     Ok(())
 }
 

@@ -125,6 +125,10 @@ impl<'a> Iterate<'a> {
             Fit { time_s, theta, free: free.to_vec(), covariance, robust, path, unknowns, rows, reduced };
         let scores = fit.scores(&groups, free);
         fit.robust = &fit.covariance * scores.tr_mul(&scores) * &fit.covariance * small_sample();
+        for name in fit.unknowns.iter().take(BASE).map(|unknown| unknown.name) {
+            let Some((value, std, std_by_blocks)) = fit.value(name) else { continue };
+            tracing::debug!(name, value, std, std_by_blocks, "flight path");
+        }
         Ok(fit)
     }
 

@@ -59,3 +59,72 @@ fn unwrapped(stream: &Stream) -> Stream {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+    use super::*;
+
+    const GRID: Grid = Grid { start_s: 0.0, step_s: 0.01, count: 2000 };
+    /// rad/s
+    const TURNING: f64 = 2.0;
+
+    fn recording(autopilot: Autopilot, entries: &[(Quantity, &'static str, fn(f64) -> f64)]) -> Recording {
+        let mut recording = Recording { autopilot, ..Recording::default() };
+        for &(quantity, source, along) in entries {
+            let time_s: Vec<f64> = (0..200).map(|index| 0.1 * f64::from(index)).collect();
+            let values = time_s.iter().flat_map(|time_s| [along(*time_s), 0.0, 0.0]).collect();
+            let key = StreamKey { quantity, source, instance: 0 };
+            recording.streams.insert(key, Stream { time_s, width: 3, values });
+        }
+        recording
+    }
+
+    fn position_m(time_s: f64) -> f64 {
+        (TURNING * time_s).sin()
+    }
+
+    /// m/s^2, that of the position and what a controller answers
+    fn answering(time_s: f64) -> f64 {
+        -TURNING.powi(2) * position_m(time_s) + (11.0 * time_s).cos()
+    }
+
+    fn nought(time_s: f64) -> f64 {
+        if time_s < 7.0 { 0.0 } else { -0.0 }
+    }
+
+    #[test]
+    fn what_a_controller_answers_is_no_reference() {
+        const PX4: [(Quantity, &str, fn(f64) -> f64); 2] = [
+            (Quantity::PositionSetpoint, "vehicle_local_position_setpoint", position_m),
+            (Quantity::AccelerationSetpoint, "vehicle_local_position_setpoint", answering),
+        ];
+        let at = |found: &Reference, index: usize| {
+            found.acceleration[index].x + TURNING.powi(2) * position_m(GRID.time_s(index))
+        };
+        let commanded = reference(&recording(Autopilot::Px4, &PX4), &GRID).unwrap();
+        // of another autopilot, the acceleration is that of a path
+        let other = reference(&recording(Autopilot::ArduPilot, &PX4), &GRID).unwrap();
+        let alone = reference(&recording(Autopilot::Px4, &PX4[1..]), &GRID).unwrap();
+        for index in (200..1700).step_by(37) {
+            assert!(at(&commanded, index).abs() < 0.05, "{index}: {}", at(&commanded, index));
+            for with_answer in [&other, &alone] {
+                let left = at(with_answer, index) - (11.0 * GRID.time_s(index)).cos();
+                assert!(left.abs() < 0.1, "{index}: {left}");
+            }
+        }
+    }
+
+    #[test]
+    fn positions_alone_are_a_reference_and_nought_is_none() {
+        const SOURCE: &str = "SET_POSITION_TARGET_LOCAL_NED";
+        let positions = [
+            (Quantity::PositionSetpoint, SOURCE, position_m as fn(f64) -> f64),
+            (Quantity::AccelerationSetpoint, SOURCE, nought),
+        ];
+        let found = reference(&recording(Autopilot::Px4, &positions), &GRID).unwrap();
+        let expected = -TURNING.powi(2) * position_m(GRID.time_s(900));
+        assert!((found.acceleration[900].x - expected).abs() < 0.05, "{}", found.acceleration[900].x);
+        assert!(reference(&recording(Autopilot::Px4, &positions[1..]), &GRID).is_none());
+    }
+}
