@@ -10,7 +10,7 @@ use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
 use super::floors::add_floors;
 use super::latency::LatencyFinding;
-use super::latency_error::add_latency_error;
+use super::latency_error::by_latency;
 use super::latency_name::{FlightLatency, flight_latency, latency_of};
 use super::left_over::add_left_over;
 use super::limits::is_beyond_showing;
@@ -118,7 +118,7 @@ pub fn each_with_model_of_all(
         let of_latency = flight_latency((own, &base), &explanation.named, vehicle).ok().flatten();
         let path = path_of(&base, explanation, flight);
         let fit = flight_fit((signals, own), (base, path), (latency, Forms::Known)).ok()?;
-        let alone = of_other_laws(own, &[], &fit.0);
+        let alone = of_other_laws(own, &[], &fit.fitted);
         let laws = OtherLaws { alone: &alone, together: &together, of_all: &explanation.search.after };
         let mut out = parameters(&fit, explanation, &terms, Some(&laws));
         if !moves(trace) {
@@ -260,34 +260,43 @@ fn path_of<'a>(base: &Base, explanation: &'a Explanation, flight: usize) -> Opti
     explanation.search.paths.get(flight).filter(|_| is_same_model)
 }
 
-/// One flight fitted to a model, its sizes and errors as an explanation has them, but for what all flights have in common; and which
-/// coefficients the instruments have told. It begins at a path that is known.
+/// One flight fitted to a model, its sizes and errors as an explanation has them, but for what all flights have in common.
+struct FlightFit {
+    fitted: Fitted,
+    /// the coefficients that instruments have told
+    by_instruments: Vec<usize>,
+    /// covariance that the error of the latency brings
+    by_latency: DMatrix<f64>,
+}
+
+/// It begins at a path that is known.
 fn flight_fit(
     (signals, traces): (&Signals, &[Trace]),
     (base, path): (Base, Option<&Path>),
     (latency, forms): (LatencyFinding, Forms),
-) -> Result<(Fitted, Vec<usize>), PhysicsError> {
+) -> Result<FlightFit, PhysicsError> {
     let after = fit(traces, base, Newton::Held)?;
     let mut found = Search { paths: path.cloned().into_iter().collect(), ..Search::of(after, latency) };
     reconstruct(std::slice::from_ref(signals), traces, (forms, &mut found), None)?;
     let by_instruments = if is_fed_back(traces) {
-        torques_by_instruments(traces, latency.std_s, &mut found.after)?
+        torques_by_instruments(traces, &latency, &mut found.after)?
     } else {
         Vec::new()
     };
-    Ok((found.after, by_instruments))
+    let by_latency = by_latency(traces, &found.after, (&latency, &by_instruments))?;
+    Ok(FlightFit { fitted: found.after, by_instruments, by_latency })
 }
 
 /// What a fit says. Flights that are compared have a spread for other laws of drag; where they are put together, `laws` are in the errors.
 fn parameters(
-    (fitted, by_instruments): &(Fitted, Vec<usize>),
+    FlightFit { fitted, by_instruments, by_latency }: &FlightFit,
     explanation: &Explanation,
     terms: &[EffectTerm],
     laws: Option<&OtherLaws<'_>>,
 ) -> Vec<FlightParameter> {
     let mut whole = fitted.clone();
     add_left_over(&mut whole, by_instruments);
-    add_latency_error(&mut whole, explanation.search.latency.std_s, by_instruments);
+    whole.covariance += by_latency;
     add_floors(&mut whole);
     let common = |own: f64, all: f64| (all - own).max(0.0).sqrt();
     let mut out = Vec::new();

@@ -55,7 +55,7 @@ pub enum Nuisance {
     AirMoment(usize),
     /// N m, about body x, y, z, of a balance that is a guess, in averaged torques
     Balance(usize),
-    /// s, by which the frame of the accelerometer's samples lags the body as it turns
+    /// s, by which the body turns between the force and the frame of the accelerometer's sample of it
     TurnedAccelerometer,
     /// share of the commands' jitter that the rotors do not follow, less one half
     Jitter,

@@ -8,7 +8,7 @@ use super::rotors::{OfRotors, RotorMotion};
 use super::sensors::true_motion;
 use super::trace::Trace;
 use super::velocity_error::velocity_error;
-use crate::physics::{Model, PhysicsError, Wrench};
+use crate::physics::{Airframe, Model, PhysicsError, Wrench};
 use nalgebra::{Vector3, Vector4};
 use rayon::prelude::*;
 
@@ -22,6 +22,16 @@ pub(super) struct Along {
     pub(super) force_n: Vec<Vector3<f64>>,
     /// N m, of the model with the rotors by the motion
     pub(super) torque_nm: Vec<Vector3<f64>>,
+}
+
+impl Along {
+    /// Torque of the effects at each instant, with the rotors by the motion, body, N m.
+    pub(super) fn torque_of_effects_nm(&self, airframe: &Airframe) -> Vec<Vector3<f64>> {
+        let of = |(index, all): (usize, &Vector3<f64>)| {
+            all - airframe.thrust_wrench(&self.motion.thrust_n.at(index)).torque_nm
+        };
+        self.torque_nm.iter().enumerate().map(of).collect()
+    }
 }
 
 /// The residual for the true motion of the flights.
@@ -72,17 +82,10 @@ pub(super) fn one_flight((trace, flights): (&Trace, usize), base: &Base, model: 
         || residual(trace, base, model, &along),
         || {
             let own = velocity_error((trace, flights), (base, model), &along.commanded, &along.force_n);
-            let by_rotors_nm = torque_of_rotors(trace, model, &along.motion);
-            (nuisances(trace, base, &along.commanded, (&along.force_n, &by_rotors_nm)), own)
+            (nuisances(trace, base, &along.commanded, &along.force_n), own)
         },
     );
     Part { along, residual, nuisances, own }
-}
-
-/// Torque of the rotors by the motion at each instant, body, N m: what the motion needs beyond the effects.
-fn torque_of_rotors(trace: &Trace, model: &Model, motion: &RotorMotion) -> Vec<Vector3<f64>> {
-    let at = |index| model.airframe.thrust_wrench(&motion.thrust_n.at(index)).torque_nm;
-    (0..trace.grid.count).map(at).collect()
 }
 
 /// Base and model are those on this flight: `m K(a) - K(F)` and `D(J w) + K(w x J w) - K(M)`, with the effects' part from the smooth thrusts.

@@ -41,7 +41,7 @@ pub(super) fn nuisances(
     trace: &Trace,
     base: &Base,
     commanded: &RotorMotion,
-    (by_commands_n, by_rotors_nm): (&[Vector3<f64>], &[Vector3<f64>]),
+    by_commands_n: &[Vector3<f64>],
 ) -> Vec<NuisanceColumn> {
     let none = || vec![0.0; trace.rows()];
     let force = |values: [Vec<f64>; 3]| force_channels(trace, values);
@@ -68,7 +68,7 @@ pub(super) fn nuisances(
         out.push(NuisanceColumn { prior_mean, ..column(Nuisance::Gyroscopic, Some(GYROSCOPIC_STD), values) });
     }
     let thrust: Vec<f64> = commanded.thrust_n.each().map(|thrusts| thrusts.iter().sum::<f64>()).collect();
-    out.extend(latencies(trace, base, (&thrust, by_rotors_nm)));
+    out.extend(latencies(trace, base, &thrust));
     let thrust = trace.weak(0, &thrust);
     let negative: Vec<f64> = thrust.iter().map(|t| -t).collect();
     // no thrust axis is known to a tenth of a degree; one that leans much is an effect
@@ -130,20 +130,16 @@ pub(super) fn gyroscopic_column(trace: &Trace, body: &RigidBody) -> Channels {
     channels(trace, nothing(trace), needed)
 }
 
-/// Latencies: of the commands, of the force beyond that of the torques, and of the kinematics. The thrust is by the commands, N, the torque
-/// of the rotors by the motion, N m: what turns the body, and what overcomes the damping.
-fn latencies(
-    trace: &Trace,
-    base: &Base,
-    (thrust_n, by_rotors_nm): (&[f64], &[Vector3<f64>]),
-) -> Vec<NuisanceColumn> {
+/// Latencies: of the commands, of the force beyond that of the torques, and of the kinematics. The thrust is by the commands, N.
+fn latencies(trace: &Trace, base: &Base, thrust_n: &[f64]) -> Vec<NuisanceColumn> {
     let none = || vec![0.0; trace.rows()];
     let mut out = Vec::new();
     // by the commands for the force, by the motion for the torques
     let late: Vec<f64> = central_difference(thrust_n, trace.grid.step_s).iter().map(|d| -d).collect();
     let late = trace.weak(0, &late);
+    let turning = trace.turning_torque(&base.vehicle.body);
     let [late_x, late_y, late_z] = [0, 1, 2].map(|axis| {
-        let column: Vec<f64> = by_rotors_nm.iter().map(|t| -t[axis]).collect();
+        let column: Vec<f64> = turning.iter().map(|t| -t[axis]).collect();
         trace.weak(0, &central_difference(&column, trace.grid.step_s))
     });
     // in yaw the rotors' inertia leads by as much as a latency lags: where the one is estimated, roll and pitch tell the
@@ -222,7 +218,7 @@ fn lateral_latency(trace: &Trace, thrust_n: &[f64]) -> NuisanceColumn {
     column(Nuisance::LateralLatency, Some(LATERAL_LATENCY_STD_S), values)
 }
 
-/// The accelerometer's samples in a frame that lags the body: the thrust, N, leans in it as the body turns.
+/// The body turns between the force and the frame of the accelerometer's sample of it, so the thrust, N, leans in the sample.
 fn turned_accelerometer(trace: &Trace, thrust_n: &[f64]) -> NuisanceColumn {
     let values = turned_thrust(trace, thrust_n, 0);
     column(Nuisance::TurnedAccelerometer, Some(ACCELEROMETER_TURN_STD_S), values)

@@ -7,7 +7,7 @@ use super::drag_law::settle_laws;
 use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
 use super::floors::{FORM, add_floors};
-use super::latency_error::add_latency_error;
+use super::latency_error::by_latency;
 use super::left_over::add_left_over;
 use super::limits::is_beyond_showing;
 use super::measured_force::{Felt, shows_in_forces};
@@ -95,7 +95,7 @@ fn estimate_sizes(
         }
         if is_fed_back(traces) {
             by_instruments = tracing::info_span!("instruments")
-                .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
+                .in_scope(|| torques_by_instruments(traces, &found.latency, &mut found.after))?;
         }
         pace.reconstructed();
         if left == 0 || !leave_out_unnamed((traces, (flights, vehicle)), trim, found)? {
@@ -104,7 +104,7 @@ fn estimate_sizes(
         pace.again();
     }
     add_left_over(&mut found.after, &by_instruments);
-    add_latency_error(&mut found.after, found.latency.std_s, &by_instruments);
+    found.after.covariance += by_latency(traces, &found.after, (&found.latency, &by_instruments))?;
     Ok(())
 }
 

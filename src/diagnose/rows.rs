@@ -102,6 +102,11 @@ impl Rows {
         Ok(rows)
     }
 
+    /// What acts along a flight.
+    pub(super) fn along(&self, flight: usize) -> Option<&Along> {
+        self.flights.get(flight).map(AsRef::as_ref)
+    }
+
     /// Rotor motion of a flight from the commands, behind the latency and smoothed.
     #[must_use]
     pub fn commanded(&self, flight: usize) -> Option<&RotorMotion> {

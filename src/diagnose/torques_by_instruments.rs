@@ -8,6 +8,8 @@ use super::columns::Columns;
 use super::evidence::weighted;
 use super::fit::{CONVERGED, Coefficients, Fitted, Newton, PASSES, linearised, step};
 use super::hausman::holds;
+use super::latency::LatencyFinding;
+use super::latency_error::{by_latency, late_effects};
 use super::left_over::of_left_over;
 use super::priors::Priors;
 use super::trace::Trace;
@@ -17,27 +19,29 @@ use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// Inertia and damping of a model as instruments tell them, where least squares contradicts them or is the less certain. The
-/// latency of the model and its standard error, s, are known. Returns the places of the coefficients that
+/// latency of the model and its standard error are known. Returns the places of the coefficients that
 /// the instruments have told.
 ///
 /// # Errors
 /// [`PhysicsError`] where the base is not physical.
 pub(super) fn torques_by_instruments(
     flights: &[Trace],
-    latency_std_s: f64,
+    latency: &LatencyFinding,
     fitted: &mut Fitted,
 ) -> Result<Vec<usize>, PhysicsError> {
     let Some(mut by) = fit_by_instruments(flights, fitted, Newton::Held)? else { return Ok(Vec::new()) };
-    if let Some(brings) = brought_by_latency(flights, &by).filter(|_| latency_std_s.is_finite()) {
-        by.covariance += &brings * brings.transpose() * latency_std_s.powi(2);
+    if let Some(brings) = brought_by_latency(flights, &by).filter(|_| latency.std_s.is_finite()) {
+        by.covariance += &brings * brings.transpose() * latency.std_s.powi(2);
     }
+    let of_latency = by_latency(flights, fitted, (latency, &[]))?;
     let (plain, told) = (fitted.rigid_body(), by.rigid_body());
     let contradicts = |at: usize| {
         let variance = |body: &Estimated| body.covariance[(at, at)];
         let moment = Nuisance::Inertia(at - 1);
         let place = fitted.rows.nuisances.iter().position(|column| column.nuisance == moment);
-        let left_over = place.map_or(0.0, |place| of_left_over(&fitted.weighted, place));
-        holds(told.theta[at] - plain.theta[at], variance(&plain), left_over, variance(&told))
+        let of_model =
+            place.map_or(0.0, |place| of_left_over(&fitted.weighted, place) + of_latency[(place, place)]);
+        holds(told.theta[at] - plain.theta[at], variance(&plain), of_model, variance(&told))
     };
     if !MOMENTS.into_iter().any(contradicts) {
         return Ok(Vec::new());
@@ -171,8 +175,10 @@ fn of_torques(column: &Channels, flights: &[Trace], fitted: &Fitted) -> DVector<
 /// What a second of error of the latency brings into each coefficient.
 fn brought_by_latency(flights: &[Trace], fitted: &Fitted) -> Option<DVector<f64>> {
     let projected = Projected::of(flights, fitted, Newton::Held)?;
-    let column = fitted.rows.nuisances.iter().find(|column| column.nuisance == Nuisance::Latency)?;
-    let part = projected.part_in(&of_torques(&column.values, flights, fitted));
+    let turning = fitted.rows.nuisances.iter().find(|column| column.nuisance == Nuisance::Latency)?;
+    let others = late_effects(flights, fitted).ok()?;
+    let late = of_torques(&turning.values, flights, fitted) + of_torques(&others, flights, fitted);
+    let part = projected.part_in(&late);
     let mut out = DVector::zeros(fitted.covariance.nrows());
     for (&place, by) in projected.places.iter().zip(part.iter()) {
         out[place] = *by;

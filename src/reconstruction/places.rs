@@ -21,7 +21,7 @@ pub(super) const LATE_ATTITUDE: usize = 6;
 pub(super) const LATE_VELOCITY: usize = 7;
 /// Lateness of the receiver's velocity, s.
 pub(super) const LATE_RECEIVER: usize = 8;
-/// Time by which the frame of the accelerometer's samples lags the body as it turns, s.
+/// Time by which the body turns between the force and the frame of its sample, s.
 pub(super) const TURNED: usize = 9;
 /// How many they are.
 pub(super) const BASE: usize = 10;

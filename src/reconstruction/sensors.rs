@@ -18,9 +18,9 @@ const SHARED: f64 = 0.9;
 /// takes up an error of this.
 const FORGET_1_S: f64 = 0.5;
 
-/// Standard deviation of the time by which the frame of the accelerometer's samples lags the body as it turns, s. A sample is a mean
-/// over 1 to 8 ms, in the frame of its end, and the simulator of an autopilot turns the body between force and sample by a step of
-/// its own (4 ms in PX4's SIH). Without it, the drag of PX4's SIH came out by 0.02 to 0.06 N/(m/s) too small.
+/// Standard deviation of the time by which the body turns between a force and the frame of the accelerometer's sample of it, s. A sample is
+/// a mean over 1 to 8 ms, and the simulator of an autopilot turns the body between force and sample by a step of its own (4 ms in
+/// PX4's SIH, where without it the drag came out 0.02 to 0.07 N/(m/s) too small).
 pub const ACCELEROMETER_TURN_STD_S: f64 = 0.003;
 
 fn put(by_states: &mut Pair, at: usize, block: &Matrix3<f64>) {

@@ -109,6 +109,8 @@ pub struct AsRecorded {
 pub struct Reference {
     /// m/s^2, without gravity
     pub acceleration: Series<Vector3<f64>>,
+    /// the acceleration is that of commanded positions, by second differences
+    pub is_of_positions: bool,
     /// rad about up
     pub yaw: Series<f64>,
     /// message that it came from

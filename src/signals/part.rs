@@ -45,6 +45,7 @@ impl Signals {
             battery_voltage_v: self.battery_voltage_v.as_ref().map(|series| cut(series, range, 1)),
             as_recorded: self.as_recorded.clone(),
             reference: self.reference.as_ref().map(|reference| Reference {
+                is_of_positions: reference.is_of_positions,
                 acceleration: cut(&reference.acceleration, range, 1),
                 yaw: cut(&reference.yaw, range, 1),
                 message: reference.message,

@@ -1,28 +1,33 @@
 //! The commanded trajectory on the grid.
 
-use super::filter::central_difference;
 use super::flight::{Reference, Series};
 use super::grid::{Grid, cubic_onto};
-use super::select::best;
+use super::select::{best, best_of};
 use crate::autopilot::Autopilot;
 use crate::recording::{Quantity, Recording, Stream, StreamKey};
 use nalgebra::Vector3;
 
-/// PX4's setpoint for its own attitude: its acceleration holds what the controller answers to the velocity, and with it the noise of that;
-/// its position is the commanded one.
+/// PX4's setpoint for its own attitude. Its acceleration has the controller's answer to the velocity in it, and with it the noise of the
+/// velocity. Its position is the commanded one.
 const FED_BACK: [&str; 2] = ["vehicle_local_position_setpoint", "POSITION_TARGET_LOCAL_NED"];
+/// Half of the span of a second difference of the commanded position, s. A position that is held from one command to the next has steps; over
+/// this span they are small, and 97 % of an acceleration of 1 Hz are left.
+const APART_S: f64 = 0.1;
+/// Longest gap in the commanded positions, s. A spline through a longer one has an acceleration that nobody commanded.
+const LONGEST_GAP_S: f64 = 1.0;
 
-/// The commanded acceleration and yaw, by a spline; `None` if they were not recorded. Where the acceleration was not commanded, or is fed
-/// back, it is that of the commanded position.
+/// The commanded acceleration and yaw, by a spline; `None` if they were not recorded. Where no acceleration was commanded, or the one that
+/// is recorded is fed back, it is that of the commanded position.
 pub(super) fn reference(recording: &Recording, grid: &Grid) -> Option<Reference> {
-    let commanded = best(recording, Quantity::AccelerationSetpoint, |s| s.width == 3);
     let is_fed_back =
         |key: &StreamKey| recording.autopilot == Autopilot::Px4 && FED_BACK.contains(&key.source);
-    let (acceleration, message) = match commanded {
-        Some((key, stream)) if !is_fed_back(key) => (cubic_onto(stream, 0.0, grid)?, key.source),
-        other => of_position(recording, grid)
-            .or_else(|| other.and_then(|(key, stream)| Some((cubic_onto(stream, 0.0, grid)?, key.source))))?,
+    let acceleration = |fed_back: bool| {
+        let fits = |key: &StreamKey, stream: &Stream| stream.width == 3 && is_fed_back(key) == fed_back;
+        let (key, stream) = best_of(recording, Quantity::AccelerationSetpoint, fits)?;
+        Some((cubic_onto(stream, 0.0, grid)?, (key.source, false)))
     };
+    let (acceleration, (message, is_of_positions)) =
+        acceleration(false).or_else(|| of_position(recording, grid)).or_else(|| acceleration(true))?;
     let yaw = best(recording, Quantity::YawSetpoint, |s| s.width == 1)
         .and_then(|(_, stream)| cubic_onto(&unwrapped(stream), 0.0, grid))
         .unwrap_or_else(|| vec![0.0; grid.count]);
@@ -30,22 +35,25 @@ pub(super) fn reference(recording: &Recording, grid: &Grid) -> Option<Reference>
         acceleration: Series::new(
             acceleration.chunks_exact(3).map(|a| Vector3::new(a[0], a[1], a[2])).collect(),
         ),
+        is_of_positions,
         yaw: yaw.into(),
         message,
     })
 }
 
-/// The acceleration of the commanded position, m/s^2, three values an instant, and its message.
-fn of_position(recording: &Recording, grid: &Grid) -> Option<(Vec<f64>, &'static str)> {
+/// The acceleration of the commanded position, m/s^2, three values an instant; its message, and that it is of positions.
+fn of_position(recording: &Recording, grid: &Grid) -> Option<(Vec<f64>, (&'static str, bool))> {
     let (key, stream) = best(recording, Quantity::PositionSetpoint, |s| s.width == 3)?;
-    let position = cubic_onto(stream, 0.0, grid)?;
-    let mut out = vec![0.0; position.len()];
-    for axis in 0..3 {
-        let along: Vec<f64> = position.iter().skip(axis).step_by(3).copied().collect();
-        let twice = central_difference(&central_difference(&along, grid.step_s), grid.step_s);
-        out.iter_mut().skip(axis).step_by(3).zip(twice).for_each(|(out, value)| *out = value);
+    let whole = (0..stream.len()).filter(|&index| stream.sample(index).iter().all(|value| value.is_finite()));
+    let times_s: Vec<f64> = whole.map(|index| stream.time_s[index]).collect();
+    if times_s.windows(2).any(|pair| pair[1] - pair[0] > LONGEST_GAP_S) {
+        return None;
     }
-    Some((out, key.source))
+    let [before, here, after] = [-APART_S, 0.0, APART_S].map(|shift_s| cubic_onto(stream, shift_s, grid));
+    let (before, here, after) = (before?, here?, after?);
+    let each = before.iter().zip(&here).zip(&after);
+    let second = each.map(|((before, here), after)| (before - 2.0 * here + after) / APART_S.powi(2));
+    Some((second.collect(), (key.source, true)))
 }
 
 /// An angle without its jumps of a full turn.

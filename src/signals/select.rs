@@ -119,7 +119,7 @@ pub fn is_live(stream: &Stream) -> bool {
     (0..stream.width).any(|channel| {
         let mut seen: Option<f64> = None;
         (0..stream.len()).map(|i| stream.sample(i)[channel]).filter(|v| v.is_finite()).any(|value| {
-            // nought has two signs
+            // zero has two signs
             let moved = seen.is_some_and(|first| first < value || first > value);
             seen.get_or_insert(value);
             moved
@@ -189,10 +189,6 @@ pub(super) fn best_of(
 /// the motion that is used, up to 5 Hz, is sampled ten times a period.
 const ENOUGH_HZ: f64 = 100.0;
 
-/// A commanded trajectory that comes faster tells no more, Hz: it goes on below 2 Hz. Of several, the one is best into which the autopilot
-/// feeds back least: the acceleration that it asks of its own attitude holds the noise of its velocity.
-const COMMANDED_HZ: f64 = 4.0;
-
 /// A place on the earth, to a centimetre: only where nothing else tells the position.
 const PLACES: &str = "POS";
 
@@ -200,7 +196,6 @@ const PLACES: &str = "POS";
 fn worth_hz(quantity: Quantity, source: &str, rate_hz: f64) -> f64 {
     match quantity {
         Quantity::AngularRate | Quantity::SpecificForce => rate_hz.min(ENOUGH_HZ),
-        Quantity::AccelerationSetpoint | Quantity::YawSetpoint => rate_hz.min(COMMANDED_HZ),
         Quantity::Position if source == PLACES => 0.0,
         _ => rate_hz,
     }

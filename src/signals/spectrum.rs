@@ -17,8 +17,9 @@ const LEAST_COMMANDED_M_S2: f64 = 0.02;
 /// measured velocity if no acceleration was commanded. `None` without both.
 #[must_use]
 pub fn highest_harmonic_hz(signals: &Signals) -> Option<f64> {
-    let commanded =
-        signals.reference.as_ref().map(|reference| -> &[Vector3<f64>] { &reference.acceleration });
+    // positions that are held from one command to the next have steps
+    let commanded = signals.reference.as_ref().filter(|reference| !reference.is_of_positions);
+    let commanded = commanded.map(|reference| -> &[Vector3<f64>] { &reference.acceleration });
     let commanded = commanded.filter(|series| rms(series, &signals.usable) >= LEAST_COMMANDED_M_S2);
     let series: &[Vector3<f64>] = match (commanded, &signals.velocity) {
         (Some(acceleration), _) => acceleration,

@@ -50,7 +50,7 @@ fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
     recorded_by(vehicle, seed, (NOISE_M_S2, 0.0))
 }
 
-/// The same with this noise of the accelerometer, m/s^2 a sample, whose frame lags the body by a time, s.
+/// The same with this noise of the accelerometer, m/s^2 a sample. Between force and sample, the body turns by a time, s.
 fn recorded_by(vehicle: &Vehicle, seed: u64, (noise_m_s2, turned_s): (f64, f64)) -> Signals {
     let mut generator = Pcg64::seed_from_u64(seed);
     let normal = Normal::new(0.0, 1.0).unwrap();
@@ -181,7 +181,7 @@ fn drag_is_found_where_a_regression_on_the_estimate_loses_a_part_of_it() {
 }
 
 #[test]
-fn an_accelerometer_whose_frame_lags_the_body_takes_nothing_from_the_drag() {
+fn a_body_that_turns_between_force_and_sample_loses_no_drag() {
     const TURNED_S: f64 = 0.006;
     let vehicle = vehicle();
     let signals = recorded_by(&vehicle, 21, (0.3, TURNED_S));

@@ -123,9 +123,12 @@ fn without_known_nuisances(own: &Fitted, identified: &Fitted) -> Channels {
             | Nuisance::Balance(_)
             | Nuisance::Level(_)
             | Nuisance::KinematicLatency
-            | Nuisance::LateralLatency
-            | Nuisance::TurnedAccelerometer => own.coefficients[index],
-            Nuisance::GuessedMomentAboutZ | Nuisance::ForceLatency | Nuisance::Tilt(_) | Nuisance::Jitter => {
+            | Nuisance::LateralLatency => own.coefficients[index],
+            Nuisance::GuessedMomentAboutZ
+            | Nuisance::ForceLatency
+            | Nuisance::TurnedAccelerometer
+            | Nuisance::Tilt(_)
+            | Nuisance::Jitter => {
                 let columns = &identified.rows.nuisances;
                 let place = columns.iter().position(|known| known.nuisance == column.nuisance);
                 place.map_or(0.0, |index| identified.coefficients[index])

@@ -12,7 +12,7 @@ use crate::diagnose::evidence::{LEAST_FLIGHT_S, LEAST_ROWS, ROW_S};
 use crate::diagnose::fit::{Fitted, Newton, fit};
 use crate::diagnose::floors::add_slope;
 use crate::diagnose::latency::{LatencyFinding, finding_of};
-use crate::diagnose::latency_error::add_latency_error;
+use crate::diagnose::latency_error::by_latency;
 use crate::diagnose::left_over::add_left_over;
 use crate::diagnose::physical::{WITHIN_ERROR, with_guesses};
 use crate::diagnose::recorded::Recorded;
@@ -65,7 +65,7 @@ pub fn identify_jointly(
     let mut before = before;
     add_left_over(&mut before, &[]);
     add_left_over(&mut after, &[]);
-    add_latency_error(&mut after, first.std_s, &[]);
+    after.covariance += by_latency(&traces, &after, (&first, &[]))?;
     add_slope(&mut after);
     let laws = [&before, &after].map(|fitted| torque_law(&traces, fitted));
     let fits = Fits { before, after, settled, split, first, laws };
