@@ -27,6 +27,9 @@ pub struct Fitted {
     /// places in mass and inertia of what the flights do not determine: the model has what the vehicle file states there, as far as they
     /// tell nothing else
     pub undetermined: Vec<usize>,
+    /// the largest moment of inertia over the sum of the other two, and its place in mass and inertia, where the flights show an inertia that
+    /// no body has by more than their errors; the model then has what the vehicle file states
+    pub beyond_bodies: Option<(usize, f64)>,
 }
 
 impl Fitted {
@@ -224,7 +227,15 @@ pub(super) fn linearised(flights: &[Trace], base: Base) -> Result<Fitted, Physic
     let weighted = Weighted::new(&rows);
     let count = rows.nuisances.len() + rows.effects.len();
     let (coefficients, covariance) = (DVector::zeros(count), DMatrix::zeros(count, count));
-    Ok(Fitted { base, rows, weighted, coefficients, covariance, undetermined: Vec::new() })
+    Ok(Fitted {
+        base,
+        rows,
+        weighted,
+        coefficients,
+        covariance,
+        undetermined: Vec::new(),
+        beyond_bodies: None,
+    })
 }
 
 /// Coefficients of the rows' columns, and their covariance.

@@ -160,12 +160,14 @@ fn latencies(trace: &Trace, base: &Base, thrust_n: &[f64]) -> Vec<NuisanceColumn
         out.push(column(Nuisance::KinematicLatency, Some(KINEMATIC_LATENCY_STD_S), values));
         out.push(lateral_latency(trace, thrust_n));
     }
-    if trace.has_accelerometer() {
+    let is_fed_back = is_fed_back(std::slice::from_ref(trace));
+    // elsewhere the reconstruction of the flight path has it alone: beside a drag that is not found yet, it would take a part of it
+    if trace.has_accelerometer() && is_fed_back {
         out.push(turned_accelerometer(trace, thrust_n));
     }
     let late = force_channels(trace, [none(), none(), late]);
     // where the gyroscopes' noise is fed back, the torques do not tell the latency as well as that
-    let unsure_s = if is_fed_back(std::slice::from_ref(trace)) { UNCONFIRMED_S } else { 0.0 };
+    let unsure_s = if is_fed_back { UNCONFIRMED_S } else { 0.0 };
     out.push(column(Nuisance::ForceLatency, Some(FORCE_LATENCY_STD_S.hypot(unsure_s)), late));
     out
 }

@@ -40,6 +40,7 @@ pub(super) fn make_physical(
     fitted: &mut Fitted,
 ) -> Result<(), PhysicsError> {
     let open = undetermined(fitted, stated, by_wider_window);
+    let as_flown = theta_of(&fitted.base.vehicle.body);
     stay_at_prior(flights, (stated, &open), fitted)?;
     let theta = theta_of(&fitted.base.vehicle.body);
     if is_physical(&theta) {
@@ -71,8 +72,17 @@ pub(super) fn make_physical(
             after.covariance[(place, place)] = size.powi(2);
         }
     }
-    *fitted = Fitted { undetermined: open, ..after };
+    let beyond_bodies = moved.is_none().then(|| largest_over_others(&as_flown));
+    *fitted = Fitted { undetermined: open, beyond_bodies, ..after };
     Ok(())
+}
+
+/// The place of the largest moment of inertia, and its ratio to the sum of the other two.
+fn largest_over_others(theta: &Theta) -> (usize, f64) {
+    let sum: f64 = MOMENTS.into_iter().map(|place| theta[place]).sum();
+    let larger = |a: usize, b: usize| if theta[b] > theta[a] { b } else { a };
+    let place = MOMENTS.into_iter().fold(MOMENTS[0], larger);
+    (place, theta[place] / (sum - theta[place]))
 }
 
 /// Place of izz in mass and inertia.

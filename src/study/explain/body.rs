@@ -1,6 +1,6 @@
 //! Mass and inertia of an answer.
 
-use super::not_determined::{BY_CONTROL, KEPT, kept_about_z};
+use super::not_determined::{BY_CONTROL, KEPT, kept_about_z, no_body};
 use super::result::ExplainStudy;
 use crate::diagnose::Fitted;
 use crate::estimate::{
@@ -81,6 +81,7 @@ impl ExplainStudy {
         let is_kept = |index: usize| index == ABOUT_Z && self.explanation.torque_law.is_some();
         std::array::from_fn(|index| match finding(&estimated, &nominal, index) {
             _ if index > 0 && self.explanation.turned_by_control => Some(BY_CONTROL.to_owned()),
+            _ if index > 0 && fitted.beyond_bodies.is_some() => fitted.beyond_bodies.map(no_body),
             Finding::NotDetermined { reason } if is_kept(index) => {
                 Some(format!("{reason}; {}", kept_about_z(&fitted.base.vehicle, &self.given.vehicle)))
             }

@@ -1,6 +1,7 @@
 //! Words for what flights do not determine of the inertia.
 
 use crate::diagnose::MOMENT_STD;
+use crate::estimate::NAMES;
 use crate::text::significant;
 use crate::vehicle::Vehicle;
 
@@ -35,5 +36,27 @@ pub(in crate::study) fn kept_about_z(model: &Vehicle, stated: &Vehicle) -> Strin
     )
 }
 
+/// Why no entry of the inertia is determined where no body has what the flight shows: the place of the largest moment, and its ratio to the sum
+/// of the other two.
+pub(in crate::study) fn no_body((place, ratio): (usize, f64)) -> String {
+    format!(
+        "no body has the inertia that the flight shows with this vehicle file: its {} is {ratio:.2} times the sum of the other two moments; is \
+         torque_ratio wrong in the vehicle file, or are the rotors' places?",
+        NAMES[place]
+    )
+}
+
 /// Relative difference (-) of two values that are one.
 const SAME: f64 = 1e-9;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_inertia_that_no_body_has_asks_for_the_torque_ratio() {
+        let said = no_body((6, 1.017));
+        assert!(said.contains("its izz is 1.02 times the sum of the other two moments"), "{said}");
+        assert!(said.contains("is torque_ratio wrong"), "{said}");
+    }
+}
