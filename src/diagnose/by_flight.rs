@@ -279,11 +279,11 @@ fn flight_fit(
     let mut found = Search { paths: path.cloned().into_iter().collect(), ..Search::of(after, latency) };
     reconstruct(std::slice::from_ref(signals), traces, (forms, &mut found), None)?;
     let by_instruments = if is_fed_back(traces) {
-        torques_by_instruments(traces, &latency, &mut found.after)?
+        torques_by_instruments(traces, latency.std_s, &mut found.after)?
     } else {
         Vec::new()
     };
-    let by_latency = by_latency(traces, &found.after, (&latency, &by_instruments))?;
+    let by_latency = by_latency(traces, &found.after, (latency.told_std_s(), &by_instruments))?;
     Ok(FlightFit { fitted: found.after, by_instruments, by_latency })
 }
 

@@ -45,6 +45,11 @@ impl LatencyFinding {
     pub fn is_determined(&self) -> bool {
         self.std_s < LONGEST_S
     }
+
+    /// Its standard error, s; infinite where no flight determined it.
+    pub(super) fn told_std_s(&self) -> f64 {
+        if self.is_determined() { self.std_s } else { f64::INFINITY }
+    }
 }
 
 /// Why a latency is not determined.

@@ -7,7 +7,6 @@
 use super::channels::{Channels, append, channels, nothing};
 use super::evidence::weighted;
 use super::fit::Fitted;
-use super::latency::LatencyFinding;
 use super::left_over::of_torques;
 use super::trace::Trace;
 use crate::physics::{Airframe, PhysicsError};
@@ -19,7 +18,7 @@ pub(super) fn late_effects(flights: &[Trace], fitted: &Fitted) -> Result<Channel
     let airframe = Airframe::new(&fitted.base.vehicle)?;
     let mut out = Channels::default();
     for (index, trace) in flights.iter().enumerate() {
-        let torque_nm = match fitted.rows.along(index).filter(|_| trace.torques) {
+        let torque_nm = match fitted.rows.flights.get(index).filter(|_| trace.torques) {
             Some(along) => along.torque_of_effects_nm(&airframe),
             None => Vec::new(),
         };
@@ -33,23 +32,23 @@ pub(super) fn late_effects(flights: &[Trace], fitted: &Fitted) -> Result<Channel
     Ok(out)
 }
 
-/// Covariance that an error of the model's latency brings into what only torques tell; zero of what `by_instruments` has told, which has it
-/// already, and where no latency is determined.
+/// Covariance that an error of the model's latency of this standard deviation, s, brings into what only torques tell; zero of what
+/// `by_instruments` has told, which has it already, and with an infinite error, where no latency is determined.
 ///
 /// # Errors
 /// [`PhysicsError`] where the vehicle is not physical.
 pub(super) fn by_latency(
     flights: &[Trace],
     fitted: &Fitted,
-    (latency, by_instruments): (&LatencyFinding, &[usize]),
+    (latency_std_s, by_instruments): (f64, &[usize]),
 ) -> Result<DMatrix<f64>, PhysicsError> {
     let count = fitted.covariance.nrows();
     let mut brings = DVector::zeros(count);
-    if latency.is_determined() {
+    if latency_std_s.is_finite() {
         let column = weighted(&late_effects(flights, fitted)?, &fitted.weighted.sigma);
         let all = fitted.weighted.part_in(&column);
         let told = of_torques(fitted).into_iter().filter(|place| !by_instruments.contains(place));
-        told.for_each(|place| brings[place] = all[place] * latency.std_s);
+        told.for_each(|place| brings[place] = all[place] * latency_std_s);
     }
     Ok(&brings * brings.transpose())
 }
@@ -62,7 +61,6 @@ mod tests {
     use crate::diagnose::base::Base;
     use crate::diagnose::channels::Nuisance;
     use crate::diagnose::fit::{Newton, fit};
-    use crate::diagnose::latency::finding_of;
     use crate::diagnose::made_flights::flown;
     use crate::diagnose::signatures::signature_of;
     use crate::physics::{ActiveEffect, effects::AngularDamping};
@@ -84,8 +82,7 @@ mod tests {
             fitted.rows.nuisances.iter().position(|column| column.nuisance == Nuisance::Inertia(0)).unwrap();
         let damping = fitted.rows.nuisances.len();
         let told = if by_instruments { vec![moment, damping] } else { Vec::new() };
-        let latency = LatencyFinding { std_s: latency_std_s, ..finding_of(&fitted) };
-        let brought = by_latency(&traces, &fitted, (&latency, &told)).unwrap();
+        let brought = by_latency(&traces, &fitted, (latency_std_s, &told)).unwrap();
         let of = |place: usize, size: f64| brought[(place, place)].sqrt() / size;
         let moment_kg_m2 = fitted.base.vehicle.body.inertia_kg_m2[(0, 0)];
         [of(moment, moment_kg_m2), of(damping, fitted.base.effects[0].values[0])]

@@ -95,7 +95,7 @@ fn estimate_sizes(
         }
         if is_fed_back(traces) {
             by_instruments = tracing::info_span!("instruments")
-                .in_scope(|| torques_by_instruments(traces, &found.latency, &mut found.after))?;
+                .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
         }
         pace.reconstructed();
         if left == 0 || !leave_out_unnamed((traces, (flights, vehicle)), trim, found)? {
@@ -104,7 +104,8 @@ fn estimate_sizes(
         pace.again();
     }
     add_left_over(&mut found.after, &by_instruments);
-    found.after.covariance += by_latency(traces, &found.after, (&found.latency, &by_instruments))?;
+    let latency_std_s = found.latency.told_std_s();
+    found.after.covariance += by_latency(traces, &found.after, (latency_std_s, &by_instruments))?;
     Ok(())
 }
 

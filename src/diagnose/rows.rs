@@ -43,7 +43,7 @@ pub struct Rows {
     /// N m, root mean square of the torque that the motion needs, about body x, y, z
     pub torque_rms: [f64; 3],
     /// data for further columns about the same base
-    flights: Vec<Arc<Along>>,
+    pub(super) flights: Vec<Arc<Along>>,
     /// of the base, where it has effects on the sensors
     known_motion: Option<KnownMotion>,
 }
@@ -100,11 +100,6 @@ impl Rows {
         rows.torque_rms = std::array::from_fn(|axis| (squares[axis] / rows.len().max(1) as f64).sqrt());
         rows.effects = rows.present_columns((recorded, flights), base)?;
         Ok(rows)
-    }
-
-    /// What acts along a flight.
-    pub(super) fn along(&self, flight: usize) -> Option<&Along> {
-        self.flights.get(flight).map(AsRef::as_ref)
     }
 
     /// Rotor motion of a flight from the commands, behind the latency and smoothed.

@@ -8,7 +8,6 @@ use super::columns::Columns;
 use super::evidence::weighted;
 use super::fit::{CONVERGED, Coefficients, Fitted, Newton, PASSES, linearised, step};
 use super::hausman::holds;
-use super::latency::LatencyFinding;
 use super::latency_error::{by_latency, late_effects};
 use super::left_over::of_left_over;
 use super::priors::Priors;
@@ -19,21 +18,21 @@ use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// Inertia and damping of a model as instruments tell them, where least squares contradicts them or is the less certain. The
-/// latency of the model and its standard error are known. Returns the places of the coefficients that
+/// latency of the model and its standard error, s, are known. Returns the places of the coefficients that
 /// the instruments have told.
 ///
 /// # Errors
 /// [`PhysicsError`] where the base is not physical.
 pub(super) fn torques_by_instruments(
     flights: &[Trace],
-    latency: &LatencyFinding,
+    latency_std_s: f64,
     fitted: &mut Fitted,
 ) -> Result<Vec<usize>, PhysicsError> {
     let Some(mut by) = fit_by_instruments(flights, fitted, Newton::Held)? else { return Ok(Vec::new()) };
-    if let Some(brings) = brought_by_latency(flights, &by).filter(|_| latency.std_s.is_finite()) {
-        by.covariance += &brings * brings.transpose() * latency.std_s.powi(2);
+    if let Some(brings) = brought_by_latency(flights, &by).filter(|_| latency_std_s.is_finite()) {
+        by.covariance += &brings * brings.transpose() * latency_std_s.powi(2);
     }
-    let of_latency = by_latency(flights, fitted, (latency, &[]))?;
+    let of_latency = by_latency(flights, fitted, (latency_std_s, &[]))?;
     let (plain, told) = (fitted.rigid_body(), by.rigid_body());
     let contradicts = |at: usize| {
         let variance = |body: &Estimated| body.covariance[(at, at)];

@@ -65,7 +65,7 @@ pub fn identify_jointly(
     let mut before = before;
     add_left_over(&mut before, &[]);
     add_left_over(&mut after, &[]);
-    after.covariance += by_latency(&traces, &after, (&first, &[]))?;
+    after.covariance += by_latency(&traces, &after, (first.told_std_s(), &[]))?;
     add_slope(&mut after);
     let laws = [&before, &after].map(|fitted| torque_law(&traces, fitted));
     let fits = Fits { before, after, settled, split, first, laws };
