@@ -77,7 +77,10 @@ mod tests {
     /// rad/s
     const TURNING: f64 = 2.0;
 
-    fn recording(autopilot: Autopilot, entries: &[(Quantity, &'static str, fn(f64) -> f64)]) -> Recording {
+    /// A quantity, its message, and its first component along time, s.
+    type Entry = (Quantity, &'static str, fn(f64) -> f64);
+
+    fn recording(autopilot: Autopilot, entries: &[Entry]) -> Recording {
         let mut recording = Recording { autopilot, ..Recording::default() };
         for &(quantity, source, along) in entries {
             let time_s: Vec<f64> = (0..200).map(|index| 0.1 * f64::from(index)).collect();
@@ -103,7 +106,7 @@ mod tests {
 
     #[test]
     fn what_a_controller_answers_is_no_reference() {
-        const PX4: [(Quantity, &str, fn(f64) -> f64); 2] = [
+        const PX4: [Entry; 2] = [
             (Quantity::PositionSetpoint, "vehicle_local_position_setpoint", position_m),
             (Quantity::AccelerationSetpoint, "vehicle_local_position_setpoint", answering),
         ];
@@ -126,8 +129,8 @@ mod tests {
     #[test]
     fn positions_alone_are_a_reference_and_nought_is_none() {
         const SOURCE: &str = "SET_POSITION_TARGET_LOCAL_NED";
-        let positions = [
-            (Quantity::PositionSetpoint, SOURCE, position_m as fn(f64) -> f64),
+        let positions: [Entry; 2] = [
+            (Quantity::PositionSetpoint, SOURCE, position_m),
             (Quantity::AccelerationSetpoint, SOURCE, nought),
         ];
         let found = reference(&recording(Autopilot::Px4, &positions), &GRID).unwrap();

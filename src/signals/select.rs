@@ -120,7 +120,7 @@ pub fn is_live(stream: &Stream) -> bool {
         let mut seen: Option<f64> = None;
         (0..stream.len()).map(|i| stream.sample(i)[channel]).filter(|v| v.is_finite()).any(|value| {
             // zero has two signs
-            let moved = seen.is_some_and(|first| first < value || first > value);
+            let moved = seen.is_some_and(|first| f64::abs(first - value) > 0.0);
             seen.get_or_insert(value);
             moved
         })
