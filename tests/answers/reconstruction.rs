@@ -47,11 +47,6 @@ fn motion(time_s: f64) -> (Vector3<f64>, Vector3<f64>) {
 /// What the autopilot recorded of it. Its velocity integrates the noisy accelerometer with its leaning attitude and is pulled
 /// to a receiver's; its attitude walks about the true one.
 fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
-    recorded_by(vehicle, seed, (NOISE_M_S2, 0.0))
-}
-
-/// The same with this noise of the accelerometer, m/s^2 a sample. Between force and sample, the body turns by a time, s.
-fn recorded_by(vehicle: &Vehicle, seed: u64, (noise_m_s2, turned_s): (f64, f64)) -> Signals {
     let mut generator = Pcg64::seed_from_u64(seed);
     let normal = Normal::new(0.0, 1.0).unwrap();
     let mut draw = |std: f64| Vector3::from_fn(|_, _| std * normal.sample(&mut generator));
@@ -73,8 +68,7 @@ fn recorded_by(vehicle: &Vehicle, seed: u64, (noise_m_s2, turned_s): (f64, f64))
                 .map_or_else(Vector3::zeros, |before| (before.inverse() * true_turn).scaled_axis() / STEP_S),
         );
         before = Some(true_turn);
-        let turned = UnitQuaternion::from_scaled_axis(rates[index] * turned_s);
-        let reading = (true_turn * turned).inverse_transform_vector(&(acceleration + up)) + draw(noise_m_s2);
+        let reading = true_turn.inverse_transform_vector(&(acceleration + up)) + draw(NOISE_M_S2);
         tilt += draw(0.004 * STEP_S.sqrt());
         let believed = true_turn * UnitQuaternion::from_scaled_axis(-tilt);
         let receiver = speed + draw(1.0);
@@ -178,33 +172,6 @@ fn drag_is_found_where_a_regression_on_the_estimate_loses_a_part_of_it() {
     let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
     assert!((mean(&found) - 1.0).abs() < 0.03, "{found:?}");
     assert!(mean(&plain) < 0.95, "{plain:?}");
-}
-
-#[test]
-fn a_body_that_turns_between_force_and_sample_loses_no_drag() {
-    const TURNED_S: f64 = 0.003;
-    let vehicle = vehicle();
-    let signals = recorded_by(&vehicle, 21, (0.3, TURNED_S));
-    let fit = fitted(&signals, &vehicle, drag(0.0, &[0, 1, 2]));
-    let within = |name: &str, truth: f64, most: f64| {
-        let (value, by_model, by_blocks) = fit.value(name).unwrap();
-        let std = by_model.max(by_blocks);
-        assert!((value - truth).abs() < 3.0 * std && std < most, "{name} {value} +- {std}");
-    };
-    within("turned", TURNED_S, 0.0025);
-    within("dx", DRAG, 0.03 * DRAG);
-    within("dy", DRAG, 0.03 * DRAG);
-    // without it, the drag pays
-    let known = KnownLag { delay_s: -0.004, lag_s: 0.0, lag_std_s: 1e-4, uneven: 0.0 };
-    let problem = force_problem(&signals, &vehicle, known, vec![drag(0.0, &[0, 1, 2])]).unwrap();
-    let others: Vec<usize> =
-        (0..problem.unknowns.len()).filter(|&index| problem.unknowns[index].name != "turned").collect();
-    let without = mavid::reconstruction::fit(problem, &others).unwrap();
-    for name in ["dx", "dy"] {
-        let (with, ..) = fit.value(name).unwrap();
-        let (value, ..) = without.value(name).unwrap();
-        assert!(value < with - 0.01 * DRAG, "{name} {value}, with it {with}");
-    }
 }
 
 #[test]
