@@ -269,7 +269,7 @@ struct FlightFit {
     by_latency: DMatrix<f64>,
 }
 
-/// It begins at a path that is known.
+/// The fit of one flight. It begins at a path that is known.
 fn flight_fit(
     (signals, traces): (&Signals, &[Trace]),
     (base, path): (Base, Option<&Path>),

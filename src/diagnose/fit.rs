@@ -27,8 +27,8 @@ pub struct Fitted {
     /// places in mass and inertia of what the flights do not determine: the model has what the vehicle file states there, as far as they
     /// tell nothing else
     pub undetermined: Vec<usize>,
-    /// the largest moment of inertia over the sum of the other two, and its place in mass and inertia, where the flights show an inertia that
-    /// no body has by more than their errors; the model then has what the vehicle file states
+    /// where the flights show an inertia that no body has, by more than their errors: the place in mass and inertia of the largest moment,
+    /// and its ratio to the sum of the other two. The model then has what the vehicle file states
     pub beyond_bodies: Option<(usize, f64)>,
 }
 

@@ -157,9 +157,13 @@ pub(super) fn with_latency(
     };
     let Some(by) = fit_by_instruments(flights, &plain, newton)? else { return Ok((plain, unsure(None))) };
     let told = of_covariance(&by);
-    let (least_squares_s, std_s, by_instruments_s, their_std_s) =
-        (finding.total_s, finding.std_s, told.total_s, told.std_s);
-    tracing::debug!(least_squares_s, std_s, by_instruments_s, their_std_s, "latency");
+    tracing::debug!(
+        least_squares_s = finding.total_s,
+        least_squares_std_s = finding.std_s,
+        by_instruments_s = told.total_s,
+        by_instruments_std_s = told.std_s,
+        "latency"
+    );
     // without such noise least squares has nothing against it but a contradiction
     let refutes = if is_fed_back(flights) { differ } else { contradict };
     if told.total_s > LONGEST_S

@@ -1,8 +1,8 @@
 //! Error that the latency brings into what else the torques tell.
 //!
-//! The column of the latency has what turns the body, `I w''`. Behind a latency are all torques of the rotors, and those that
-//! overcome a damping b among them: a latency of the model that is wrong by e moves the inertia by `-b e` (consider covariance). With 4 1/s
-//! and 20 ms that is 8 % of it.
+//! The column of the latency contains the torque that turns the body, `I w''`. But all torques of the rotors come late, also those that overcome a
+//! damping b. So a latency of the model that is wrong by e moves the inertia by `-b e` (consider covariance): 8 % of it with a damping
+//! of 4 1/s and an error of 20 ms.
 
 use super::channels::{Channels, append, channels, nothing};
 use super::evidence::weighted;
@@ -13,27 +13,26 @@ use crate::physics::{Airframe, PhysicsError};
 use crate::signals::central_difference;
 use nalgebra::{DMatrix, DVector};
 
-/// Column of a larger latency, per s, beyond that of what turns the body: the torques of the effects, late.
+/// What the column of the latency lacks, per s of a larger latency: the torques of the effects, late.
 pub(super) fn late_effects(flights: &[Trace], fitted: &Fitted) -> Result<Channels, PhysicsError> {
     let airframe = Airframe::new(&fitted.base.vehicle)?;
     let mut out = Channels::default();
-    for (index, trace) in flights.iter().enumerate() {
-        let torque_nm = match fitted.rows.flights.get(index).filter(|_| trace.torques) {
-            Some(along) => along.torque_of_effects_nm(&airframe),
-            None => Vec::new(),
-        };
-        let late = |axis: usize| {
-            let along: Vec<f64> = torque_nm.iter().map(|torque| torque[axis]).collect();
-            trace.weak(0, &central_difference(&along, trace.grid.step_s))
-        };
-        let torque = if torque_nm.is_empty() { nothing(trace) } else { [0, 1, 2].map(late) };
+    for (trace, along) in flights.iter().zip(&fitted.rows.flights) {
+        let mut torque = nothing(trace);
+        if trace.torques {
+            let torque_nm = along.torque_of_effects_nm(&airframe);
+            torque = [0, 1, 2].map(|axis| {
+                let about: Vec<f64> = torque_nm.iter().map(|torque| torque[axis]).collect();
+                trace.weak(0, &central_difference(&about, trace.grid.step_s))
+            });
+        }
         append(&mut out, &channels(trace, nothing(trace), torque));
     }
     Ok(out)
 }
 
-/// Covariance that an error of the model's latency of this standard deviation, s, brings into what only torques tell; zero of what
-/// `by_instruments` has told, which has it already, and with an infinite error, where no latency is determined.
+/// Covariance that an error of the model's latency of this standard deviation, s, brings into what only torques tell. It is zero for what
+/// `by_instruments` has told, because that has this error already, and for an infinite error, because then no latency is determined.
 ///
 /// # Errors
 /// [`PhysicsError`] where the vehicle is not physical.

@@ -21,13 +21,15 @@ const LONGEST_GAP_S: f64 = 1.0;
 pub(super) fn reference(recording: &Recording, grid: &Grid) -> Option<Reference> {
     let is_fed_back =
         |key: &StreamKey| recording.autopilot == Autopilot::Px4 && FED_BACK.contains(&key.source);
-    let acceleration = |fed_back: bool| {
+    let commanded = |fed_back: bool| {
         let fits = |key: &StreamKey, stream: &Stream| stream.width == 3 && is_fed_back(key) == fed_back;
         let (key, stream) = best_of(recording, Quantity::AccelerationSetpoint, fits)?;
-        Some((cubic_onto(stream, 0.0, grid)?, (key.source, false)))
+        Some((cubic_onto(stream, 0.0, grid)?, key.source))
     };
-    let (acceleration, (message, is_of_positions)) =
-        acceleration(false).or_else(|| of_position(recording, grid)).or_else(|| acceleration(true))?;
+    let direct = commanded(false);
+    let of_positions = if direct.is_none() { of_position(recording, grid) } else { None };
+    let is_of_positions = of_positions.is_some();
+    let (acceleration, message) = direct.or(of_positions).or_else(|| commanded(true))?;
     let yaw = best(recording, Quantity::YawSetpoint, |s| s.width == 1)
         .and_then(|(_, stream)| cubic_onto(&unwrapped(stream), 0.0, grid))
         .unwrap_or_else(|| vec![0.0; grid.count]);
@@ -41,8 +43,8 @@ pub(super) fn reference(recording: &Recording, grid: &Grid) -> Option<Reference>
     })
 }
 
-/// The acceleration of the commanded position, m/s^2, three values an instant; its message, and that it is of positions.
-fn of_position(recording: &Recording, grid: &Grid) -> Option<(Vec<f64>, (&'static str, bool))> {
+/// The acceleration of the commanded position, m/s^2, three values an instant, and its message.
+fn of_position(recording: &Recording, grid: &Grid) -> Option<(Vec<f64>, &'static str)> {
     let (key, stream) = best(recording, Quantity::PositionSetpoint, |s| s.width == 3)?;
     let whole = (0..stream.len()).filter(|&index| stream.sample(index).iter().all(|value| value.is_finite()));
     let times_s: Vec<f64> = whole.map(|index| stream.time_s[index]).collect();
@@ -53,7 +55,7 @@ fn of_position(recording: &Recording, grid: &Grid) -> Option<(Vec<f64>, (&'stati
     let (before, here, after) = (before?, here?, after?);
     let each = before.iter().zip(&here).zip(&after);
     let second = each.map(|((before, here), after)| (before - 2.0 * here + after) / APART_S.powi(2));
-    Some((second.collect(), (key.source, true)))
+    Some((second.collect(), key.source))
 }
 
 /// An angle without its jumps of a full turn.

@@ -28,7 +28,8 @@ const STATES: [Quantity; 3] = [Quantity::Armed, Quantity::LandedState, Quantity:
 /// less the flight would have two readings of one quantity.
 const LEAST_COVERED: f64 = 0.9;
 
-/// The same of what the ground station commanded. A log holds time on the ground as well, where nothing is commanded.
+/// The same of what the ground station commanded. A log holds time on the ground as well, where nothing is commanded. Set by judgement: of
+/// logs that begin with the vehicle's start, flights of 60 s were half.
 const LEAST_COMMANDED: f64 = 0.3;
 /// What the ground station commanded, before the autopilot made it its own.
 const COMMANDED: [Quantity; 4] = [
