@@ -18,6 +18,7 @@ mod drag_location;
 mod effect_term;
 mod empirical;
 mod evidence;
+mod exchange;
 mod expected;
 pub mod experiment;
 mod explain;

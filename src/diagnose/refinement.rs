@@ -125,7 +125,7 @@ fn weakest(strengths: impl Iterator<Item = (usize, Strength)>, least: f64) -> Op
 }
 
 /// Each effect of a fit with the column of its first free value.
-fn with_first_columns(fitted: &Fitted) -> impl Iterator<Item = (&EffectTerm, usize)> {
+pub(super) fn with_first_columns(fitted: &Fitted) -> impl Iterator<Item = (&EffectTerm, usize)> {
     fitted.base.effects.iter().scan(fitted.rows.nuisances.len(), |next, present| {
         let first = *next;
         *next += present.free.len();
@@ -159,7 +159,7 @@ fn leave_out_unnamed(
 }
 
 /// A model without some of its effects.
-fn without(base: &Base, leaves: impl Fn(usize) -> bool) -> Base {
+pub(super) fn without(base: &Base, leaves: impl Fn(usize) -> bool) -> Base {
     let mut left = base.clone();
     let mut places = 0..;
     left.effects.retain(|_| places.next().is_some_and(|place| !leaves(place)));
@@ -168,7 +168,7 @@ fn without(base: &Base, leaves: impl Fn(usize) -> bool) -> Base {
 }
 
 /// Which effects of a fit get no name: those of ordinary size, the least certain of those that are not certain, those that the
-/// accelerometer does not feel, those of descents that a loss of thrust in climb explains as well, and those that hover excludes.
+/// accelerometer does not feel, a wind that only the torques show, those of descents that a loss of thrust in climb explains as well, and those that hover excludes.
 fn unnamed(
     (traces, given): (&[Trace], (&[Signals], &Vehicle)),
     trim: &Trim,
@@ -179,7 +179,10 @@ fn unnamed(
         let refuted = felt.as_ref().is_some_and(|felt| felt.refutes(fitted, present, first));
         // a bend acts on the commands' own noise, and that is in the torques
         let bent = present.signature.role.bends_thrust.is_some() && is_fed_back(traces);
-        let unseen = bent && (!shows_in_forces(fitted, present, first) || is_noise(present, traces, fitted));
+        // and the moment of a wind is that of a centre of mass that is off
+        let is_air = present.signature.role.wind.is_some();
+        let unseen = (bent || is_air) && !shows_in_forces(fitted, present, first)
+            || bent && is_noise(present, traces, fitted);
         let unbalanced = is_refuted(given, fitted, present, first);
         let ordinary = is_ordinary(present, &fitted.base, traces);
         let of_climb = is_of_climb(traces, fitted, present, first);

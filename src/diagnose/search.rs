@@ -4,6 +4,7 @@ use super::acceptance::accepted;
 use super::base::Base;
 use super::candidates::candidates;
 use super::drag_location::one_place;
+use super::exchange::exchanged;
 use super::fit::{Fitted, Newton, fit};
 use super::gates::{Gates, passes};
 use super::grid_refinement::between_grid;
@@ -70,8 +71,13 @@ pub fn search(
             _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
                 settled += 1;
-                let is_settled;
+                let mut is_settled;
                 (after, beside, is_settled) = pruned(flights, after, price, &mut refused)?;
+                let taken = exchanged(flights, &mut after, (&steps, price), (gates, signatures, &refused))?;
+                if let Some(taken) = taken {
+                    steps.push(Step { taken, rivals: Vec::new() });
+                    is_settled = false;
+                }
                 if is_settled {
                     break;
                 }

@@ -11,7 +11,7 @@ use crate::diagnose::explanation::Explanation;
 use crate::diagnose::fit::{Fitted, evaluate};
 use crate::diagnose::signature::EffectTerm;
 use crate::diagnose::tested::Search;
-use crate::estimate::{INERTIA_ENTRIES, NAMES, UNITS, depends_on_band, inertia_by_wider_window};
+use crate::estimate::{INERTIA_ENTRIES, MOMENTS, NAMES, UNITS, depends_on_band, inertia_by_wider_window};
 use crate::physics::PhysicsError;
 use crate::text::with_error;
 use crate::vehicle::Vehicle;
@@ -147,7 +147,7 @@ fn keep_of_all_bands(found: &mut [Agreement], ratios: impl FnOnce() -> [[f64; 3]
         return;
     }
     let ratios = ratios();
-    for (axis, moment) in [1, 4, 6].into_iter().enumerate() {
+    for (axis, moment) in MOMENTS.into_iter().enumerate() {
         if ratios.iter().any(|of| depends_on_band(of[axis])) {
             let same = |of: &&mut Agreement| of.name == NAMES[moment];
             found.iter_mut().filter(same).for_each(|of| of.relevance = None);
@@ -185,7 +185,10 @@ fn by_what_is_left(
     (weak, torques_alike, faster): (&Weak, bool, f64),
     whose: &str,
 ) -> Option<OtherVehicle> {
-    let compared = |channel: &usize| torques_alike || !(3..AXES).contains(channel);
+    // averaged torques leave less than those of each row, and what is left of a torque tells of a vehicle only where its moment of
+    // inertia is known
+    let is_known = |axis: usize| !identified.undetermined.contains(&MOMENTS[axis]);
+    let compared = |channel: &usize| !(3..AXES).contains(channel) || torques_alike && is_known(channel - 3);
     // a flight that turns more leaves more of its torque, a faster one more of the air's force, and one that changes its thrust more of that
     let moves = |channel: usize| {
         let Some(axis) = channel.checked_sub(3).filter(|axis| *axis < 3) else {

@@ -146,7 +146,7 @@ fn in_flights(study: &ExplainStudy, effect: &Named) -> String {
     let others: Vec<usize> = others.iter().copied().filter(|flight| !flights.contains(flight)).collect();
     match others.as_slice() {
         [] => format!(" in {}", paths(study, flights)),
-        others => format!(" in {}, another size in {}", paths(study, flights), paths(study, others)),
+        others => format!(" in {} (with another size in {})", paths(study, flights), paths(study, others)),
     }
 }
 
@@ -220,7 +220,8 @@ fn by_written(study: &ExplainStudy, quantity: &str) -> String {
         _ => "stays".to_owned(),
     };
     format!(
-        " (all this with the load that is seen at the start of each flight there; by the model as it is written the {quantity} error {by})"
+        " (all this with the mass and centre of mass that the first seconds of each flight there show; with model.toml as it is the {quantity} \
+         error {by})"
     )
 }
 

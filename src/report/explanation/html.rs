@@ -52,8 +52,9 @@ pub fn explanation_html(study: &ExplainStudy) -> String {
 
 fn tags(study: &ExplainStudy) -> Vec<String> {
     let flights = study.given.inputs.len();
+    let doubtful = if study.is_doubtful() { ", doubtful" } else { "" };
     let mut tags = vec![
-        study.verdict().name().replace('_', " "),
+        format!("{}{doubtful}", study.verdict().name().replace('_', " ")),
         format!("{flights} flight{} explained", if flights == 1 { "" } else { "s" }),
         study.shown_on.heading(),
     ];

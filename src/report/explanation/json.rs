@@ -23,6 +23,8 @@ pub struct ExplanationDocument {
     schema: u32,
     verdict: &'static str,
     answer: String,
+    /// why the answer is doubtful; names and sizes are then of a flight, a log or a vehicle file that something speaks against
+    doubts: Vec<String>,
     /// why the flights tell little, by the way they were flown; no name is certain then
     limited: Vec<String>,
     effects: Vec<EffectValue>,
@@ -169,6 +171,7 @@ impl ExplanationDocument {
             schema: 1,
             verdict: study.verdict().name(),
             answer: answer(study),
+            doubts: study.doubts(),
             limited: study.limited().iter().map(FlightLimit::words).collect(),
             effects: effect_values(study, &study.effects),
             traces: study.explanation.slight.iter().map(|slight| trace(study, slight)).collect(),

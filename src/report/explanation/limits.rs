@@ -74,7 +74,7 @@ pub(super) fn not_possible(limits: &[DetectionLimit]) -> Option<String> {
         Some(format!("{}{along}", called(id)))
     };
     let each: Vec<String> = unseen.chunk_by(|one, next| one.id == next.id).filter_map(one).collect();
-    (!each.is_empty()).then(|| format!("not at any possible size: {}", each.join(", ")))
+    (!each.is_empty()).then(|| format!("of no possible size: {}", each.join(", ")))
 }
 
 fn largest<'a>(of: &[&'a DetectionLimit]) -> Option<&'a DetectionLimit> {
@@ -147,7 +147,7 @@ mod tests {
         let limits = [drag(0.1, 0.1, 9.0), vec![sag]].concat();
         assert_eq!(
             not_possible(&limits).as_deref(),
-            Some("not at any possible size: drag along body z, battery sag")
+            Some("of no possible size: drag along body z, battery sag")
         );
     }
 }

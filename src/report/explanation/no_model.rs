@@ -32,8 +32,11 @@ pub(super) fn no_model(study: &ExplainStudy) -> String {
         (Some(_), _) => ", which is not of this vehicle,",
     };
     // all other errors of the answer are with the load
-    let without =
-        if study.as_written.is_some() { " as it is written, without the load of that flight," } else { "" };
+    let without = if study.as_written.is_some() {
+        " as it is in model.toml, without the load of that flight,"
+    } else {
+        ""
+    };
     told.map_or_else(String::new, |what| {
         format!(
             " On {on}{other} the model{without} is not usable for prediction of {what}: a state that does not change has smaller errors."

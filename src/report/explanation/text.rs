@@ -30,7 +30,8 @@ pub fn explanation_text(study: &ExplainStudy) -> String {
 #[must_use]
 pub fn explanation_page(study: &ExplainStudy) -> String {
     let mut page = format!("{}\n\n", answer(study));
-    let _ = writeln!(page, "  verdict: {}", study.verdict().name().replace('_', " "));
+    let doubtful = if study.is_doubtful() { ", doubtful" } else { "" };
+    let _ = writeln!(page, "  verdict: {}{doubtful}", study.verdict().name().replace('_', " "));
     for effect in study.effects.iter().chain(&study.closest) {
         effect_lines(&mut page, study, effect);
     }
@@ -255,7 +256,7 @@ pub(super) fn scale(of: &ThrustScale) -> Option<String> {
     };
     let times = significant(*factor, 3);
     Some(format!(
-        "{} {} {}, {times} times the vehicle file's: identified, since the mass was weighed",
+        "{} {} {}, {times} times the stated one: identified, since the mass was weighed",
         of.name,
         with_error(*value, *std),
         of.unit

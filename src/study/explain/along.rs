@@ -139,7 +139,8 @@ impl ExplainStudy {
         let common: Vec<(&str, (f64, f64))> =
             each.filter_map(|track| Some((track.name.as_str(), along.together(track)?))).collect();
         let traces = traces_of(flights, vehicle, settings);
-        self.explanation = self.explanation.with_common(&traces, &common);
+        let together = self.explanation.with_common(&traces, &common);
+        self.as_found = Some(Box::new(std::mem::replace(&mut self.explanation, together)));
         self.effects = for_readers(&self.explanation.named, self.explanation.airspeed_m_s);
         self.tell_payloads(flights);
         along.of_one_flight = self.names_of_one_flight(flights, alone, !along.sized_by.is_empty());

@@ -26,7 +26,7 @@ impl Task<'_> {
         let Some(percent) = in_motion(&study).filter(|percent| *percent < 0.0) else { return (study, None) };
         let Some(seen) = self.in_own_wind(held, &study.explanation) else { return (study, None) };
         let given = Given { own_wind: true, ..self.given(flights, study.given.settings.clone()) };
-        let own = self.evaluated(given, study.explanation.clone(), flights, (&seen, None, shown_on.clone()));
+        let own = self.evaluated(given, study.as_found().clone(), flights, (&seen, None, shown_on.clone()));
         if in_motion(&own).is_some_and(|own| own > 0.0 || 100.0 - own < HALVED * (100.0 - percent)) {
             (own, Some(seen))
         } else {
@@ -48,7 +48,7 @@ impl Task<'_> {
         }
         let (own_wind, settings) = (study.given.own_wind, study.given.settings.clone());
         let given = Given { own_load: true, own_wind, ..self.given(flights, settings) };
-        let own = self.evaluated(given, study.explanation.clone(), flights, (held, None, shown_on.clone()));
+        let own = self.evaluated(given, study.as_found().clone(), flights, (held, None, shown_on.clone()));
         if own.predicts() && own.other_vehicle().is_none() { own } else { study }
     }
 

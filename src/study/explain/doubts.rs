@@ -137,6 +137,12 @@ impl ExplainStudy {
         doubts
     }
 
+    /// Whether something speaks against names and sizes.
+    #[must_use]
+    pub fn is_doubtful(&self) -> bool {
+        !self.doubts().is_empty() && !self.doubts_torques_alone()
+    }
+
     /// Only moments of inertia are doubtful, against a rule of thumb, and every named effect is a force: its size does not rest on
     /// them, because the mass sets the scale of forces.
     #[must_use]

@@ -93,7 +93,7 @@ pub(in crate::study) fn explain_prepared(
         let day = !several && !names_wind(&study);
         let own_winds = if day { with_own_winds(held, asked.vehicle) } else { Vec::new() };
         progress.stage(Stage::Predicting);
-        let ExplainStudy { given, explanation, .. } = &study;
+        let (given, explanation) = (&study.given, study.as_found());
         let own_wind = given.own_wind;
         let in_own_wind = own_wind.then(|| task.in_own_wind(held, explanation)).flatten();
         let held = in_own_wind.as_ref().unwrap_or(held);
@@ -170,7 +170,7 @@ impl Task<'_> {
             // one of several that does harm leaves first: what is left is judged again
             let leaves_first = worthless.is_some() && study.explanation.named.len() > 1;
             if let Some(refuted) = refuted.filter(|_| !leaves_first) {
-                let ExplainStudy { given, explanation, .. } = study;
+                let (given, explanation) = study.into_found();
                 study = self.evaluated(given, explanation.refuted(), flights, (held, back, shown_on));
                 study.notes.push(refuted.note());
                 study.refuted = Some(refuted);
@@ -279,7 +279,7 @@ impl Task<'_> {
         let on = (held, back, shown_on.clone());
         let study = self.evaluated_with((given, explanation), flights, on, false);
         let Some(refuted) = study.refuted_force() else { return study };
-        let ExplainStudy { given, explanation, .. } = study;
+        let (given, explanation) = study.into_found();
         let mut without = self.evaluated_with((given, explanation), flights, (held, back, shown_on), true);
         without.notes.push(refuted.note());
         without.left_out_force = Some(refuted);

@@ -111,6 +111,8 @@ pub struct ExplainStudy {
     pub along: Option<AlongFlights>,
     /// the flights that were explained as the weak form sees them
     pub(super) traces: Vec<Trace>,
+    /// of several flights: see [`ExplainStudy::as_found`]
+    pub(super) as_found: Option<Box<Explanation>>,
 }
 
 /// What is left of the equation of one axis, root mean square.
@@ -154,9 +156,21 @@ impl ExplainStudy {
             drafted: None,
             along: None,
             traces: Vec::new(),
+            as_found: None,
             given,
             explanation,
         }
+    }
+
+    /// The explanation as it was found, before the values of several flights were put together: of these, they would be put together
+    /// twice.
+    pub(super) fn as_found(&self) -> &Explanation {
+        self.as_found.as_deref().unwrap_or(&self.explanation)
+    }
+
+    /// The same with what was given.
+    pub(super) fn into_found(self) -> (Given, Explanation) {
+        (self.given, self.as_found.map_or(self.explanation, |found| *found))
     }
 
     /// The same with izz as the vehicle file states it, see [`Explanation::keeping_about_z`]: what is written and told.
