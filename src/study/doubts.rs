@@ -20,17 +20,28 @@ const ORDINARY_MASS: f64 = 1.15;
 /// Standard errors of the estimate that do not count. The usual 95 %.
 const WITHIN: f64 = 2.0;
 
-/// A note on moments of inertia of a multirotor, kg m^2 with their standard errors, where the one about z is certainly smaller than one
-/// across.
-pub(in crate::study) fn of_shape(across: [(f64, f64); 2], about_z: (f64, f64)) -> Option<Note> {
-    let (largest, std) = across.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let is_smaller = largest - about_z.0 > WITHIN * std.hypot(about_z.1);
+/// A moment of inertia, kg m^2.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::study) struct Moment {
+    pub(in crate::study) value: f64,
+    pub(in crate::study) std: f64,
+    /// from the flight, and not from the vehicle file
+    pub(in crate::study) is_determined: bool,
+}
+
+/// A note on moments of inertia of a multirotor where the one about z is certainly smaller than one across.
+pub(in crate::study) fn of_shape(across: [Moment; 2], about_z: Moment) -> Option<Note> {
+    let of = |across: &Moment| (across.value, across.std);
+    let (largest, std) = across.iter().map(of).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let is_smaller = largest - about_z.value > WITHIN * std.hypot(about_z.std);
+    let stated =
+        if about_z.is_determined { "" } else { " of the vehicle file, which the flight does not determine," };
     let text = || {
         format!(
-            "izz is {:.2} times the larger one of ixx and iyy. Rotors and arms of a multirotor lie in a plane, so that izz is larger than \
+            "izz{stated} is {:.2} times the larger one of ixx and iyy. Rotors and arms of a multirotor lie in a plane, so that izz is larger than \
              both, up to their sum, unless a heavy load is fixed far below or above them. Without such a load one of these moments is wrong \
              by more than its error: do not build on them without a measurement on the bench",
-            about_z.0 / largest
+            about_z.value / largest
         )
     };
     is_smaller.then(|| Note::warning(About::Estimate, text()))
@@ -81,12 +92,16 @@ mod tests {
 
     #[test]
     fn a_body_that_is_slimmer_than_any_multirotor_is_told_beyond_its_errors() {
-        let across = [(2.1e-2, 1e-3), (2.6e-2, 1e-3)];
-        let told = of_shape(across, (1.7e-2, 1e-3)).map(|note| note.text);
+        let moment = |value, std| Moment { value, std, is_determined: true };
+        let across = [moment(2.1e-2, 1e-3), moment(2.6e-2, 1e-3)];
+        let slim = moment(1.7e-2, 1e-3);
+        let told = of_shape(across, slim).map(|note| note.text);
         assert!(told.is_some_and(|text| text.starts_with("izz is 0.65 times")));
+        let stated = of_shape(across, Moment { is_determined: false, ..slim }).map(|note| note.text);
+        assert!(stated.is_some_and(|text| text.starts_with("izz of the vehicle file, which")));
         // within the errors, by a guess, and of a flat body: nothing
-        assert!(of_shape(across, (2.4e-2, 1e-3)).is_none());
-        assert!(of_shape(across, (1.7e-2, 0.3 * 1.7e-2)).is_none());
-        assert!(of_shape(across, (4.0e-2, 1e-3)).is_none());
+        assert!(of_shape(across, moment(2.4e-2, 1e-3)).is_none());
+        assert!(of_shape(across, moment(1.7e-2, 0.3 * 1.7e-2)).is_none());
+        assert!(of_shape(across, moment(4.0e-2, 1e-3)).is_none());
     }
 }

@@ -8,13 +8,18 @@ use super::no_model::no_model_line;
 use super::rivals::rival;
 use super::shown_by::shown_by;
 use super::whereabouts::{channel_in_words, spoken_state};
-use crate::diagnose::{NO_LATENCY, Named, Verdict, called, clause};
+use crate::diagnose::{NO_LATENCY, Named, Verdict, called, clause, known_to};
 use crate::estimate::{Finding, ThrustScale};
 use crate::note::Note;
 use crate::report::number::{chance, percent, significant, with_error};
 use crate::report::thrust_source::thrust_name;
 use crate::study::{AxisFit, BodyParameter, ExplainStudy, Predicted, QUANTITIES};
 use std::fmt::Write;
+
+/// Relative standard error from which on a size is told to be uncertain, where the effect itself is certain.
+const HARDLY_KNOWN: f64 = 0.3;
+/// Normal deviate of an effect that is certain. Beside it the page says why its size is not.
+const CERTAIN_Z: f64 = 8.0;
 
 /// The page for the terminal: the answer first, the notes last.
 #[must_use]
@@ -83,6 +88,11 @@ fn effect_lines(page: &mut String, study: &ExplainStudy, effect: &Named) {
         chance(study.p_value(effect)),
         shown_by(effect)
     );
+    if known_to(effect).is_some_and(|share| share > HARDLY_KNOWN) && effect.strength.z > CERTAIN_Z {
+        page.push_str(
+            "    that something of this kind is there is certain, its size is not: the error of the size includes what its law may be wrong by\n",
+        );
+    }
     for other in &effect.confusable_with {
         let _ = writeln!(page, "    {}", rival(study, other));
     }

@@ -10,7 +10,7 @@ use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{Named, Verdict};
 use crate::estimate::{Contradiction, Finding, FlightApart, MOMENTS, NAMES, ThrustScale, stated};
 use crate::note::{About, Note};
-use crate::study::doubts::{TWO_VEHICLES, doubts, of_mass, of_shape};
+use crate::study::doubts::{Moment, TWO_VEHICLES, doubts, of_mass, of_shape};
 use crate::text::significant;
 use crate::vehicle::Guessed;
 
@@ -110,8 +110,9 @@ impl ExplainStudy {
         // what is not determined is as uncertain as its guess
         let moment = |index: usize| {
             let of = body.get(index)?;
-            let std = if of.not_determined.is_none() { of.after.std } else { guess * of.after.value };
-            Some((of.after.value, std))
+            let is_determined = of.not_determined.is_none();
+            let std = if is_determined { of.after.std } else { guess * of.after.value };
+            Some(Moment { value: of.after.value, std, is_determined })
         };
         let [about_x, about_y, about_z] = MOMENTS.map(moment);
         let all = about_x.zip(about_y).zip(about_z);

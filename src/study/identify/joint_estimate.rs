@@ -7,7 +7,7 @@ use crate::estimate::{
 };
 use crate::note::Note;
 use crate::signals::Signals;
-use crate::study::doubts::{of_mass, of_shape};
+use crate::study::doubts::{Moment, of_mass, of_shape};
 use crate::study::explain::{
     Asked, BY_CONTROL, FlightLimit, KEPT, explain_prepared, kept_about_z, limits_of_flights, of_voltage,
 };
@@ -198,10 +198,10 @@ fn odd_shape(estimated: &Estimated, model: &Vehicle) -> Option<Note> {
     let moment = |entry: usize, axis: usize| {
         let (value, std) = (estimated.theta[entry], estimated.covariance[(entry, entry)].max(0.0).sqrt());
         if value.is_finite() && std.is_finite() {
-            return (value, std);
+            return Moment { value, std, is_determined: true };
         }
         let kept = model.body.inertia_kg_m2[(axis, axis)];
-        (kept, model.guessed(Guessed::Inertia) * kept)
+        Moment { value: kept, std: model.guessed(Guessed::Inertia) * kept, is_determined: false }
     };
     let [about_x, about_y, about_z] = MOMENTS;
     of_shape([moment(about_x, 0), moment(about_y, 1)], moment(about_z, 2))
