@@ -1,5 +1,6 @@
 //! The fit before and after as JSON, with all values of the report's tables.
 
+use super::no_model::by_model_file;
 use crate::compare::SIGNALS;
 use crate::diagnose::holdout::{AtEnd, Compared, HoldoutFit, OpenLoop};
 use crate::diagnose::{AXES, CHANNEL_NAMES};
@@ -37,6 +38,9 @@ struct PairValue {
     improvement_range_percent: Option<(f64, f64)>,
     /// one for each length of window
     open_loop: Vec<WindowValue>,
+    /// the same with `model.toml` as it is, where the errors above are with more than that: the load of each flight, an empirical force
+    #[serde(skip_serializing_if = "Option::is_none")]
+    as_written: Option<Vec<WindowValue>>,
     #[serde(flatten)]
     shown: Option<ShownValue>,
 }
@@ -116,6 +120,7 @@ pub(super) fn fit_values(study: &ExplainStudy) -> FitValues {
     };
     let mut holdout = pair(study.holdout.as_ref());
     holdout.shown = study.shown.as_ref().map(shown);
+    holdout.as_written = by_model_file(study).map(|written| written.open_loop.iter().map(window).collect());
     if study.other_vehicle().is_some() {
         // a gain on another vehicle is none
         (holdout.improvement_percent, holdout.improvement_range_percent) = (None, None);
@@ -152,6 +157,7 @@ fn pair(predicted: Option<&Predicted>) -> PairValue {
         improvement_percent: predicted.and_then(Predicted::improvement),
         improvement_range_percent: predicted.and_then(|of| of.improvement_percent?.range),
         open_loop: predicted.map_or_else(Vec::new, |of| of.open_loop.iter().map(window).collect()),
+        as_written: None,
         shown: None,
     }
 }

@@ -1,6 +1,6 @@
 //! The section on the fit before and after, and on the hold-out.
 
-use super::no_model::no_model_line;
+use super::no_model::{by_model_file, no_model_line};
 use crate::compare::SIGNALS;
 use crate::diagnose::holdout::{AtEnd, Compared, HoldoutFit, OpenLoop};
 use crate::diagnose::{AXES, CHANNEL_NAMES};
@@ -47,6 +47,9 @@ pub(super) fn hold_out_details(study: &ExplainStudy) -> Markup {
         (note("At the horizon: the mean size of the error at the end of the window, one window each 0.17 s."))
         @if let Some(predicted) = &study.identify { (prediction("flights explained", predicted)) }
         @if let Some(predicted) = &study.holdout { (prediction(&study.shown_on.heading(), predicted)) }
+        @if let Some(written) = by_model_file(study) {
+            (prediction(&format!("{}, with model.toml as it is", study.shown_on.heading()), written))
+        }
         @if let Some(shown) = &study.shown {
             @if let Some(why) = &shown.no_open_loop {
                 (note(&format!("Nothing could be predicted in open loop: {why}.")))

@@ -18,10 +18,7 @@ fn not_predicted(predicted: &Predicted) -> Option<String> {
 /// A sentence of the answer: it holds over 0.5 s, or over several horizons. Empty where it does not.
 pub(super) fn no_model(study: &ExplainStudy) -> String {
     let (predicted, on) = match &study.holdout {
-        Some(holdout) => {
-            let written = study.as_written.as_ref().or_else(|| written(study));
-            (Some(written.unwrap_or(holdout)), study.shown_on.words())
-        }
+        Some(holdout) => (Some(by_model_file(study).unwrap_or(holdout)), study.shown_on.words()),
         None => (study.identify.as_ref(), "the flights that were explained"),
     };
     let told = predicted.filter(|predicted| predicted.is_no_model()).and_then(not_predicted);
@@ -47,6 +44,12 @@ pub(super) fn no_model(study: &ExplainStudy) -> String {
 /// The errors of the model as it is written, where they were measured with an empirical force beside its effects.
 pub(super) fn written(study: &ExplainStudy) -> Option<&Predicted> {
     study.without_empirical.as_ref().filter(|_| study.verdict() == Verdict::PartlyExplained)
+}
+
+/// The errors on the hold-out with the model file as it is, where all others are with more than that: the load of each flight, or an
+/// empirical force.
+pub(super) fn by_model_file(study: &ExplainStudy) -> Option<&Predicted> {
+    study.as_written.as_ref().or_else(|| written(study))
 }
 
 /// A line below a table of errors, at all horizons; `None` where the model is better in all.

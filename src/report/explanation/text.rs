@@ -4,10 +4,11 @@ use super::along::along_lines;
 use super::answer::answer;
 use super::limits::{named_from, not_possible};
 use super::motor::{motor, sizes};
-use super::no_model::no_model_line;
+use super::no_model::{by_model_file, no_model_line};
 use super::rivals::rival;
 use super::shown_by::shown_by;
 use super::whereabouts::{channel_in_words, spoken_state};
+use crate::diagnose::holdout::OpenLoop;
 use crate::diagnose::{NO_LATENCY, Named, Verdict, called, clause, known_to};
 use crate::estimate::{Finding, ThrustScale};
 use crate::note::Note;
@@ -139,7 +140,7 @@ fn fit_lines(page: &mut String, study: &ExplainStudy) {
         predicted_lines(page, of.as_ref());
     }
     page.push_str("    unchanged: a state that does not change; better by: than the better one of it and the rigid body\n");
-    at_end_lines(page, study.holdout.as_ref().or(study.identify.as_ref()));
+    at_end_lines(page, (study.holdout.as_ref().or(study.identify.as_ref()), by_model_file(study)));
     for (name, of) in [("flights explained", &study.identify), (shown.as_str(), &study.holdout)] {
         if let Some(line) = of.as_ref().and_then(no_model_line) {
             let _ = writeln!(page, "    {name}: {line}");
@@ -172,23 +173,29 @@ fn predicted_lines(page: &mut String, predicted: Option<&Predicted>) {
 }
 
 /// Errors at the end of the windows, as benchmarks of multi-step prediction give them.
-fn at_end_lines(page: &mut String, predicted: Option<&Predicted>) {
+/// `written`: the same with the model file as it is, where `predicted` is with more than that.
+fn at_end_lines(page: &mut String, (predicted, written): (Option<&Predicted>, Option<&Predicted>)) {
     let Some(predicted) = predicted else { return };
+    let as_written = if written.is_some() { "  model.toml" } else { "" };
     let _ = writeln!(
         page,
-        "\n  error at the horizon, mean{:>21}{:>12}{:>12}",
+        "\n  error at the horizon, mean{:>21}{:>12}{:>12}{as_written}",
         "unchanged", "rigid body", "with it"
     );
+    let mut by_file = written.into_iter().flat_map(|written| &written.open_loop);
     for of in &predicted.open_loop {
-        for (compared, (name, unit)) in of.quantities().iter().zip(QUANTITIES) {
+        let by_file = by_file.next().map_or([None; 4], OpenLoop::quantities);
+        for ((compared, by_file), (name, unit)) in of.quantities().iter().zip(by_file).zip(QUANTITIES) {
+            let by_file = by_file.and_then(|of| of.at_end).map(|at_end| significant(at_end.after, 3));
             let Some(at_end) = compared.and_then(|of| of.at_end) else { continue };
             let _ = writeln!(
                 page,
-                "    {:<32}{:>11}{:>12}{:>12}",
+                "    {:<32}{:>11}{:>12}{:>12}{}",
                 format!("{name} after {} s ({unit})", of.window_s),
                 significant(at_end.unchanged, 3),
                 significant(at_end.before, 3),
-                significant(at_end.after, 3)
+                significant(at_end.after, 3),
+                by_file.map_or_else(String::new, |error| format!("{error:>12}"))
             );
         }
     }
