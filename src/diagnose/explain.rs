@@ -146,10 +146,11 @@ pub fn explain_watched(
         let mut found =
             search(&traces, vehicle, &settings.gates, (settings.signatures, &refused, &mut pace))?;
         refine((flights, &traces), vehicle, (&mut found, &refused, &mut pace))?;
-        // what its size does not tell from nothing stood in the place of another one
-        match untold(&found.after, &found.by_other_law).filter(|id| !refused.contains(id)) {
+        // what its size does not tell from nothing stood in the place of another one, and what only the torques show as well
+        let untold = untold(&found.after, &found.by_other_law).into_iter();
+        match untold.chain(found.misplaced.iter().copied()).find(|id| !refused.contains(id)) {
             Some(id) => {
-                tracing::debug!(effect = id, "explained again without what is not told from nothing");
+                tracing::debug!(effect = id, "explained again without it");
                 refused.push(id);
             }
             None => break found,

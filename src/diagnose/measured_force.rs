@@ -82,16 +82,20 @@ pub(super) fn may_feel(fitted: &Fitted, columns: &[Channels], evidence: &Evidenc
     deviate(own) >= NOTHING || deviate(apart) < DEVIATE
 }
 
-/// Whether the forces alone show one of an effect's amounts. The effect's first column in the model has the index `first`.
+/// Whether the forces alone show an effect, by all of its amounts together. Its first column in the model has the index `first`.
 pub(super) fn shows_in_forces(fitted: &Fitted, term: &EffectTerm, first: usize) -> bool {
     let (coefficients, covariance) =
         Weighted::by_forces(&fitted.rows, &fitted.weighted).coefficients(&fitted.rows);
-    let mut amounts = term.free.iter().enumerate().filter(|(_, slot)| term.is_amount(**slot));
-    amounts.any(|(index, &slot)| {
-        let at = first + index;
-        let std = covariance[(at, at)].max(0.0).sqrt();
-        std > 0.0 && (term.from_nothing(slot) + coefficients[at]).abs() > SHOWN * std
-    })
+    let each = term.free.iter().enumerate().filter(|(_, slot)| term.is_amount(**slot));
+    let amounts: Vec<(usize, f64)> = each
+        .map(|(index, &slot)| (first + index, term.from_nothing(slot) + coefficients[first + index]))
+        .filter(|&(at, _)| covariance[(at, at)] > 0.0)
+        .collect();
+    let count = amounts.len();
+    let amount = DVector::from_iterator(count, amounts.iter().map(|(_, amount)| *amount));
+    let own = DMatrix::from_fn(count, count, |i, j| covariance[(amounts[i].0, amounts[j].0)]);
+    own.cholesky()
+        .is_some_and(|factor| count > 0 && normal_deviate(amount.dot(&factor.solve(&amount)), count) > SHOWN)
 }
 
 /// Whether force is read by the accelerometer and by the autopilot's velocity.

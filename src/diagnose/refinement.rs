@@ -49,7 +49,7 @@ pub(super) fn refine(
     (found, refused, pace): (&mut Search, &[&'static str], &mut Pace<'_>),
 ) -> Result<(), PhysicsError> {
     let trim = Trim::of(flights, vehicle);
-    leave_out_unnamed((traces, (flights, vehicle)), &trim, found)?;
+    leave_out_unnamed((traces, (flights, vehicle)), &trim, (found, false))?;
     let mut start =
         tracing::info_span!("laws").in_scope(|| settle_laws(flights, traces, (found, refused)))?;
     loop {
@@ -98,7 +98,9 @@ fn estimate_sizes(
                 .in_scope(|| torques_by_instruments(traces, found.latency.std_s, &mut found.after))?;
         }
         pace.reconstructed();
-        if left == 0 || !leave_out_unnamed((traces, (flights, vehicle)), trim, found)? {
+        // sizes along the reconstructed flight path are those of forces alone
+        let by_weak_form = found.paths.is_empty();
+        if left == 0 || !leave_out_unnamed((traces, (flights, vehicle)), trim, (found, by_weak_form))? {
             break;
         }
         pace.again();
@@ -138,9 +140,13 @@ pub(super) fn with_first_columns(fitted: &Fitted) -> impl Iterator<Item = (&Effe
 fn leave_out_unnamed(
     (traces, given): (&[Trace], (&[Signals], &Vehicle)),
     trim: &Trim,
-    found: &mut Search,
+    (found, by_weak_form): (&mut Search, bool),
 ) -> Result<bool, PhysicsError> {
     let fitted = &found.after;
+    let turning: Vec<&'static str> = with_first_columns(fitted)
+        .filter(|(present, first)| by_weak_form && only_turns(fitted, present, *first))
+        .map(|(present, _)| present.id())
+        .collect();
     let beyond: Vec<bool> = with_first_columns(fitted)
         .map(|(present, first)| {
             let beyond = is_beyond_showing(fitted, present, first);
@@ -150,7 +156,12 @@ fn leave_out_unnamed(
             beyond
         })
         .collect();
-    let leaves = if beyond.contains(&true) { beyond } else { unnamed((traces, given), trim, fitted)? };
+    let leaves = if beyond.contains(&true) {
+        beyond
+    } else {
+        found.misplaced.extend(&turning);
+        unnamed((traces, given), trim, (fitted, &turning))?
+    };
     if !leaves.contains(&true) {
         return Ok(false);
     }
@@ -168,21 +179,20 @@ pub(super) fn without(base: &Base, leaves: impl Fn(usize) -> bool) -> Base {
 }
 
 /// Which effects of a fit get no name: those of ordinary size, the least certain of those that are not certain, those that the
-/// accelerometer does not feel, a wind that only the torques show, those of descents that a loss of thrust in climb explains as well, and those that hover excludes.
+/// accelerometer does not feel, those that are `turning` alone, those of descents that a loss of thrust in climb explains as well, and those
+/// that hover excludes.
 fn unnamed(
     (traces, given): (&[Trace], (&[Signals], &Vehicle)),
     trim: &Trim,
-    fitted: &Fitted,
+    (fitted, turning): (&Fitted, &[&'static str]),
 ) -> Result<Vec<bool>, PhysicsError> {
     let felt = Felt::of(fitted);
     let is_unnamed = |(present, first): (&EffectTerm, usize)| {
         let refuted = felt.as_ref().is_some_and(|felt| felt.refutes(fitted, present, first));
         // a bend acts on the commands' own noise, and that is in the torques
         let bent = present.signature.role.bends_thrust.is_some() && is_fed_back(traces);
-        // and the moment of a wind is that of a centre of mass that is off
-        let is_air = present.signature.role.wind.is_some();
-        let unseen = (bent || is_air) && !shows_in_forces(fitted, present, first)
-            || bent && is_noise(present, traces, fitted);
+        let unseen = bent && (!shows_in_forces(fitted, present, first) || is_noise(present, traces, fitted));
+        let unseen = unseen || turning.contains(&present.id());
         let unbalanced = is_refuted(given, fitted, present, first);
         let ordinary = is_ordinary(present, &fitted.base, traces);
         let of_climb = is_of_climb(traces, fitted, present, first);
@@ -207,6 +217,11 @@ fn unnamed(
         leaves[place] = true;
     }
     Ok(leaves)
+}
+
+/// Whether an effect is a wind that only the torques show: its moment is that of a centre of mass that is off.
+fn only_turns(fitted: &Fitted, present: &EffectTerm, first: usize) -> bool {
+    present.signature.role.wind.is_some() && !shows_in_forces(fitted, present, first)
 }
 
 /// Whether noise alone may have bent a thrust curve: it lowers the slope, and never raises it.

@@ -71,14 +71,12 @@ pub fn search(
             _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
                 settled += 1;
-                let mut is_settled;
+                let step = exchanged(flights, &mut after, (&steps, price), (gates, signatures, &refused))?;
+                let is_exchanged = step.is_some();
+                steps.extend(step);
+                let is_settled;
                 (after, beside, is_settled) = pruned(flights, after, price, &mut refused)?;
-                let taken = exchanged(flights, &mut after, (&steps, price), (gates, signatures, &refused))?;
-                if let Some(taken) = taken {
-                    steps.push(Step { taken, rivals: Vec::new() });
-                    is_settled = false;
-                }
-                if is_settled {
+                if is_settled && !is_exchanged {
                     break;
                 }
             }
@@ -86,8 +84,9 @@ pub fn search(
     }
     let after = with_last(flights, after)?;
     let latency = told(finding_of(&after), latency, beside);
-    let (by_wider_window, by_other_law, paths) = ([f64::NAN; 3], Vec::new(), Vec::new());
-    Ok(Search { before, after, latency, steps, last, by_wider_window, by_other_law, paths })
+    let (by_wider_window, by_other_law) = ([f64::NAN; 3], Vec::new());
+    let (misplaced, paths) = (Vec::new(), Vec::new());
+    Ok(Search { before, after, latency, steps, last, by_wider_window, by_other_law, misplaced, paths })
 }
 
 /// The latency of the final model, with its kind as the rigid body alone tells it. What could be taken for a latency makes it uncertain,

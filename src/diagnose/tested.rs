@@ -62,6 +62,8 @@ pub struct Search {
     /// variance that a law of the drag that the model does not have may bring into each free value of its effects; none before the model is
     /// refined
     pub(super) by_other_law: Vec<f64>,
+    /// effects that stood in the place of others, and left: only the torques show them
+    pub(super) misplaced: Vec<&'static str>,
     /// of each flight, once its forces were estimated with it
     pub(super) paths: Vec<Path>,
 }
@@ -83,6 +85,7 @@ impl Search {
             last: Vec::new(),
             by_wider_window: [f64::NAN; 3],
             by_other_law: Vec::new(),
+            misplaced: Vec::new(),
             paths: Vec::new(),
         }
     }

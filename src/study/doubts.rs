@@ -25,7 +25,7 @@ const WITHIN: f64 = 2.0;
 pub(in crate::study) struct Moment {
     pub(in crate::study) value: f64,
     pub(in crate::study) std: f64,
-    /// from the flight, and not from the vehicle file
+    /// by the flight
     pub(in crate::study) is_determined: bool,
 }
 
@@ -34,8 +34,11 @@ pub(in crate::study) fn of_shape(across: [Moment; 2], about_z: Moment) -> Option
     let of = |across: &Moment| (across.value, across.std);
     let (largest, std) = across.iter().map(of).max_by(|a, b| a.0.total_cmp(&b.0))?;
     let is_smaller = largest - about_z.value > WITHIN * std.hypot(about_z.std);
-    let stated =
-        if about_z.is_determined { "" } else { " of the vehicle file, which the flight does not determine," };
+    let stated = if about_z.is_determined {
+        ""
+    } else {
+        " (which the flight does not determine, and the model keeps near the stated one)"
+    };
     let text = || {
         format!(
             "izz{stated} is {:.2} times the larger one of ixx and iyy. Rotors and arms of a multirotor lie in a plane, so that izz is larger than \
@@ -98,7 +101,7 @@ mod tests {
         let told = of_shape(across, slim).map(|note| note.text);
         assert!(told.is_some_and(|text| text.starts_with("izz is 0.65 times")));
         let stated = of_shape(across, Moment { is_determined: false, ..slim }).map(|note| note.text);
-        assert!(stated.is_some_and(|text| text.starts_with("izz of the vehicle file, which")));
+        assert!(stated.is_some_and(|text| text.starts_with("izz (which the flight does not determine")));
         // within the errors, by a guess, and of a flat body: nothing
         assert!(of_shape(across, moment(2.4e-2, 1e-3)).is_none());
         assert!(of_shape(across, moment(1.7e-2, 0.3 * 1.7e-2)).is_none());

@@ -185,10 +185,12 @@ fn by_what_is_left(
     (weak, torques_alike, faster): (&Weak, bool, f64),
     whose: &str,
 ) -> Option<OtherVehicle> {
-    // averaged torques leave less than those of each row, and what is left of a torque tells of a vehicle only where its moment of
-    // inertia is known
-    let is_known = |axis: usize| !identified.undetermined.contains(&MOMENTS[axis]);
-    let compared = |channel: &usize| !(3..AXES).contains(channel) || torques_alike && is_known(channel - 3);
+    // averaged torques leave less than those of each row, and what a flight's own rigid body does not explain tells of no other one
+    let is_told = |axis: usize| {
+        let explains = |own: &Fitted| !own.rows.compares_torques || own.rigid_body().explains(MOMENTS[axis]);
+        weak.own.iter().any(explains)
+    };
+    let compared = |channel: &usize| !(3..AXES).contains(channel) || torques_alike && is_told(channel - 3);
     // a flight that turns more leaves more of its torque, a faster one more of the air's force, and one that changes its thrust more of that
     let moves = |channel: usize| {
         let Some(axis) = channel.checked_sub(3).filter(|axis| *axis < 3) else {

@@ -17,9 +17,9 @@ use crate::report::thrust_source::thrust_name;
 use crate::study::{AxisFit, BodyParameter, ExplainStudy, Predicted, QUANTITIES};
 use std::fmt::Write;
 
-/// Relative standard error from which on a size is told to be uncertain, where the effect itself is certain.
+/// Relative standard error from which on that is said.
 const HARDLY_KNOWN: f64 = 0.3;
-/// Normal deviate of an effect that is certain. Beside it the page says why its size is not.
+/// Normal deviate beside which the page says of what the error of the size is.
 const CERTAIN_Z: f64 = 8.0;
 
 /// The page for the terminal: the answer first, the notes last.
@@ -91,7 +91,8 @@ fn effect_lines(page: &mut String, study: &ExplainStudy, effect: &Named) {
     );
     if known_to(effect).is_some_and(|share| share > HARDLY_KNOWN) && effect.strength.z > CERTAIN_Z {
         page.push_str(
-            "    that something of this kind is there is certain, its size is not: the error of the size includes what its law may be wrong by\n",
+            "    z is of the test in which the effect was found; the error of its size is with all effects in the model, and with what its law may \
+             be wrong by\n",
         );
     }
     for other in &effect.confusable_with {
