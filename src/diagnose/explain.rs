@@ -16,6 +16,7 @@ use super::materiality::UNNAMED_TORQUE;
 use super::named::{Confusable, Named, NamedParameter, Strength};
 use super::pace::Pace;
 use super::refinement::{fitted_strength, refine};
+use super::rotor_axes::by_balance_alone;
 use super::search::search;
 use super::signature::{EffectTerm, Signature};
 use super::signatures::ALL;
@@ -148,7 +149,8 @@ pub fn explain_watched(
         refine((flights, &traces), vehicle, (&mut found, &refused, &mut pace))?;
         // what its size does not tell from nothing stood in the place of another one, and what only the torques show as well
         let untold = untold(&found.after, &found.by_other_law).into_iter();
-        match untold.chain(found.misplaced.iter().copied()).find(|id| !refused.contains(id)) {
+        let misplaced = found.misplaced.iter().copied().chain(by_balance_alone(&traces, vehicle, &found));
+        match untold.chain(misplaced).find(|id| !refused.contains(id)) {
             Some(id) => {
                 tracing::debug!(effect = id, "explained again without it");
                 refused.push(id);

@@ -125,7 +125,50 @@ impl Amount {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
+    use crate::diagnose::ExplainSettings;
+    use crate::diagnose::base::Base;
+    use crate::diagnose::fit::{Newton, fit};
+    use crate::diagnose::made_flights::flown;
+    use crate::diagnose::signatures::signature_of;
+    use crate::diagnose::trace::Trace;
+    use crate::physics::ActiveEffect;
+    use crate::physics::effects::by_id;
+    use crate::simulate::RandomTrajectory;
+
+    /// Whether the forces of a flight with these effects concealed, of a drag of 0.04 1/s, show the wind of a model with drag, hub moment and
+    /// wind.
+    fn shows_wind(concealed: &[(&str, &[f64])]) -> bool {
+        let (signals, vehicle) = flown(23, &RandomTrajectory::default(), |truth, weight_n| {
+            let drag = 0.04 * weight_n;
+            let all = [("linear_drag", &[drag, drag] as &[f64]), ("blade_flapping", &[0.02])];
+            truth.effects.extend(all.iter().chain(concealed).map(|(id, values)| {
+                let effect = by_id(id).unwrap();
+                let mut whole = values.to_vec();
+                whole.resize(effect.parameters().len(), 0.0);
+                ActiveEffect::new(effect, &whole).unwrap()
+            }));
+        });
+        let flights = [Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap()];
+        let mut base = Base::anchored(&vehicle);
+        base.effects = ["linear_drag", "blade_flapping", "steady_wind"]
+            .map(|id| EffectTerm {
+                free: (0..if id == "blade_flapping" { 1 } else { 2 }).collect(),
+                ..signature_of(id).unwrap().whole_finer()
+            })
+            .to_vec();
+        base.effects[0].values[..2].fill(0.3);
+        let fitted = fit(&flights, base, Newton::Held).unwrap();
+        let wind = &fitted.base.effects[2];
+        shows_in_forces(&fitted, wind, fitted.rows.nuisances.len() + 3)
+    }
+
+    #[test]
+    fn forces_show_a_wind_and_not_a_centre_of_mass_that_is_off() {
+        assert!(shows_wind(&[("steady_wind", &[3.0, 2.0])]));
+        assert!(!shows_wind(&[("com_offset", &[0.01, -0.01])]));
+    }
 
     #[test]
     fn a_force_that_the_accelerometer_does_not_feel_is_contradicted() {

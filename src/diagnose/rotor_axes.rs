@@ -3,9 +3,14 @@
 
 use super::base::Base;
 use super::channels::{AXES, Channels};
+use super::confusable::confusable_with;
 use super::evidence::Weighted;
 use super::fit::Fitted;
+use super::named::Confusable;
 use super::signature::EffectTerm;
+use super::signatures::signature_of;
+use super::tested::Search;
+use super::trace::Trace;
 use crate::change::NAMED_SIGMAS;
 use crate::estimate::{Finding, Nominal, finding, inertia_by_wider_window};
 use crate::signals::Signals;
@@ -60,7 +65,8 @@ pub(super) fn is_refuted(
     if rows.compares_torques && (0..3).any(shows_less) {
         return true;
     }
-    let told = || shows_across(fitted, first + place, size) && causes_motion(flights, stated, fitted);
+    let causes = || causes_motion(inertia_by_wider_window(flights, stated), stated, fitted);
+    let told = || shows_across(fitted, first + place, size) && causes();
     is_loaded_aside(&fitted.base) && rows.compares_torques && !told()
 }
 
@@ -85,9 +91,29 @@ fn ordinary_apart(mixer: &Mixer, rotor: usize, axis: usize, information: &[f64; 
     if std.is_nan() { f64::INFINITY } else { std }
 }
 
-/// Whether the torque about x or y causes the motion about it: the flights determine the moment of inertia.
-fn causes_motion(flights: &[Signals], stated: &Vehicle, fitted: &Fitted) -> bool {
-    let estimated = fitted.rigid_body().with_wider_window(inertia_by_wider_window(flights, stated));
+/// The weak rotor of a model that only the balance shows, where a centre of mass that is off has nearly the same one: the torques about x
+/// and y answer the motion rather than causing it, and the flights do not tell both apart. A rotor that is so weak is rarer than a load
+/// beside the centre, so that the flights are explained without it.
+pub(super) fn by_balance_alone(traces: &[Trace], stated: &Vehicle, found: &Search) -> Option<&'static str> {
+    let fitted = &found.after;
+    let is_rotor = |term: &EffectTerm| term.signature.role.which.is_some();
+    let place = fitted.base.effects.iter().position(is_rotor)?;
+    if !fitted.rows.compares_torques
+        || is_loaded_aside(&fitted.base)
+        || causes_motion(found.by_wider_window, stated, fitted)
+    {
+        return None;
+    }
+    let is_load = |of: &Confusable| signature_of(of.id).is_some_and(|of| of.role.of_the_loading);
+    let alike = confusable_with(traces, fitted, place, (&found.last, &[]));
+    let is_alike = alike.iter().any(|of| is_load(of) && !of.is_told_apart());
+    is_alike.then(|| fitted.base.effects[place].id())
+}
+
+/// Whether the torque about x or y causes the motion about it: the flights determine the moment of inertia. `by_wider_window` are ratios of
+/// Ixx, Iyy, Izz by a window of twice the width.
+fn causes_motion(by_wider_window: [f64; 3], stated: &Vehicle, fitted: &Fitted) -> bool {
+    let estimated = fitted.rigid_body().with_wider_window(by_wider_window);
     let nominal = Nominal::without_guesses(stated);
     let determined = |index| matches!(finding(&estimated, &nominal, index), Finding::Determined { .. });
     determined(ACROSS[0]) || determined(ACROSS[1])

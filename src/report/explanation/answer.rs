@@ -209,19 +209,23 @@ fn gain(study: &ExplainStudy) -> String {
     }
 }
 
-/// By how much the error of a quantity is lower by the model as it is written, where the gain is with a load that no model file has.
+/// The error of a quantity with the model file as it is, where the gain is with a load that no model file has.
 fn by_written(study: &ExplainStudy, quantity: &str) -> String {
-    let Some(percent) = study.as_written.as_ref().and_then(|written| written.improvement_of(quantity)) else {
-        return String::new();
+    let of = |predicted: &Predicted| predicted.error_of(quantity);
+    let written = study.as_written.as_ref().and_then(|written| Some((of(written)?, written)));
+    let Some(((error, unit), written)) = written else { return String::new() };
+    let baseline = match written.improvement_of(quantity).map_or(0.0, f64::round) {
+        more if more < 0.0 => format!(", {:.0} % above the better baseline's", -more),
+        less if less > 0.0 => format!(", {less:.0} % below the better baseline's"),
+        _ => String::new(),
     };
-    let by = match percent.round() {
-        rises if rises < 0.0 => format!("rises by {:.0} %", -rises),
-        falls if falls > 0.0 => format!("falls by {falls:.0} %"),
-        _ => "stays".to_owned(),
-    };
+    let loaded =
+        study.holdout.as_ref().and_then(of).map_or_else(String::new, |(loaded, _)| {
+            format!(" in place of {} {unit}", significant(loaded, 3))
+        });
+    let by = format!("the {quantity} error is {} {unit}{loaded}{baseline}", significant(error, 3));
     format!(
-        " (all this with the mass and centre of mass that the first seconds of each flight there show; with model.toml as it is the {quantity} \
-         error {by})"
+        " (all this with the mass and centre of mass that the first seconds of each flight there show; with model.toml as it is, {by})"
     )
 }
 
@@ -232,7 +236,7 @@ fn whose(study: &ExplainStudy) -> &'static str {
         _ if study.shown.as_ref().is_some_and(HoldoutFit::holds_more) => {
             "the hold-out is of another vehicle or contains something that the flights explained do not"
         }
-        _ => "the hold-out is of another vehicle",
+        _ => "the hold-out is of another vehicle, or something of this one changed",
     }
 }
 

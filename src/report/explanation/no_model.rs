@@ -26,7 +26,7 @@ pub(super) fn no_model(study: &ExplainStudy) -> String {
         (None, _) => "",
         // the vehicle is one throughout a flight
         (Some(_), ValidationData::HeldBack { .. }) => ", in which something changed,",
-        (Some(_), _) => ", which is not of this vehicle,",
+        (Some(_), _) => ", which is of another or a changed vehicle, or has more in it,",
     };
     // all other errors of the answer are with the load
     let without = if study.as_written.is_some() {

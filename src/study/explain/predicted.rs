@@ -52,6 +52,14 @@ impl Predicted {
         Some(found.improvement_percent.value).filter(|percent| percent.is_finite())
     }
 
+    /// The error of a quantity by the model, with its unit; `None` where it is not predicted.
+    #[must_use]
+    pub fn error_of(&self, quantity: &str) -> Option<(f64, &'static str)> {
+        let mut each = self.half_second().into_iter().zip(QUANTITIES);
+        let (found, (_, unit)) = each.find(|(_, (name, _))| *name == quantity)?;
+        Some((found?.after.value, unit))
+    }
+
     /// The quantity whose error falls most, and by how much, percent.
     #[must_use]
     pub fn most(&self) -> Option<(&'static str, f64)> {

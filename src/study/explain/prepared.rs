@@ -10,6 +10,7 @@ use super::short::Short;
 use super::taken_back::{gone_with, tell_gone};
 use super::traces::traces_of;
 use super::validation_data::ValidationData;
+use crate::diagnose::holdout::split_last_periods;
 use crate::diagnose::holdout::{Agreement, HoldoutSettings};
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{
@@ -103,6 +104,11 @@ pub(in crate::study) fn explain_prepared(
             study = own;
             study.tell_winds(&held.inputs, &own_winds);
         }
+    }
+    // a hold-out that tells nothing of this vehicle is none
+    if study.other_vehicle().is_some() && matches!(study.shown_on, ValidationData::Flights(_)) && !several {
+        let no_part = flights.signals.iter().all(|signals| split_last_periods(signals).is_none());
+        study.short = no_part.then_some(Short { usable_s, unsure: Vec::new() });
     }
     study.notes.extend(refused);
     study.tell_winds(&held.inputs, &held_winds_m_s);
