@@ -83,6 +83,8 @@ pub(super) struct Unshown {
     pub(super) id: &'static str,
     /// in brief, with its size
     pub(super) name: String,
+    /// it is a force of the air, and the vehicle only hovers
+    pub(super) hovers: bool,
     /// each half of the flight shows it by itself
     pub(super) halves: bool,
     /// by how much errors over 0.5 s on the flight itself are smaller with it, mean over the quantities, %
@@ -93,7 +95,9 @@ pub(super) struct Unshown {
 
 impl Unshown {
     pub(super) fn note(&self) -> Note {
-        let why = if let Some(other) = self.beside {
+        let why = if self.hovers {
+            "the vehicle only hovers, and forces of the air cannot be told from each other there".to_owned()
+        } else if let Some(other) = self.beside {
             format!("it cannot be told from {}, which is known better", called(other))
         } else if self.halves {
             format!(

@@ -1,5 +1,6 @@
 //! Names that a short flight does not show well enough.
 
+use super::limited::FlightLimit;
 use super::refuted::Unshown;
 use super::result::ExplainStudy;
 use crate::diagnose::signature::Signature;
@@ -12,7 +13,7 @@ const LEAST_WORTH_PERCENT: f64 = 5.0;
 
 impl ExplainStudy {
     /// The named effect of a short flight that is shown least: one that the halves of the flight do not both show by themselves and
-    /// alike, or with which the flight itself is hardly predicted better. `None` where each name is shown, and where the flight is not
+    /// alike, one with which the flight itself is hardly predicted better, or a force of the air where the vehicle only hovers. `None` where each name is shown, and where the flight is not
     /// short. A lag or delay is told by how sharp its latency is, and what changes at one moment by the seconds about it.
     pub(super) fn unshown(&self, traces: &[Trace]) -> Option<Unshown> {
         self.short.as_ref()?;
@@ -28,9 +29,11 @@ impl ExplainStudy {
             let better_without = self.worth.as_ref().and_then(|worth| worth.better_without_percent(named.id));
             // of one that predicts together with another one nothing is known
             let worth_percent = better_without.map_or(f64::INFINITY, |better| -better);
-            let unshown = !halves || worth_percent < LEAST_WORTH_PERCENT;
+            let is_of_air = signature_of(named.id).is_some_and(|of| of.role.of_air || of.role.wind.is_some());
+            let hovers = is_of_air && self.given.limited.contains(&FlightLimit::Hover);
+            let unshown = hovers || !halves || worth_percent < LEAST_WORTH_PERCENT;
             let name = brief(named, &self.given.vehicle, true);
-            unshown.then_some(Unshown { id: named.id, name, halves, worth_percent, beside: None })
+            unshown.then_some(Unshown { id: named.id, name, hovers, halves, worth_percent, beside: None })
         };
         let names = || self.explanation.named.iter().filter(is_judged);
         let least = names()
