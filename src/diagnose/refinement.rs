@@ -16,7 +16,7 @@ use super::other_law::add_other_laws;
 use super::pace::Pace;
 use super::physical::make_physical;
 use super::reconstructed::{Forms, reconstruct};
-use super::recorded::heights_flown_m;
+use super::recorded::{Need, heights_flown_m};
 use super::rotor_axes::is_refuted;
 use super::signature::EffectTerm;
 use super::tested::Search;
@@ -229,6 +229,10 @@ fn is_noise(bent: &EffectTerm, traces: &[Trace], fitted: &Fitted) -> bool {
     bent.values[0] < 0.0 && may_be_noise(traces, fitted)
 }
 
+/// Share of the mass up to which a change of it is ordinary beside a thrust that falls with the battery. A cell does not follow its voltage
+/// alone: the thrust of real vehicles differed from their commands by 1 to 5 % of the weight for some seconds.
+const BESIDE_SAG: f64 = 0.05;
+
 /// Whether an effect leaves the model without a name: every vehicle has this much of it, or it is too small for its
 /// name. One that every vehicle has a little of, and that is certain, stays as a trace (`EffectTerm::is_of_every_vehicle`).
 fn is_ordinary(term: &EffectTerm, base: &Base, traces: &[Trace]) -> bool {
@@ -236,7 +240,9 @@ fn is_ordinary(term: &EffectTerm, base: &Base, traces: &[Trace]) -> bool {
     let of_all = || term.values.iter().map(|value| value * value).sum::<f64>().sqrt();
     let amounts = || term.signature.amounts.iter().filter_map(|&slot| term.values.get(slot));
     let over = if naming.by_height { heights_flown_m(traces) } else { 1.0 };
-    term.size() * over < naming.least_of_mass * base.vehicle.body.mass_kg
+    let sags = base.effects.iter().any(|of| of.signature.needs.contains(&Need::Voltage));
+    let beside_sag = if sags && term.signature.role.moment.is_some() { BESIDE_SAG } else { 0.0 };
+    term.size() * over < naming.least_of_mass.max(beside_sag) * base.vehicle.body.mass_kg
         || naming.ordinary.is_some_and(|ordinary| term.size() < ordinary)
         || naming.least > 0.0 && of_all() < naming.least
         || naming.most.is_some_and(|most| amounts().any(|amount| *amount > most))

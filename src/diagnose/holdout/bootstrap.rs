@@ -40,7 +40,13 @@ impl Compared {
         self.unchanged.is_some_and(|unchanged| unchanged.value < self.after.value)
     }
 
-    /// The same at the end of the windows.
+    /// The smaller error of the rigid body's and that of a state that does not change, over the windows.
+    #[must_use]
+    pub fn better_baseline(&self) -> f64 {
+        self.unchanged.map_or(self.before.value, |unchanged| unchanged.value.min(self.before.value))
+    }
+
+    /// Whether a state that does not change ends nearer than the final model, at the end of the windows.
     #[must_use]
     pub fn ends_worse_than_unchanged(&self) -> bool {
         self.at_end.is_some_and(|at_end| at_end.unchanged < at_end.after)

@@ -211,19 +211,20 @@ fn gain(study: &ExplainStudy) -> String {
 
 /// The error of a quantity with the model file as it is, where the gain is with a load that no model file has.
 fn by_written(study: &ExplainStudy, quantity: &str) -> String {
-    let of = |predicted: &Predicted| predicted.error_of(quantity);
-    let written = study.as_written.as_ref().and_then(|written| Some((of(written)?, written)));
-    let Some(((error, unit), written)) = written else { return String::new() };
-    let baseline = match written.improvement_of(quantity).map_or(0.0, f64::round) {
-        more if more < 0.0 => format!(", {:.0} % above the better baseline's", -more),
-        less if less > 0.0 => format!(", {less:.0} % below the better baseline's"),
+    let of = |predicted: &Predicted| predicted.errors_of(quantity);
+    let errors = study.as_written.as_ref().and_then(of).zip(study.holdout.as_ref().and_then(of));
+    let Some(((written, unit), (loaded, _))) = errors else { return String::new() };
+    let error = written.after.value;
+    let baseline = match (100.0 * (1.0 - error / loaded.better_baseline())).round() {
+        more if more < 0.0 => format!(", {:.0} % above the better baseline", -more),
+        less if less > 0.0 => format!(", {less:.0} % below the better baseline"),
         _ => String::new(),
     };
-    let loaded =
-        study.holdout.as_ref().and_then(of).map_or_else(String::new, |(loaded, _)| {
-            format!(" in place of {} {unit}", significant(loaded, 3))
-        });
-    let by = format!("the {quantity} error is {} {unit}{loaded}{baseline}", significant(error, 3));
+    let by = format!(
+        "the {quantity} error is {} {unit} in place of {} {unit}{baseline}",
+        significant(error, 3),
+        significant(loaded.after.value, 3)
+    );
     format!(
         " (all this with the mass and centre of mass that the first seconds of each flight there show; with model.toml as it is, {by})"
     )

@@ -105,6 +105,10 @@ impl ExplainStudy {
 
     /// A note on a moment of inertia about z that is smaller than one across.
     pub(super) fn tell_shape(&mut self) {
+        // the model then keeps the stated izz
+        if self.explanation.torque_law.is_some() {
+            return;
+        }
         let body = self.body();
         let guess = self.given.vehicle.guessed(Guessed::Inertia);
         // what is not determined is as uncertain as its guess

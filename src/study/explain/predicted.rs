@@ -44,20 +44,12 @@ impl Predicted {
         (percent < -RISES_PERCENT).then_some((name, -percent))
     }
 
-    /// By how much the error of a quantity falls, percent; `None` where it is not predicted.
+    /// The errors of a quantity with its unit; `None` where it is not predicted.
     #[must_use]
-    pub fn improvement_of(&self, quantity: &str) -> Option<f64> {
-        let mut each = self.half_second().into_iter().zip(QUANTITIES);
-        let found = each.find(|(_, (name, _))| *name == quantity)?.0?;
-        Some(found.improvement_percent.value).filter(|percent| percent.is_finite())
-    }
-
-    /// The error of a quantity by the model, with its unit; `None` where it is not predicted.
-    #[must_use]
-    pub fn error_of(&self, quantity: &str) -> Option<(f64, &'static str)> {
+    pub fn errors_of(&self, quantity: &str) -> Option<(Compared, &'static str)> {
         let mut each = self.half_second().into_iter().zip(QUANTITIES);
         let (found, (_, unit)) = each.find(|(_, (name, _))| *name == quantity)?;
-        Some((found?.after.value, unit))
+        Some((found?, unit))
     }
 
     /// The quantity whose error falls most, and by how much, percent.

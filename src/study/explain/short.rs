@@ -14,7 +14,7 @@ impl Short {
     pub(super) fn doubt(&self) -> String {
         format!(
             "the flight is short ({:.1} s can be used), so no part of it is left to test the answer on; fly longer, or give another flight \
-             with --holdout",
+             of this vehicle with --holdout",
             self.usable_s
         )
     }

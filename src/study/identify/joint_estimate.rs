@@ -178,7 +178,7 @@ pub(super) fn joint_estimate(of: &Found, vehicle: &Vehicle) -> EstimateWithEffec
             .iter()
             .map(FlightLimit::note)
             .chain(mass_apart(&estimated, vehicle))
-            .chain(odd_shape(&estimated, &fitted.base.vehicle))
+            .chain(odd_shape(&estimated, &fitted.base.vehicle).filter(|_| torque_law.is_none()))
             .chain(found.named.iter().filter_map(of_voltage))
             .collect(),
     }
