@@ -8,7 +8,7 @@ use super::candidates::{Candidate, candidates};
 use super::fit::{Fitted, Newton, fit};
 use super::gates::{Gates, NAME_Z, passes};
 use super::price::Price;
-use super::refinement::{fitted_strength, with_first_columns, without};
+use super::refinement::{fitted_strength, weakest, with_first_columns, without};
 use super::score::test_all;
 use super::signature::Signature;
 use super::signatures::signature_of;
@@ -58,7 +58,7 @@ pub(super) fn exchanged(
         }
     }
     let Some((step, with)) = best else { return Ok(None) };
-    // what this model does not need either says nothing for the other one
+    // the other model had what it does not need taken out: this one has the same right
     if price.cost(&without_superfluous(flights, after.clone())?) <= price.cost(&with) {
         return Ok(None);
     }
@@ -90,10 +90,7 @@ fn without_superfluous(flights: &[Trace], mut fitted: Fitted) -> Result<Fitted, 
     loop {
         let strengths =
             with_first_columns(&fitted).map(|(present, first)| fitted_strength(&fitted, present, first));
-        let weakest = strengths.enumerate().filter(|(_, of)| of.count > 0 && of.z < NAME_Z);
-        let Some((place, _)) = weakest.min_by(|(_, a), (_, b)| a.z.total_cmp(&b.z)) else {
-            return Ok(fitted);
-        };
+        let Some((_, place)) = weakest(strengths.enumerate(), NAME_Z) else { return Ok(fitted) };
         fitted = fit(flights, without(&fitted.base, |of| of == place), Newton::Held)?;
     }
 }

@@ -27,8 +27,8 @@ pub(super) const FORM: f64 = 0.02;
 /// that simulator with its usual log it came out 1 to 62 % too large (in the mean 24 %), across it 3 % too small.
 const SPARSE: f64 = 0.3;
 
-/// Standard error of a vehicle's heading, rad, which is one of the wind's direction: on ArduCopter's simulator winds came out 1 to 2 degrees
-/// from where they blew.
+/// Standard error of a vehicle's heading, rad. It is also one of the wind's direction: on ArduCopter's simulator, winds came out 1 to 2
+/// degrees from where they blew.
 const HEADING_STD_RAD: f64 = 0.02;
 
 /// Relative error of a law's thrust at hover by its curvature there, the middle of 1.0 to 1.7.
@@ -99,7 +99,8 @@ fn together(fitted: &Fitted, axis: usize, place: usize) -> f64 {
 }
 
 /// Standard error of an amount by its law and by what the vehicle's description guesses: a share of the amount, so that it says nothing
-/// against its being there; of a component of the wind, a share of the other one as well. Zero of what is no amount; `column` is that of the value among the coefficients.
+/// against its being there; of a component of the wind, a share of the other one as well. Zero of what is no amount. `column` is that of
+/// the value among the coefficients.
 pub(super) fn of_law(fitted: &Fitted, term: &EffectTerm, (slot, column): (usize, usize)) -> f64 {
     let Some(parameter) = term.parameter(slot).filter(|_| term.is_amount(slot)) else { return 0.0 };
     let scale = if follows_force(parameter.unit) { of_scale(&fitted.base) } else { 0.0 };

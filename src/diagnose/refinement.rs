@@ -121,7 +121,10 @@ fn uncertain(fitted: &Fitted) -> Option<usize> {
 }
 
 /// The smallest normal deviate below `least` among the strengths of effects, with the place of its effect.
-fn weakest(strengths: impl Iterator<Item = (usize, Strength)>, least: f64) -> Option<(f64, usize)> {
+pub(super) fn weakest(
+    strengths: impl Iterator<Item = (usize, Strength)>,
+    least: f64,
+) -> Option<(f64, usize)> {
     let told = strengths.filter(|(_, of)| of.count > 0 && of.z < least).map(|(place, of)| (of.z, place));
     told.min_by(|a, b| a.0.total_cmp(&b.0))
 }

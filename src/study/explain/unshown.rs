@@ -12,9 +12,10 @@ use crate::diagnose::{ByPart, Named, Trace, brief, by_part, known_to};
 const LEAST_WORTH_PERCENT: f64 = 5.0;
 
 impl ExplainStudy {
-    /// The named effect of a short flight that is shown least: one that the halves of the flight do not both show by themselves and
-    /// alike, one with which the flight itself is hardly predicted better, or a force of the air where the vehicle only hovers. `None` where each name is shown, and where the flight is not
-    /// short. A lag or delay is told by how sharp its latency is, and what changes at one moment by the seconds about it.
+    /// The named effect of a short flight that is shown least. It is one that the halves of the flight do not both show by themselves and
+    /// alike, one with which the flight itself is hardly predicted better, or a force of the air where the vehicle only hovers. `None` where
+    /// each name is shown, and where the flight is not short. A lag or delay is told by how sharp its latency is, and what changes at one
+    /// moment by the seconds about it.
     pub(super) fn unshown(&self, traces: &[Trace]) -> Option<Unshown> {
         self.short.as_ref()?;
         let parts = by_part(traces, &self.explanation).unwrap_or_default();
