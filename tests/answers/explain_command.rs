@@ -351,6 +351,31 @@ fn a_livelier_flight_of_one_drone_is_not_of_another_one() {
     assert!(!answer.contains("another vehicle") && answer.contains("on the hold-out falls by"), "{answer}");
 }
 
+/// A hold-out of another vehicle tests nothing, so a short flight has the names that it has without one.
+#[test]
+fn a_short_flight_with_a_hold_out_of_another_vehicle_is_judged_as_a_short_flight() {
+    let Some(shared) = support::shared() else { return };
+    let folder = shared.join("onboard/sitl");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let part = temporary("short-foreign.tlog");
+    std::fs::write(&part, beginning(&folder.join("ap02.tlog"), 62.0)).unwrap();
+    let explained = |further: &[&str]| -> Value {
+        let vehicle = path("ardupilot-quad-a.toml");
+        let common = ["explain", part.to_str().unwrap(), "--vehicle", &vehicle, "--json"];
+        let output = mavid(&[&common, further].concat());
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let names = |of: &Value| -> Vec<String> {
+        let effects = of["effects"].as_array().unwrap().iter();
+        effects.map(|effect| effect["id"].as_str().unwrap().to_owned()).collect()
+    };
+    let alone = explained(&[]);
+    let foreign = explained(&["--holdout", &path("ap07.tlog")]);
+    assert!(foreign["fit"]["holdout"]["other_vehicle"].is_string());
+    assert_eq!(names(&foreign), names(&alone));
+    assert!(foreign["doubts"].to_string().contains("the flight is short"), "{}", foreign["doubts"]);
+}
+
 /// The beginning of a log, up to so many seconds after its first frame.
 fn beginning(log: &Path, seconds: f64) -> Vec<u8> {
     let bytes = std::fs::read(log).unwrap();

@@ -39,7 +39,27 @@ fn flown(
     path: FourierTrajectory,
     (seed, duration_s): (u64, f64),
 ) -> (Recording, Signals) {
-    let reference = Reference { trajectory: path, hover_s: 4.0, ramp_s: 2.0 };
+    flown_after(4.0, (truth, nominal), concealed, path, (seed, duration_s))
+}
+
+/// A flight that hovers to its end.
+fn hovered(
+    both: (&Vehicle, &Vehicle),
+    concealed: Vec<ActiveEffect>,
+    (seed, duration_s): (u64, f64),
+) -> Signals {
+    flown_after(duration_s, both, (concealed, None), trajectory(5), (seed, duration_s)).1
+}
+
+/// A flight that hovers for `hover_s` first.
+fn flown_after(
+    hover_s: f64,
+    (truth, nominal): (&Vehicle, &Vehicle),
+    concealed: (Vec<ActiveEffect>, Option<Disturbance>),
+    path: FourierTrajectory,
+    (seed, duration_s): (u64, f64),
+) -> (Recording, Signals) {
+    let reference = Reference { trajectory: path, hover_s, ramp_s: 2.0 };
     let settings = FlightSettings { seed, duration_s, ..FlightSettings::default() };
     let truth = Truth { vehicle: truth.clone(), effects: concealed.0, disturbance: concealed.1 };
     let recording = simulate_flight(truth, nominal, &reference, &settings).unwrap().recording;
@@ -123,6 +143,21 @@ fn drag_pays_on_a_flight_that_was_not_used_and_the_vehicle_is_the_same() {
     let shown = self::shown(&found, &vehicles.nominal, &stranger);
     let reason = shown.other_vehicle.unwrap().reason;
     assert!(reason.contains("mass"), "{reason}");
+}
+
+/// A drag leaves nothing in a hover, and all of itself in a flight along a trajectory.
+#[test]
+fn what_a_hover_cannot_show_makes_no_other_vehicle_of_a_faster_hold_out() {
+    let vehicles = pair();
+    let both = (&vehicles.truth, &vehicles.nominal);
+    let drag = || vec![effect("linear_drag", &[0.9, 0.9, 0.0])];
+    let hover = hovered(both, drag(), (4, 30.0));
+    let found =
+        explain(std::slice::from_ref(&hover), &vehicles.nominal, &ExplainSettings::default()).unwrap();
+    let holdout = flown(both, (drag(), None), trajectory(6), (2, 34.0));
+    let shown = shown(&found, &vehicles.nominal, &holdout);
+    assert!(shown.speed_share > 3.0, "{}", shown.speed_share);
+    assert_eq!(shown.other_vehicle, None);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::error::HoldoutError;
 use super::ready::{Ready, trace_of};
 use super::settings::{Explained, HeldOut, HoldoutSettings};
 use super::weak::Weak;
-use crate::diagnose::channels::{AXES, CHANNEL_NAMES, CHANNELS, Nuisance, NuisanceColumn};
+use crate::diagnose::channels::{CHANNEL_NAMES, CHANNELS, Nuisance, NuisanceColumn};
 use crate::diagnose::common_values::mass_after;
 use crate::diagnose::explanation::Explanation;
 use crate::diagnose::fit::{Fitted, evaluate};
@@ -22,6 +22,10 @@ const LEFT_RATIO: f64 = 4.0;
 /// Least ratio of a channel's residual to the residual of the held-out flight's own fit. Set by judgement: a
 /// difference of parameters counts only if the flight is predicted worse by it.
 const RESIDUAL_RATIO: f64 = 1.3;
+
+/// Mean speed of the held-out flights, over the airspeed of the flights explained, from which on what is left of their forces tells of no
+/// other vehicle: the air's forces rise with the speed, and a hover shows none of them. Set by judgement.
+const FASTER: f64 = 3.0;
 
 /// Compares the models with the held-out flights' own values, which come from one linear step at the transferred model. `of_each` is the
 /// model that a flight was predicted by; flights of one model are compared together, those of models of their own one by one.
@@ -190,7 +194,10 @@ fn by_what_is_left(
         let explains = |own: &Fitted| !own.rows.compares_torques || own.rigid_body().explains(MOMENTS[axis]);
         weak.own.iter().any(explains)
     };
-    let compared = |channel: &usize| !(3..AXES).contains(channel) || torques_alike && is_told(channel - 3);
+    let compared = |channel: &usize| match channel.checked_sub(3).filter(|axis| *axis < 3) {
+        Some(axis) => torques_alike && is_told(axis),
+        None => faster < FASTER,
+    };
     // a flight that turns more leaves more of its torque, a faster one more of the air's force, and one that changes its thrust more of that
     let moves = |channel: usize| {
         let Some(axis) = channel.checked_sub(3).filter(|axis| *axis < 3) else {

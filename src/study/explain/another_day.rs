@@ -52,6 +52,21 @@ impl Task<'_> {
         if own.predicts() && own.other_vehicle().is_none() { own } else { study }
     }
 
+    /// The same with the load of each hold-out, and its own wind, where the hold-outs are of this vehicle with them.
+    pub(super) fn with_own_load(
+        &self,
+        study: &ExplainStudy,
+        flights: &Prepared,
+        (held, shown_on): (&Prepared, &ValidationData),
+    ) -> Option<ExplainStudy> {
+        let (own_wind, explanation) = (study.given.own_wind, study.as_found());
+        let in_own_wind = own_wind.then(|| self.in_own_wind(held, explanation)).flatten();
+        let held = in_own_wind.as_ref().unwrap_or(held);
+        let given = Given { own_wind, ..self.given(flights, study.given.settings.clone()) };
+        let own = self.evaluated(given, explanation.clone(), flights, (held, None, shown_on.clone()));
+        (own.predicts() && own.other_vehicle().is_none()).then_some(own)
+    }
+
     /// The hold-outs with their own wind, where the model has that of the one flight that was explained, and they tell theirs.
     pub(super) fn in_own_wind(&self, held: &Prepared, explanation: &Explanation) -> Option<Prepared> {
         let base = &explanation.search.after.base;

@@ -7,6 +7,7 @@ mod body;
 mod doubts;
 mod evidence;
 mod figures;
+mod foreign;
 mod hold_out;
 mod left_out;
 mod left_out_force;

@@ -84,31 +84,29 @@ pub(in crate::study) fn explain_prepared(
         progress,
     };
     progress.stage(Stage::Explaining);
-    let (mut study, refused) = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
+    let (mut study, mut refused) = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
     // payload and wind of another day make no other vehicle; the names stay as they were found
-    if study.refuted.is_none()
+    task.own_load = study.refuted.is_none()
         && study.other_vehicle().is_some()
-        && matches!(shown_on, ValidationData::Flights(_))
-    {
-        task.own_load = true;
+        && matches!(shown_on, ValidationData::Flights(_));
+    if task.own_load {
+        progress.stage(Stage::Predicting);
         let day = !several && !names_wind(&study);
         let own_winds = if day { with_own_winds(held, asked.vehicle) } else { Vec::new() };
-        progress.stage(Stage::Predicting);
-        let (given, explanation) = (&study.given, study.as_found());
-        let own_wind = given.own_wind;
-        let in_own_wind = own_wind.then(|| task.in_own_wind(held, explanation)).flatten();
-        let held = in_own_wind.as_ref().unwrap_or(held);
-        let given = Given { own_wind, ..task.given(flights, given.settings.clone()) };
-        let own = task.evaluated(given, explanation.clone(), flights, (held, None, shown_on));
-        if own.predicts() && own.other_vehicle().is_none() {
+        if let Some(own) = task.with_own_load(&study, flights, (held, &shown_on)) {
             study = own;
             study.tell_winds(&held.inputs, &own_winds);
         }
     }
-    // a hold-out that tells nothing of this vehicle is none
-    if study.other_vehicle().is_some() && matches!(study.shown_on, ValidationData::Flights(_)) && !several {
-        let no_part = flights.signals.iter().all(|signals| split_last_periods(signals).is_none());
-        study.short = no_part.then_some(Short { usable_s, unsure: Vec::new() });
+    // a hold-out that tells nothing of this vehicle is none: a short flight is judged as one
+    let no_part = || flights.signals.iter().all(|signals| split_last_periods(signals).is_none());
+    if study.other_vehicle().is_some()
+        && matches!(shown_on, ValidationData::Flights(_))
+        && !several
+        && no_part()
+    {
+        (task.short, task.own_load) = (Some(Short { usable_s, unsure: Vec::new() }), false);
+        (study, refused) = task.explained_without(held, flights, shown_on)?;
     }
     study.notes.extend(refused);
     study.tell_winds(&held.inputs, &held_winds_m_s);
@@ -133,19 +131,19 @@ pub(super) struct Task<'a> {
     limited: Vec<FlightLimit>,
     /// of each flight, where they are several and not alike
     alone: &'a [Vec<Named>],
-    /// where one flight is given, and no part of it can be held back
+    /// where one flight is given, no part of it can be held back, and no hold-out is of its vehicle
     short: Option<Short>,
     /// hold-outs with a mass of their own
     own_load: bool,
     /// wind of each hold-out, world, m/s, once it was asked for; `None` where they do not tell
     pub(super) held_airs: OnceCell<Option<Vec<Vector3<f64>>>>,
-    progress: &'a dyn Progress,
+    pub(super) progress: &'a dyn Progress,
 }
 
 impl Task<'_> {
     /// Explains the flights and shows the better model; what is to be said of the data before comes first. An effect without which the
     /// hold-out is predicted better is left out, and the flights are explained again.
-    fn explained(
+    pub(super) fn explained(
         &self,
         flights: &Prepared,
         (held, back, shown_on): (&Prepared, Option<&Signals>, ValidationData),
@@ -301,7 +299,7 @@ impl Task<'_> {
         left_out: bool,
     ) -> ExplainStudy {
         let mut study = ExplainStudy::new(given, explanation);
-        study.short = self.short.clone().filter(|_| matches!(shown_on, ValidationData::Nothing { .. }));
+        study.short = self.short.clone();
         study.notes.extend_from_slice(self.asked.notes);
         let contradictions = study.contradictions();
         study.notes.extend(contradictions.iter().map(Contradiction::note));
