@@ -126,7 +126,7 @@ fn as_written(
         .filter_map(|(compared, unit)| Some(format!("{} {unit}", significant(compared?.after.value, 3))))
         .collect();
     let text = format!(
-        "the errors on the hold-out are with {with}, which model.toml does not have: with model.toml as it is, they are {} over 0.5 s",
+        "the errors on flights that were not used are with {with}, which model.toml does not have: with model.toml as it is, they are {} over 0.5 s",
         each.join(", ")
     );
     let note = (!each.is_empty()).then(|| Note::warning(About::HoldOut, text));
