@@ -178,6 +178,11 @@ pub(super) fn with_latency(
     Ok((fit(flights, base, Newton::Held)?, told))
 }
 
+/// Whether the noise is fed back, and no instrument confirms the latency.
+pub(super) fn is_unconfirmed(flights: &[Trace], finding: &LatencyFinding) -> bool {
+    is_fed_back(flights) && finding.std_s >= UNCONFIRMED_S
+}
+
 /// The fit about the lag that is stated. The flight does not determine the latency: its error is as large as any that a vehicle has.
 fn without_latency(flights: &[Trace], lost: Fitted) -> Result<(Fitted, LatencyFinding), PhysicsError> {
     let vehicle = &lost.base.vehicle;

@@ -1,9 +1,9 @@
 //! Pruning after the search: superfluous effects are removed, and the latency is estimated again.
 
 use super::base::Base;
-use super::fit::{Fitted, Newton};
+use super::fit::{Fitted, Newton, fit};
 use super::gates::NAME_Z;
-use super::latency::{LatencyFinding, with_latency};
+use super::latency::{LatencyFinding, is_unconfirmed, with_latency};
 use super::latency_parts::is_delay;
 use super::signature::EffectTerm;
 use super::trace::Trace;
@@ -13,11 +13,13 @@ use crate::physics::PhysicsError;
 /// period of a fast log.
 pub(super) const UNCHANGED_S: f64 = 0.001;
 
-/// Removes effects that later ones have made superfluous, and estimates the latency with the remaining ones. Returns
-/// the fit, whether any effect was removed, the change of the latency, s, and what is found of it.
+/// Removes effects that later ones have made superfluous, and estimates the latency with the remaining ones. What was `known` of it by
+/// instruments stays where they confirm none beside these effects. Returns the fit, whether any effect was removed, the change of the
+/// latency, s, and what is found of it.
 pub(super) fn prune(
     flights: &[Trace],
     after: Fitted,
+    known: LatencyFinding,
 ) -> Result<(Fitted, bool, f64, LatencyFinding), PhysicsError> {
     let mut index = after.rows.nuisances.len();
     let mut kept: Vec<EffectTerm> = Vec::new();
@@ -60,7 +62,12 @@ pub(super) fn prune(
     // several of a long flight at a time take much memory
     drop(after);
     let newton = if is_delay(base.latency, &base.vehicle) { Newton::Delay } else { Newton::Free };
-    let (fitted, finding) = with_latency(flights, base, newton)?;
+    let told = base.clone();
+    let (mut fitted, mut finding) = with_latency(flights, base, newton)?;
+    if is_unconfirmed(flights, &finding) && !is_unconfirmed(flights, &known) {
+        let Base { vehicle, effects, .. } = fitted.base;
+        (fitted, finding) = (fit(flights, Base { vehicle, effects, ..told }, Newton::Held)?, known);
+    }
     let moved_s = (fitted.base.latency.total_s() - before_s).abs();
     Ok((fitted, dropped, moved_s, finding))
 }

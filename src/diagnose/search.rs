@@ -75,7 +75,7 @@ pub fn search(
                 let is_exchanged = step.is_some();
                 steps.extend(step);
                 let is_settled;
-                (after, beside, is_settled) = pruned(flights, after, price, &mut refused)?;
+                (after, beside, is_settled) = pruned(flights, (after, beside), price, &mut refused)?;
                 if is_settled && !is_exchanged {
                     break;
                 }
@@ -148,12 +148,12 @@ fn ranked(
 /// whether the model stays as it is.
 fn pruned(
     flights: &[Trace],
-    after: Fitted,
+    (after, known): (Fitted, LatencyFinding),
     price: Price,
     refused: &mut Vec<&'static str>,
 ) -> Result<(Fitted, LatencyFinding, bool), PhysicsError> {
     let before = after.base.effects.clone();
-    let (mut after, dropped, moved, found) = prune(flights, after)?;
+    let (mut after, dropped, moved, found) = prune(flights, after, known)?;
     let placed = one_place(flights, &mut after, price)? | other_form(flights, &mut after, price)?;
     let gone = before.iter().map(|present| present.id());
     let kept = |id: &&'static str| after.base.effects.iter().any(|p| p.id() == *id);

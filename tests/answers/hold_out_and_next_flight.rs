@@ -17,7 +17,7 @@ use mavid::simulate::{
     Disturbance, FlightSettings, RandomTrajectory, Reference, Truth, VehiclePair, random_vehicle,
     simulate_flight,
 };
-use mavid::trajectory::FourierTrajectory;
+use mavid::trajectory::{FourierAxis, FourierTrajectory};
 use mavid::vehicle::Vehicle;
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -39,27 +39,7 @@ fn flown(
     path: FourierTrajectory,
     (seed, duration_s): (u64, f64),
 ) -> (Recording, Signals) {
-    flown_after(4.0, (truth, nominal), concealed, path, (seed, duration_s))
-}
-
-/// A flight that hovers to its end.
-fn hovered(
-    both: (&Vehicle, &Vehicle),
-    concealed: Vec<ActiveEffect>,
-    (seed, duration_s): (u64, f64),
-) -> Signals {
-    flown_after(duration_s, both, (concealed, None), trajectory(5), (seed, duration_s)).1
-}
-
-/// A flight that hovers for `hover_s` first.
-fn flown_after(
-    hover_s: f64,
-    (truth, nominal): (&Vehicle, &Vehicle),
-    concealed: (Vec<ActiveEffect>, Option<Disturbance>),
-    path: FourierTrajectory,
-    (seed, duration_s): (u64, f64),
-) -> (Recording, Signals) {
-    let reference = Reference { trajectory: path, hover_s, ramp_s: 2.0 };
+    let reference = Reference { trajectory: path, hover_s: 4.0, ramp_s: 2.0 };
     let settings = FlightSettings { seed, duration_s, ..FlightSettings::default() };
     let truth = Truth { vehicle: truth.clone(), effects: concealed.0, disturbance: concealed.1 };
     let recording = simulate_flight(truth, nominal, &reference, &settings).unwrap().recording;
@@ -145,18 +125,25 @@ fn drag_pays_on_a_flight_that_was_not_used_and_the_vehicle_is_the_same() {
     assert!(reason.contains("mass"), "{reason}");
 }
 
-/// A drag leaves nothing in a hover, and all of itself in a flight along a trajectory.
+/// A drag leaves nothing across a flight that only climbs and sinks, and all of itself in one along a trajectory.
 #[test]
-fn what_a_hover_cannot_show_makes_no_other_vehicle_of_a_faster_hold_out() {
+fn what_a_slow_flight_cannot_show_makes_no_other_vehicle_of_a_faster_hold_out() {
     let vehicles = pair();
     let both = (&vehicles.truth, &vehicles.nominal);
-    let drag = || vec![effect("linear_drag", &[0.9, 0.9, 0.0])];
-    let hover = hovered(both, drag(), (4, 30.0));
-    let found =
-        explain(std::slice::from_ref(&hover), &vehicles.nominal, &ExplainSettings::default()).unwrap();
+    let drag = || vec![effect("linear_drag", &[1.8, 1.8, 0.0])];
+    let mut climbs = trajectory(5);
+    for axis in [0, 1, 3] {
+        climbs.axes[axis] = FourierAxis { a: Vec::new(), b: Vec::new(), c: 0.0 };
+    }
+    let slow = flown(both, (drag(), None), climbs, (4, 34.0)).1;
+    let settings = ExplainSettings::default();
+    let found = explain(std::slice::from_ref(&slow), &vehicles.nominal, &settings).unwrap();
+    assert!(found.named.is_empty(), "{:?}", found.named);
     let holdout = flown(both, (drag(), None), trajectory(6), (2, 34.0));
     let shown = shown(&found, &vehicles.nominal, &holdout);
     assert!(shown.speed_share > 3.0, "{}", shown.speed_share);
+    let left = shown.weak[0].unwrap().after.value / found.search.after.weighted.sigma[0];
+    assert!(left > 4.0 * shown.speed_share.powi(2), "{left}, {} times as fast", shown.speed_share);
     assert_eq!(shown.other_vehicle, None);
 }
 
