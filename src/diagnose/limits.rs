@@ -11,6 +11,7 @@ use super::gates::NAME_Z;
 use super::materiality::Materiality;
 use super::named::DetectionLimit;
 use super::recorded::heights_flown_m;
+use super::rotor_axes::least_weakness;
 use super::signature::EffectTerm;
 use super::signatures::signature_of;
 use super::slight::BEYOND;
@@ -49,7 +50,8 @@ pub(super) fn limits(traces: &[Trace], last: &[Tested], fitted: &Fitted) -> Vec<
                 let over = if naming.by_height { heights_flown_m(traces) } else { 1.0 };
                 let of_size = naming.least_of_mass * vehicle.body.mass_kg / over
                     + naming.least_of_arm * fitted.base.size.arm_m;
-                let of_size = if part.is_amount(free) { of_size.max(naming.ordinary_alone) } else { 0.0 };
+                let alone = naming.ordinary_alone.max(least_weakness(traces, part.signature));
+                let of_size = if part.is_amount(free) { of_size.max(alone) } else { 0.0 };
                 let least = naming.ordinary.unwrap_or(naming.least).max(of_size);
                 let certain = Gates::default().deviate(part.signature);
                 // nor is a size that does not matter

@@ -17,7 +17,7 @@ use super::pace::Pace;
 use super::physical::make_physical;
 use super::reconstructed::{Forms, reconstruct};
 use super::recorded::{Need, heights_flown_m};
-use super::rotor_axes::is_refuted;
+use super::rotor_axes::{is_refuted, least_weakness};
 use super::signature::EffectTerm;
 use super::tested::Search;
 use super::thrust_slope::may_be_noise;
@@ -245,7 +245,10 @@ fn is_ordinary(term: &EffectTerm, base: &Base, traces: &[Trace]) -> bool {
     let over = if naming.by_height { heights_flown_m(traces) } else { 1.0 };
     let sags = base.effects.iter().any(|of| of.signature.needs.contains(&Need::Voltage));
     let beside_sag = if sags && term.signature.role.moment.is_some() { BESIDE_SAG } else { 0.0 };
-    term.size() * over < naming.least_of_mass.max(beside_sag) * base.vehicle.body.mass_kg
+    let away =
+        || term.signature.amounts.iter().map(|&slot| term.from_nothing(slot).abs()).fold(0.0, f64::max);
+    away() < least_weakness(traces, term.signature)
+        || term.size() * over < naming.least_of_mass.max(beside_sag) * base.vehicle.body.mass_kg
         || naming.ordinary.is_some_and(|ordinary| term.size() < ordinary)
         || naming.least > 0.0 && of_all() < naming.least
         || naming.most.is_some_and(|most| amounts().any(|amount| *amount > most))

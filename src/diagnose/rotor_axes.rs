@@ -7,7 +7,7 @@ use super::confusable::confusable_with;
 use super::evidence::Weighted;
 use super::fit::Fitted;
 use super::named::Confusable;
-use super::signature::EffectTerm;
+use super::signature::{EffectTerm, Signature};
 use super::signatures::signature_of;
 use super::tested::Search;
 use super::trace::Trace;
@@ -68,6 +68,13 @@ pub(super) fn is_refuted(
     let causes = || causes_motion(inertia_by_wider_window(flights, stated), stated, fitted);
     let told = || shows_across(fitted, first + place, size) && causes();
     is_loaded_aside(&fitted.base) && rows.compares_torques && !told()
+}
+
+/// Least weakness of a rotor (-) that gets a name: none of its own where torques are compared row by row. Averaged torques show the balance
+/// alone, and rotors of one vehicle scatter about it.
+pub(super) fn least_weakness(traces: &[Trace], signature: &Signature) -> f64 {
+    let is_balance = !traces.iter().any(|trace| trace.torques);
+    if signature.role.which.is_some() && is_balance { SCATTER } else { 0.0 }
 }
 
 /// Standard deviation (-) of what an axis shows of a rotor less what the others show, by the scatter of the other rotors. `information` is
@@ -134,8 +141,11 @@ fn shows_across(fitted: &Fitted, index: usize, size: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
-    use crate::simulate::random_vehicle;
+    use crate::diagnose::ExplainSettings;
+    use crate::diagnose::made_flights::flown;
+    use crate::simulate::{RandomTrajectory, random_vehicle};
     use statrs::distribution::{ContinuousCDF, Normal};
 
     /// What the axes show of the first rotor's weakness, if rotors are weak by these shares.
@@ -157,6 +167,19 @@ mod tests {
             })
         };
         (less(BEYOND_SCATTER), less(0.0))
+    }
+
+    #[test]
+    fn averaged_torques_show_no_weakness_within_the_scatter_of_rotors() {
+        let (signals, vehicle) = flown(23, &RandomTrajectory::default(), |_, _| ());
+        let trace = Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap();
+        let mut averaged = trace.clone();
+        averaged.torques = false;
+        let [rotor, drag] = ["weak_rotor", "linear_drag"].map(|id| signature_of(id).unwrap());
+        assert!(trace.torques);
+        let least = |trace: Trace, signature| least_weakness(&[trace], signature);
+        assert_eq!([least(trace, rotor), least(averaged.clone(), rotor)], [0.0, SCATTER]);
+        assert_eq!(least(averaged, drag), 0.0);
     }
 
     #[test]
