@@ -130,7 +130,7 @@ fn drag_pays_on_a_flight_that_was_not_used_and_the_vehicle_is_the_same() {
 fn what_a_slow_flight_cannot_show_makes_no_other_vehicle_of_a_faster_hold_out() {
     let vehicles = pair();
     let both = (&vehicles.truth, &vehicles.nominal);
-    let drag = || vec![effect("linear_drag", &[1.8, 1.8, 0.0])];
+    let drag = || vec![effect("linear_drag", &[2.8, 2.8, 0.0])];
     let mut climbs = trajectory(5);
     for axis in [0, 1, 3] {
         climbs.axes[axis] = FourierAxis { a: Vec::new(), b: Vec::new(), c: 0.0 };
