@@ -37,6 +37,8 @@ pub struct LatencyFinding {
     pub against_delay: f64,
     /// standard error of [`ActuationLatency::uneven`], if the flight distinguishes rising from falling speed
     pub uneven_std: Option<f64>,
+    /// no noise is fed back, or instruments determine it as well
+    pub is_confirmed: bool,
 }
 
 impl LatencyFinding {
@@ -152,8 +154,10 @@ pub(super) fn with_latency(
     let finding = finding_of(&plain);
     // where the noise is fed back, least squares may be wrong by what it differs from instruments, or by more than they tell
     let unsure = |by_s: Option<f64>| {
-        let unsure_s = if is_fed_back(flights) { by_s.unwrap_or(UNCONFIRMED_S) } else { 0.0 };
-        LatencyFinding { std_s: finding.std_s.hypot(unsure_s), ..finding }
+        let is_fed_back = is_fed_back(flights);
+        let unsure_s = if is_fed_back { by_s.unwrap_or(UNCONFIRMED_S) } else { 0.0 };
+        let is_confirmed = !is_fed_back || by_s.is_some();
+        LatencyFinding { std_s: finding.std_s.hypot(unsure_s), is_confirmed, ..finding }
     };
     let Some(by) = fit_by_instruments(flights, &plain, newton)? else { return Ok((plain, unsure(None))) };
     let told = of_covariance(&by);
@@ -178,11 +182,6 @@ pub(super) fn with_latency(
     Ok((fit(flights, base, Newton::Held)?, told))
 }
 
-/// Whether the noise is fed back, and no instrument confirms the latency.
-pub(super) fn is_unconfirmed(flights: &[Trace], finding: &LatencyFinding) -> bool {
-    is_fed_back(flights) && finding.std_s >= UNCONFIRMED_S
-}
-
 /// The fit about the lag that is stated. The flight does not determine the latency: its error is as large as any that a vehicle has.
 fn without_latency(flights: &[Trace], lost: Fitted) -> Result<(Fitted, LatencyFinding), PhysicsError> {
     let vehicle = &lost.base.vehicle;
@@ -192,7 +191,7 @@ fn without_latency(flights: &[Trace], lost: Fitted) -> Result<(Fitted, LatencyFi
     let base = Base { latency, ..lost.base.clone() };
     drop(lost);
     let held = fit(flights, base, Newton::Held)?;
-    let finding = LatencyFinding { std_s: LONGEST_S, ..finding_of(&held) };
+    let finding = LatencyFinding { std_s: LONGEST_S, is_confirmed: false, ..finding_of(&held) };
     Ok((held, finding))
 }
 
@@ -254,6 +253,7 @@ fn of_covariance(fitted: &Fitted) -> LatencyFinding {
         against_lag: 0.0,
         against_delay: 0.0,
         uneven_std: None,
+        is_confirmed: true,
     }
 }
 

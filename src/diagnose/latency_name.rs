@@ -24,7 +24,7 @@ pub(super) fn latency_name(traces: &[Trace], vehicle: &Vehicle, found: &Search) 
     if !traces.iter().any(|trace| trace.torques) {
         return None;
     }
-    let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std } = found.latency;
+    let LatencyFinding { total_s, std_s, parts, against_lag, against_delay, uneven_std, .. } = found.latency;
     let ordinary_s = ordinary_s(traces, vehicle);
     if total_s - ordinary_s < 4.0 * std_s.hypot(ORDINARY_STD_S) {
         return None;

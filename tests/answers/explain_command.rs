@@ -373,6 +373,9 @@ fn a_short_flight_with_a_hold_out_of_another_vehicle_is_judged_as_a_short_flight
     let foreign = explained(&["--holdout", &path("ap07.tlog")]);
     assert!(foreign["fit"]["holdout"]["other_vehicle"].is_string());
     assert_eq!(names(&foreign), names(&alone));
+    for answer in [&foreign, &alone] {
+        assert!(answer["answer"].to_string().contains("but not surely enough"), "{}", answer["answer"]);
+    }
     assert!(foreign["doubts"].to_string().contains("the flight is short"), "{}", foreign["doubts"]);
 }
 

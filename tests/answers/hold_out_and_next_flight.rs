@@ -142,9 +142,17 @@ fn what_a_slow_flight_cannot_show_makes_no_other_vehicle_of_a_faster_hold_out() 
     let holdout = flown(both, (drag(), None), trajectory(6), (2, 34.0));
     let shown = shown(&found, &vehicles.nominal, &holdout);
     assert!(shown.speed_share > 3.0, "{}", shown.speed_share);
-    let left = shown.weak[0].unwrap().after.value / found.search.after.weighted.sigma[0];
+    // by its own fit
+    let left = shown.weak[0].unwrap().floor.unwrap() / found.search.after.weighted.sigma[0];
     assert!(left > 4.0 * shown.speed_share.powi(2), "{left}, {} times as fast", shown.speed_share);
     assert_eq!(shown.other_vehicle, None);
+
+    // what has another mass is another vehicle, however fast
+    let mut heavier = vehicles.truth.clone();
+    heavier.body.mass_kg *= 1.2;
+    let stranger = flown((&heavier, &vehicles.nominal), (drag(), None), trajectory(6), (3, 34.0));
+    let reason = self::shown(&found, &vehicles.nominal, &stranger).other_vehicle.unwrap().reason;
+    assert!(reason.contains("mass"), "{reason}");
 }
 
 #[test]

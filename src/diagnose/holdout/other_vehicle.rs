@@ -23,9 +23,11 @@ const LEFT_RATIO: f64 = 4.0;
 /// difference of parameters counts only if the flight is predicted worse by it.
 const RESIDUAL_RATIO: f64 = 1.3;
 
-/// Mean speed of the held-out flights, over the airspeed of the flights explained, from which on what is left of their forces tells of no
-/// other vehicle: the air's forces rise with the speed, and a hover shows none of them. Set by judgement.
+/// Ratio of the held-out flights' mean speed to the mean airspeed of the flights explained. From it on, what is left of the forces across the
+/// body tells of no other vehicle: the air's forces rise with the speed, and slow flights do not show them. Set by judgement.
 const FASTER: f64 = 3.0;
+/// Least mean speed of the held-out flights for that, m/s. Set by judgement: hovers stay below.
+const MOVES_M_S: f64 = 0.3;
 
 /// Compares the models with the held-out flights' own values, which come from one linear step at the transferred model. `of_each` is the
 /// model that a flight was predicted by; flights of one model are compared together, those of models of their own one by one.
@@ -86,7 +88,9 @@ pub(super) fn judged(
     // averaged torques leave less than those of each row
     let alike = ready.iter().all(|ready| ready.trace.torques == identified.rows.compares_torques);
     let faster = speed_share(ready, explanation);
-    Ok((all, by_parameters.or_else(|| by_what_is_left(identified, (weak, alike, faster), whose))))
+    let shows_air = settings.same_flight || faster < FASTER || faster * explanation.airspeed_m_s < MOVES_M_S;
+    let left = || by_what_is_left(identified, (weak, alike), (faster, shows_air), whose);
+    Ok((all, by_parameters.or_else(left)))
 }
 
 /// A held-out flight's own fit against the model of a search.
@@ -183,10 +187,11 @@ pub enum Difference {
 }
 
 /// A difference that no parameter of the model explains: the residual of these flights is far larger than that of the
-/// identified ones.
+/// identified ones. They are `faster` by this ratio; whether the identified ones show the air's forces across the body is `shows_air`.
 fn by_what_is_left(
     identified: &Fitted,
-    (weak, torques_alike, faster): (&Weak, bool, f64),
+    (weak, torques_alike): (&Weak, bool),
+    (faster, shows_air): (f64, bool),
     whose: &str,
 ) -> Option<OtherVehicle> {
     // averaged torques leave less than those of each row, and what a flight's own rigid body does not explain tells of no other one
@@ -194,13 +199,13 @@ fn by_what_is_left(
         let explains = |own: &Fitted| !own.rows.compares_torques || own.rigid_body().explains(MOMENTS[axis]);
         weak.own.iter().any(explains)
     };
-    let compared = |channel: &usize| match channel.checked_sub(3).filter(|axis| *axis < 3) {
+    let compared = |channel: &usize| match torque_axis(*channel) {
         Some(axis) => torques_alike && is_told(axis),
-        None => faster < FASTER,
+        None => shows_air || channel % 3 == 2,
     };
     // a flight that turns more leaves more of its torque, a faster one more of the air's force, and one that changes its thrust more of that
     let moves = |channel: usize| {
-        let Some(axis) = channel.checked_sub(3).filter(|axis| *axis < 3) else {
+        let Some(axis) = torque_axis(channel) else {
             let there = weak.own.iter().map(|own| change_of_force(own, channel)).fold(0.0, f64::max);
             let here = change_of_force(identified, channel);
             let livelier = if here > 0.0 { there / here } else { 1.0 };
@@ -222,6 +227,11 @@ fn by_what_is_left(
     );
     let by = Difference::Residual { channel, ratio };
     Some(OtherVehicle { by, reason })
+}
+
+/// The axis of a channel of torques; `None` for forces, whose axis is the remainder by three.
+fn torque_axis(channel: usize) -> Option<usize> {
+    channel.checked_sub(3).filter(|axis| *axis < 3)
 }
 
 /// By how much a force channel changes along the flights: the standard deviation of the specific force that it compares, m/s^2.

@@ -46,10 +46,7 @@ impl Task<'_> {
         if !begins_so || !matches!(shown_on, ValidationData::Flights(_)) {
             return study;
         }
-        let (own_wind, settings) = (study.given.own_wind, study.given.settings.clone());
-        let given = Given { own_load: true, own_wind, ..self.given(flights, settings) };
-        let own = self.evaluated(given, study.as_found().clone(), flights, (held, None, shown_on.clone()));
-        if own.predicts() && own.other_vehicle().is_none() { own } else { study }
+        self.loaded(&study, flights, (held, shown_on)).unwrap_or(study)
     }
 
     /// The same with the load of each hold-out, and its own wind, where the hold-outs are of this vehicle with them.
@@ -59,11 +56,21 @@ impl Task<'_> {
         flights: &Prepared,
         (held, shown_on): (&Prepared, &ValidationData),
     ) -> Option<ExplainStudy> {
-        let (own_wind, explanation) = (study.given.own_wind, study.as_found());
-        let in_own_wind = own_wind.then(|| self.in_own_wind(held, explanation)).flatten();
-        let held = in_own_wind.as_ref().unwrap_or(held);
-        let given = Given { own_wind, ..self.given(flights, study.given.settings.clone()) };
-        let own = self.evaluated(given, explanation.clone(), flights, (held, None, shown_on.clone()));
+        let in_own_wind = || self.in_own_wind(held, study.as_found());
+        let seen = study.given.own_wind.then(in_own_wind).flatten();
+        self.loaded(study, flights, (seen.as_ref().unwrap_or(held), shown_on))
+    }
+
+    /// The model on hold-outs with the load of each; `None` where it does not predict them, or they are of another vehicle.
+    fn loaded(
+        &self,
+        study: &ExplainStudy,
+        flights: &Prepared,
+        (held, shown_on): (&Prepared, &ValidationData),
+    ) -> Option<ExplainStudy> {
+        let (own_wind, settings) = (study.given.own_wind, study.given.settings.clone());
+        let given = Given { own_load: true, own_wind, ..self.given(flights, settings) };
+        let own = self.evaluated(given, study.as_found().clone(), flights, (held, None, shown_on.clone()));
         (own.predicts() && own.other_vehicle().is_none()).then_some(own)
     }
 

@@ -11,19 +11,27 @@ use crate::study::{Stage, StudyError};
 const OF_ANOTHER_VEHICLE: &str = "the hold-out is of another vehicle";
 
 impl Task<'_> {
-    /// Explains the flights as without these hold-outs, which are of another vehicle, and shows the model on them all the same.
-    pub(super) fn explained_without(
+    /// A flight explained as the short one that it is without its hold-outs, which are of another vehicle, and its model on them all the same.
+    /// What they refuted stays refuted, and hold-outs that are of this vehicle by the model without unsure names have tested the first one.
+    pub(super) fn judged_as_short(
         &self,
-        held: &Prepared,
+        (first, notes): (ExplainStudy, Vec<Note>),
         flights: &Prepared,
-        shown_on: ValidationData,
+        (held, shown_on): (&Prepared, ValidationData),
     ) -> Result<(ExplainStudy, Vec<Note>), StudyError> {
+        let told_short = |first| ExplainStudy { short: self.short.clone(), ..first };
+        if !first.withdrawn.is_empty() {
+            return Ok((told_short(first), notes));
+        }
         self.progress.stage(Stage::ExplainingAgain);
         let nothing = ValidationData::Nothing { reason: OF_ANOTHER_VEHICLE.to_owned() };
-        let (found, refused) = self.explained(flights, (&Prepared::default(), None, nothing))?;
-        let (short, withdrawn) = (found.short.clone(), found.withdrawn.clone());
-        let (given, explanation) = found.into_found();
+        let (alone, notes_alone) = self.explained(flights, (&Prepared::default(), None, nothing))?;
+        let short = alone.short.clone();
+        let (given, explanation) = alone.into_found();
         let on_held = self.evaluated(given, explanation, flights, (held, None, shown_on));
-        Ok((ExplainStudy { short, withdrawn, ..on_held }, refused))
+        if on_held.other_vehicle().is_none() {
+            return Ok((told_short(first), notes));
+        }
+        Ok((ExplainStudy { short, ..on_held }, notes_alone))
     }
 }

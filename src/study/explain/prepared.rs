@@ -79,17 +79,17 @@ pub(in crate::study) fn explain_prepared(
         limited,
         alone: &alone,
         short,
-        own_load: false,
         held_airs: OnceCell::new(),
         progress,
     };
     progress.stage(Stage::Explaining);
     let (mut study, mut refused) = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
     // payload and wind of another day make no other vehicle; the names stay as they were found
-    task.own_load = study.refuted.is_none()
-        && study.other_vehicle().is_some()
-        && matches!(shown_on, ValidationData::Flights(_));
-    if task.own_load {
+    let is_foreign = |study: &ExplainStudy| {
+        let other = study.other_vehicle().is_some() && matches!(study.shown_on, ValidationData::Flights(_));
+        other && study.refuted.is_none()
+    };
+    if is_foreign(&study) {
         progress.stage(Stage::Predicting);
         let day = !several && !names_wind(&study);
         let own_winds = if day { with_own_winds(held, asked.vehicle) } else { Vec::new() };
@@ -98,15 +98,11 @@ pub(in crate::study) fn explain_prepared(
             study.tell_winds(&held.inputs, &own_winds);
         }
     }
-    // a hold-out that tells nothing of this vehicle is none: a short flight is judged as one
+    // a hold-out of another vehicle tests no name of a short flight
     let no_part = || flights.signals.iter().all(|signals| split_last_periods(signals).is_none());
-    if study.other_vehicle().is_some()
-        && matches!(shown_on, ValidationData::Flights(_))
-        && !several
-        && no_part()
-    {
-        (task.short, task.own_load) = (Some(Short { usable_s, unsure: Vec::new() }), false);
-        (study, refused) = task.explained_without(held, flights, shown_on)?;
+    if is_foreign(&study) && !several && no_part() {
+        task.short = Some(Short { usable_s, unsure: Vec::new() });
+        (study, refused) = task.judged_as_short((study, refused), flights, (held, shown_on))?;
     }
     study.notes.extend(refused);
     study.tell_winds(&held.inputs, &held_winds_m_s);
@@ -132,9 +128,7 @@ pub(super) struct Task<'a> {
     /// of each flight, where they are several and not alike
     alone: &'a [Vec<Named>],
     /// where one flight is given, no part of it can be held back, and no hold-out is of its vehicle
-    short: Option<Short>,
-    /// hold-outs with a mass of their own
-    own_load: bool,
+    pub(super) short: Option<Short>,
     /// wind of each hold-out, world, m/s, once it was asked for; `None` where they do not tell
     pub(super) held_airs: OnceCell<Option<Vec<Vector3<f64>>>>,
     pub(super) progress: &'a dyn Progress,
@@ -266,7 +260,7 @@ impl Task<'_> {
             has_velocity: flights.signals.iter().any(|one| one.velocity.is_some() && one.attitude.is_some()),
             settings,
             transient_s: self.asked.transient_s,
-            own_load: self.own_load,
+            own_load: false,
             own_wind: false,
         }
     }
