@@ -58,6 +58,7 @@ mod named;
 mod nuisances;
 mod other_forms;
 mod other_law;
+mod overlooked;
 mod own_model;
 mod own_of_flights;
 mod own_wind;

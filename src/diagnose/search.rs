@@ -11,6 +11,7 @@ use super::grid_refinement::between_grid;
 use super::latency::{LatencyFinding, finding_of, fit_latency};
 use super::mounting::mountings;
 use super::other_forms::other_form;
+use super::overlooked::overlooked;
 use super::pace::Pace;
 use super::price::Price;
 use super::pruning::{UNCHANGED_S, prune};
@@ -70,6 +71,11 @@ pub fn search(
             }
             _ if settled == SETTLINGS || steps.is_empty() => break,
             _ => {
+                if let Some(step) = overlooked(flights, &mut after, (&steps, price), (gates, &refused))? {
+                    step.emit();
+                    steps.push(step);
+                    continue;
+                }
                 settled += 1;
                 let step = exchanged(flights, &mut after, (&steps, price), (gates, signatures, &refused))?;
                 let is_exchanged = step.is_some();
