@@ -3,8 +3,8 @@
 use super::agreement::Agreement;
 use super::bootstrap::{Compared, Interval};
 use super::closed_loop::ClosedLoop;
+use super::difference::{Difference, OtherVehicle};
 use super::open_loop::OpenLoop;
-use super::other_vehicle::{Difference, OtherVehicle};
 use crate::note::Note;
 
 /// The fit on flights that were not used.
