@@ -11,8 +11,8 @@ use crate::study::{Stage, StudyError};
 const OF_ANOTHER_VEHICLE: &str = "the hold-out is of another vehicle";
 
 impl Task<'_> {
-    /// A flight explained as the short one that it is without its hold-outs, which are of another vehicle, and its model on them all the same.
-    /// What they refuted stays refuted, and hold-outs that are of this vehicle by the model without unsure names have tested the first one.
+    /// Explains a flight as a short one, because its hold-outs are of another vehicle, and shows the model on them all the same. The `first`
+    /// study stays where hold-outs refuted or took back a name of it, and where they are of this vehicle by the other model.
     pub(super) fn judged_as_short(
         &self,
         (first, notes): (ExplainStudy, Vec<Note>),
@@ -20,7 +20,7 @@ impl Task<'_> {
         (held, shown_on): (&Prepared, ValidationData),
     ) -> Result<(ExplainStudy, Vec<Note>), StudyError> {
         let told_short = |first| ExplainStudy { short: self.short.clone(), ..first };
-        if !first.withdrawn.is_empty() {
+        if first.refuted.is_some() || !first.withdrawn.is_empty() {
             return Ok((told_short(first), notes));
         }
         self.progress.stage(Stage::ExplainingAgain);

@@ -86,10 +86,9 @@ pub(in crate::study) fn explain_prepared(
     let (mut study, mut refused) = task.explained(flights, (held, back.as_ref(), shown_on.clone()))?;
     // payload and wind of another day make no other vehicle; the names stay as they were found
     let is_foreign = |study: &ExplainStudy| {
-        let other = study.other_vehicle().is_some() && matches!(study.shown_on, ValidationData::Flights(_));
-        other && study.refuted.is_none()
+        study.other_vehicle().is_some() && matches!(study.shown_on, ValidationData::Flights(_))
     };
-    if is_foreign(&study) {
+    if study.refuted.is_none() && is_foreign(&study) {
         progress.stage(Stage::Predicting);
         let day = !several && !names_wind(&study);
         let own_winds = if day { with_own_winds(held, asked.vehicle) } else { Vec::new() };
