@@ -152,10 +152,8 @@ fn settled(base: &Base, told: &Reconstructed) -> Option<Base> {
         tracing::debug!(law = law.term.id(), z = law.z, law.possible, is_there, is_told, "law of the drag");
         match (is_there, is_told) {
             (true, false) => out.effects.retain(|term| !term.is(law.term.signature)),
-            (false, true) => {
-                let free = (law.term.signature.refinement.freed)(law.term);
-                out.effects.push(EffectTerm { free, ..law.term.clone() });
-            }
+            // in the form that the flight path shows best
+            (false, true) => out.effects.push(EffectTerm { free: Vec::new(), ..law.term.clone() }),
             _ => {}
         }
         for term in out.effects.iter_mut().filter(|term| term.is(law.term.signature)) {

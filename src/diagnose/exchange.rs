@@ -8,7 +8,7 @@ use super::candidates::{Candidate, candidates};
 use super::fit::{Fitted, Newton, fit};
 use super::gates::{Gates, NAME_Z, passes};
 use super::price::Price;
-use super::refinement::{fitted_strength, weakest, with_first_columns, without};
+use super::refinement::{fitted_strength, weakest, without};
 use super::score::test_all;
 use super::signature::Signature;
 use super::signatures::signature_of;
@@ -89,7 +89,7 @@ fn rivals(after: &Fitted, steps: &[Step], (id, refused): (&str, &[&'static str])
 fn without_superfluous(flights: &[Trace], mut fitted: Fitted) -> Result<Fitted, PhysicsError> {
     loop {
         let strengths =
-            with_first_columns(&fitted).map(|(present, first)| fitted_strength(&fitted, present, first));
+            fitted.with_first_columns().map(|(present, first)| fitted_strength(&fitted, present, first));
         let Some((_, place)) = weakest(strengths.enumerate(), NAME_Z) else { return Ok(fitted) };
         fitted = fit(flights, without(&fitted.base, |of| of == place), Newton::Held)?;
     }

@@ -353,7 +353,7 @@ fn names(traces: &[Trace], found: &Search) -> (Vec<Named>, Vec<Slight>) {
         };
         found_effects.push(FoundEffect { effect, place, columns: first..index });
     }
-    named_and_slight((fitted, &found.by_other_law), found_effects)
+    named_and_slight((fitted, &found.by_other_law), found_effects, !found.paths.is_empty())
 }
 
 fn strength(step: &Step) -> Strength {
@@ -367,13 +367,12 @@ fn confusable(traces: &[Trace], found: &Search, place: usize, step: &Step) -> Ve
     let rivals: Vec<&Tested> = step.rivals.iter().filter(close).collect();
     let mut all = confusable_with(traces, &found.after, place, (&found.last, &rivals));
     let terms = &found.after.base.effects;
-    // along the rotor axis it is the same term as that of another effect, which the model has along the others only
-    let whole = terms[place].signature.role.axial_part_of.map(|whole| whole.id());
-    let lacks_axis = |term: &&EffectTerm| {
-        Some(term.id()) == whole && term.signature.role.axial.is_some_and(|slot| !term.free.contains(&slot))
-    };
-    if let Some(whole) =
-        terms.iter().find(lacks_axis).filter(|whole| all.iter().all(|of| of.id != whole.id()))
+    // along the rotor axis it is the same term as that of another effect, which the model has along the others only, or not at all
+    let has_axis = |of: &EffectTerm| of.signature.role.axial.is_some_and(|slot| of.free.contains(&slot));
+    let is_new = |id: &str| all.iter().all(|of| of.id != id);
+    if let Some(whole) = terms[place].signature.role.axial_part_of
+        && !terms.iter().any(|of| of.id() == whole.id() && has_axis(of))
+        && is_new(whole.id())
     {
         all.insert(0, Confusable { id: whole.id(), distinguishability: Some(0.0) });
     }

@@ -5,6 +5,7 @@ use super::channels::{AXES, CHANNELS, Nuisance, NuisanceColumn};
 use super::evidence::Weighted;
 use super::priors::Alike;
 use super::rows::Rows;
+use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::estimate::{Estimated, INERTIA_ENTRIES, THETA, ThetaCovariance, theta_of};
 use crate::physics::PhysicsError;
@@ -33,6 +34,15 @@ pub struct Fitted {
 }
 
 impl Fitted {
+    /// Each effect with the column of its first free value.
+    pub(super) fn with_first_columns(&self) -> impl Iterator<Item = (&EffectTerm, usize)> {
+        self.base.effects.iter().scan(self.rows.nuisances.len(), |next, present| {
+            let first = *next;
+            *next += present.free.len();
+            Some((present, first))
+        })
+    }
+
     /// Mass and inertia with their covariance; NaN where no row bears on a parameter.
     #[must_use]
     pub fn rigid_body(&self) -> Estimated {

@@ -2,7 +2,7 @@
 //! measured motion and the commands share.
 
 use crate::signals::{Reference, central_difference};
-use nalgebra::{DMatrix, Rotation3};
+use nalgebra::{DMatrix, Rotation3, Vector3};
 
 /// Delays at which the trajectory serves, s: controllers follow it within these.
 const LATE_S: [f64; 3] = [0.0, 0.15, 0.3];
@@ -35,18 +35,28 @@ pub(super) fn instruments(
         .collect()
     };
     let turning = central_difference(&reference.yaw, step_s);
-    [turned(1), turned(0), turning].map(|series| {
-        let columns: Vec<Vec<f64>> = LATE_S
-            .iter()
-            .flat_map(|late_s| {
-                let late = instants(*late_s, step_s);
-                let behind: Vec<f64> =
-                    (0..series.len()).map(|index| series[index.saturating_sub(late)]).collect();
-                (0..ORDERS).map(|order| weak(order, &behind)).collect::<Vec<_>>()
-            })
-            .collect();
-        directions(&columns)
-    })
+    [turned(1), turned(0), turning].map(|series| directions(&late(&series, step_s, &weak)))
+}
+
+/// A series at each of the delays, with its derivatives.
+fn late(series: &[f64], step_s: f64, weak: impl Fn(usize, &[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
+    let at = |late_s: &f64| {
+        let late = instants(*late_s, step_s);
+        let behind: Vec<f64> = (0..series.len()).map(|index| series[index.saturating_sub(late)]).collect();
+        (0..ORDERS).map(|order| weak(order, &behind)).collect::<Vec<_>>()
+    };
+    LATE_S.iter().flat_map(at).collect()
+}
+
+/// Directions of the instruments of the thrust: it carries what gravity and the commanded acceleration need together.
+pub(super) fn of_lift(
+    reference: &Reference,
+    (step_s, gravity_m_s2): (f64, f64),
+    weak: impl Fn(usize, &[f64]) -> Vec<f64>,
+) -> Option<DMatrix<f64>> {
+    let lift = |world: &Vector3<f64>| (world + Vector3::z() * gravity_m_s2).norm();
+    let series: Vec<f64> = reference.acceleration.iter().map(lift).collect();
+    directions(&late(&series, step_s, weak))
 }
 
 /// Number of grid steps nearest to a delay.

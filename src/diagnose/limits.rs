@@ -50,7 +50,7 @@ pub(super) fn limits(traces: &[Trace], last: &[Tested], fitted: &Fitted) -> Vec<
                 let over = if naming.by_height { heights_flown_m(traces) } else { 1.0 };
                 let of_size = naming.least_of_mass * vehicle.body.mass_kg / over
                     + naming.least_of_arm * fitted.base.size.arm_m;
-                let alone = naming.ordinary_alone.max(least_weakness(traces, part.signature));
+                let alone = naming.ordinary_alone.max(least_weakness(traces, &fitted.base, part.signature));
                 let of_size = if part.is_amount(free) { of_size.max(alone) } else { 0.0 };
                 let least = naming.ordinary.unwrap_or(naming.least).max(of_size);
                 let certain = Gates::default().deviate(part.signature);

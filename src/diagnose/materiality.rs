@@ -124,7 +124,12 @@ impl Materiality {
     /// Whether it is more than a trace.
     #[must_use]
     pub fn matters(&self) -> bool {
-        self.over(&SHOWN) >= 1.0 && self.shows() || self.over(&PLAIN) >= 1.0 || self.misfit >= MISFIT
+        self.is_more_than_noise() && self.shows() || self.over(&PLAIN) >= 1.0 || self.misfit >= MISFIT
+    }
+
+    /// Whether it matters where it is told apart from noise.
+    pub(super) fn is_more_than_noise(&self) -> bool {
+        self.over(&SHOWN) >= 1.0
     }
 
     /// Whether it shows in the misfit.
@@ -147,6 +152,8 @@ mod tests {
         let of = |force: f64, torque: f64, misfit: f64| Materiality { force, torque, misfit }.matters();
         assert!(of(0.011, 0.0, 0.001) && of(0.0, 0.21, 0.001) && of(0.0001, 0.0, 0.25));
         assert!(of(0.006, 0.0, 0.05) && !of(0.006, 0.0, 0.03) && !of(0.004, 0.0, 0.1));
+        let more = |force: f64| Materiality { force, torque: 0.0, misfit: 0.0 }.is_more_than_noise();
+        assert!(more(0.006) && !more(0.004));
         assert!(of(0.0, 0.05, 0.05) && !of(0.0, 0.15, 0.03) && !of(0.0, 0.03, 0.1));
     }
 

@@ -4,6 +4,7 @@ mod about_z;
 mod acceptance;
 mod averaged;
 mod base;
+mod bend;
 mod by_flight;
 mod by_part;
 mod candidates;

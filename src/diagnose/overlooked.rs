@@ -10,7 +10,7 @@ use super::channels::{CHANNELS, Channels};
 use super::fit::Fitted;
 use super::gates::{Gates, NAME_Z};
 use super::price::Price;
-use super::refinement::{fitted_strength, with_first_columns};
+use super::refinement::fitted_strength;
 use super::score::{columns_of, is_present};
 use super::signatures::signature_of;
 use super::tested::{Step, Tested};
@@ -44,7 +44,8 @@ pub(super) fn overlooked(
         }
         let Some((taken, with)) = accepted(flights, after, rival.clone())? else { continue };
         let id = taken.candidate.id;
-        let is_certain = with_first_columns(&with)
+        let is_certain = with
+            .with_first_columns()
             .filter(|(term, _)| term.id() == id)
             .all(|(term, first)| fitted_strength(&with, term, first).z > NAME_Z);
         let least = best.as_ref().map_or_else(|| price.cost(after), |(_, best)| price.cost(best));

@@ -2,6 +2,7 @@
 //! not bias (flight path reconstruction, instruments).
 
 use super::base::Base;
+use super::bend::{Bend, enter_bend};
 use super::climb_alone::is_of_climb;
 use super::drag_law::settle_laws;
 use super::feedback_noise::is_fed_back;
@@ -49,6 +50,7 @@ pub(super) fn refine(
     (found, refused, pace): (&mut Search, &[&'static str], &mut Pace<'_>),
 ) -> Result<(), PhysicsError> {
     let trim = Trim::of(flights, vehicle);
+    enter_bend(traces, (found, refused))?;
     leave_out_unnamed((traces, (flights, vehicle)), &trim, (found, false))?;
     let mut start =
         tracing::info_span!("laws").in_scope(|| settle_laws(flights, traces, (found, refused)))?;
@@ -114,7 +116,7 @@ fn estimate_sizes(
 /// The place of the effect that is nearest to nothing, where that is nearer than the usual two standard errors with what is left over in
 /// them. A lag or delay has its latency, which may be certain while its kind is not.
 fn uncertain(fitted: &Fitted) -> Option<usize> {
-    let each = with_first_columns(fitted).enumerate();
+    let each = fitted.with_first_columns().enumerate();
     let judged = each.filter(|(_, (present, _))| present.signature.role.latency.is_none());
     let strengths = judged.map(|(place, (present, first))| (place, fitted_strength(fitted, present, first)));
     weakest(strengths, CERTAIN).map(|(_, place)| place)
@@ -129,15 +131,6 @@ pub(super) fn weakest(
     told.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Each effect of a fit with the column of its first free value.
-pub(super) fn with_first_columns(fitted: &Fitted) -> impl Iterator<Item = (&EffectTerm, usize)> {
-    fitted.base.effects.iter().scan(fitted.rows.nuisances.len(), |next, present| {
-        let first = *next;
-        *next += present.free.len();
-        Some((present, first))
-    })
-}
-
 /// Removes effects without a name from the model. Returns whether there were any. Those that the flights could not have shown leave first:
 /// they take from the others, which are then judged without them.
 fn leave_out_unnamed(
@@ -146,11 +139,13 @@ fn leave_out_unnamed(
     (found, by_weak_form): (&mut Search, bool),
 ) -> Result<bool, PhysicsError> {
     let fitted = &found.after;
-    let turning: Vec<&'static str> = with_first_columns(fitted)
+    let turning: Vec<&'static str> = fitted
+        .with_first_columns()
         .filter(|(present, first)| by_weak_form && only_turns(fitted, present, *first))
         .map(|(present, _)| present.id())
         .collect();
-    let beyond: Vec<bool> = with_first_columns(fitted)
+    let beyond: Vec<bool> = fitted
+        .with_first_columns()
         .map(|(present, first)| {
             let beyond = is_beyond_showing(fitted, present, first);
             if beyond {
@@ -194,7 +189,7 @@ fn unnamed(
         let refuted = felt.as_ref().is_some_and(|felt| felt.refutes(fitted, present, first));
         // a bend acts on the commands' own noise, and that is in the torques
         let bent = present.signature.role.bends_thrust.is_some() && is_fed_back(traces);
-        let unseen = bent && (!shows_in_forces(fitted, present, first) || is_noise(present, traces, fitted));
+        let unseen = bent && !is_bent((present, first), traces, fitted);
         let unseen = unseen || turning.contains(&present.id());
         let unbalanced = is_refuted(given, fitted, present, first);
         let ordinary = is_ordinary(present, &fitted.base, traces);
@@ -206,7 +201,7 @@ fn unnamed(
         }
         is_unnamed
     };
-    let mut leaves: Vec<bool> = with_first_columns(fitted).map(is_unnamed).collect();
+    let mut leaves: Vec<bool> = fitted.with_first_columns().map(is_unnamed).collect();
     let effects = &fitted.base.effects;
     if let Some(place) = trim.refuted(&fitted.base)? {
         tracing::info!(effect = effects[place].id(), "hover shows no such balance");
@@ -214,7 +209,7 @@ fn unnamed(
     }
     // two that explain much of each other are both uncertain: one leaves, and the other is judged again
     let strengths =
-        with_first_columns(fitted).map(|(present, first)| fitted_strength(fitted, present, first));
+        fitted.with_first_columns().map(|(present, first)| fitted_strength(fitted, present, first));
     if let Some((z, place)) = weakest(strengths.enumerate(), STAYS) {
         tracing::info!(effect = effects[place].id(), z, "effect is not certain beside the others");
         leaves[place] = true;
@@ -225,6 +220,16 @@ fn unnamed(
 /// Whether an effect is a wind that only the torques show: its moment is that of a centre of mass that is off.
 fn only_turns(fitted: &Fitted, present: &EffectTerm, first: usize) -> bool {
     present.signature.role.wind.is_some() && !shows_in_forces(fitted, present, first)
+}
+
+/// Whether the forces show a bent thrust curve where the commands answer noise: those that go with the commanded trajectory, or those of all
+/// commands, unless the former contradict.
+fn is_bent((bent, first): (&EffectTerm, usize), traces: &[Trace], fitted: &Fitted) -> bool {
+    let by_all = || shows_in_forces(fitted, bent, first) && !is_noise(bent, traces, fitted);
+    match Bend::by_instruments(traces, fitted, bent) {
+        Some(told) => told.is_shown(STAYS) || told.agrees(bent.values[0], STAYS) && by_all(),
+        None => by_all(),
+    }
 }
 
 /// Whether noise alone may have bent a thrust curve: it lowers the slope, and never raises it.
@@ -247,7 +252,10 @@ fn is_ordinary(term: &EffectTerm, base: &Base, traces: &[Trace]) -> bool {
     let beside_sag = if sags && term.signature.role.moment.is_some() { BESIDE_SAG } else { 0.0 };
     let away =
         || term.signature.amounts.iter().map(|&slot| term.from_nothing(slot).abs()).fold(0.0, f64::max);
-    away() < least_weakness(traces, term.signature)
+    // what the scatter of ordinary rotors makes is that of the weak one
+    let beside_rotor = || base.effects.iter().any(|of| of.signature.role.which.is_some());
+    term.signature.role.of_the_loading && term.is_of_every_vehicle(&base.size) && beside_rotor()
+        || away() < least_weakness(traces, base, term.signature)
         || term.size() * over < naming.least_of_mass.max(beside_sag) * base.vehicle.body.mass_kg
         || naming.ordinary.is_some_and(|ordinary| term.size() < ordinary)
         || naming.least > 0.0 && of_all() < naming.least
@@ -318,6 +326,8 @@ fn part(of: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
+    use crate::diagnose::rows::tests::vehicle;
+    use crate::diagnose::signatures::signature_of;
 
     #[test]
     fn with_a_column_held_it_is_the_sandwich_of_the_smaller_regression() {
@@ -332,5 +342,21 @@ mod tests {
         let found = reduced(&(x.transpose() * &x), &sandwich(&x), &[0, 2], &[1]).unwrap();
         let smaller = DMatrix::from_fn(4, 2, |i, j| x[(i, 2 * j)]);
         assert!((found - sandwich(&smaller)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn what_the_scatter_of_rotors_makes_leaves_beside_a_weak_rotor() {
+        let mut base = Base::rigid(&vehicle());
+        let [mut rotor, mut load] = ["weak_rotor", "com_offset"].map(|id| signature_of(id).unwrap().whole());
+        rotor.values = vec![1.0, 0.9];
+        let leaves = |base: &Base, term: &EffectTerm| is_ordinary(term, base, &[]);
+        for (share, is_left) in [(0.005, true), (0.1, false)] {
+            load.values[0] = share * base.size.arm_m;
+            base.effects = vec![load.clone()];
+            // alone it stays, as a trace or with a name
+            assert!(!leaves(&base, &load));
+            base.effects.push(rotor.clone());
+            assert_eq!(leaves(&base, &load), is_left);
+        }
     }
 }

@@ -70,11 +70,12 @@ pub(super) fn is_refuted(
     is_loaded_aside(&fitted.base) && rows.compares_torques && !told()
 }
 
-/// Least weakness of a rotor (-) that gets a name by averaged torques: the standard deviation of an ordinary rotor's. 0 where torques are
-/// compared row by row. Set by judgement: averages tell a rotor and a load beside the centre less surely apart.
-pub(super) fn least_weakness(traces: &[Trace], signature: &Signature) -> f64 {
+/// Least weakness of a rotor (-) that gets a name by averaged torques, or beside a centre of mass that is off: the standard deviation of an
+/// ordinary rotor's. 0 elsewhere. Set by judgement: there a rotor and a load beside the centre are told less surely apart.
+pub(super) fn least_weakness(traces: &[Trace], base: &Base, signature: &Signature) -> f64 {
     let are_averaged = !traces.iter().any(|trace| trace.torques);
-    if signature.role.which.is_some() && are_averaged { SCATTER } else { 0.0 }
+    let is_unsure = are_averaged || is_loaded_aside(base);
+    if signature.role.which.is_some() && is_unsure { SCATTER } else { 0.0 }
 }
 
 /// Standard deviation (-) of what an axis shows of a rotor less what the others show, by the scatter of the other rotors. `information` is
@@ -145,6 +146,7 @@ mod tests {
     use super::*;
     use crate::diagnose::explain::{ExplainSettings, explain};
     use crate::diagnose::made_flights::flown;
+    use crate::diagnose::signatures::signature_of;
     use crate::physics::ActiveEffect;
     use crate::physics::effects::by_id;
     use crate::simulate::{RandomTrajectory, random_vehicle};
@@ -187,6 +189,23 @@ mod tests {
         let (is_named, limit) = named_by_averages(0.012);
         assert!(!is_named && limit.is_some_and(|limit| limit >= SCATTER), "{is_named} {limit:?}");
         assert!(named_by_averages(0.1).0);
+    }
+
+    #[test]
+    fn a_rotor_within_the_scatter_of_rotors_gets_no_name_beside_a_centre_of_mass_that_is_off() {
+        let (signals, vehicle) = flown(23, &RandomTrajectory::default(), |_, _| {});
+        let flights = [Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap()];
+        let [rotor, load] = ["weak_rotor", "com_offset"].map(|id| signature_of(id).unwrap());
+        let mut base = Base::anchored(&vehicle);
+        let least = |base: &Base| [rotor, load].map(|of| least_weakness(&flights, base, of));
+        assert_eq!(least(&base), [0.0; 2]);
+        // 0.5 % of the arm is ordinary, 10 % are not
+        for (share, expected) in [(0.005, 0.0), (0.1, SCATTER)] {
+            let mut term = load.whole();
+            term.values[0] = share * base.size.arm_m;
+            base.effects = vec![term];
+            assert_eq!(least(&base), [expected, 0.0]);
+        }
     }
 
     #[test]

@@ -32,10 +32,11 @@ pub(super) struct FoundEffect {
 pub(super) const BEYOND: f64 = 2.0;
 
 /// Those that matter, and the others. What is one effect to a reader is judged as one; and where what each of several can take over
-/// of the others matters together, the greatest of them is named.
+/// of the others matters together, the greatest of them is named. `by_path`: the forces' sizes are those of the reconstructed flight path.
 pub(super) fn named_and_slight(
     (fitted, by_other_law): (&Fitted, &[f64]),
     candidates: Vec<FoundEffect>,
+    by_path: bool,
 ) -> (Vec<Named>, Vec<Slight>) {
     let is_certain = |term: &EffectTerm, first: usize| is_certain((fitted, by_other_law), term, first);
     let term = |of: &FoundEffect| &fitted.base.effects[of.place];
@@ -61,7 +62,7 @@ pub(super) fn named_and_slight(
         .iter()
         .zip(&alone)
         .map(|(of, materiality)| {
-            is_certain(term(of), of.columns.start) && is_material(fitted, of, *materiality)
+            is_certain(term(of), of.columns.start) && is_material((fitted, by_path), of, *materiality)
         })
         .collect();
     loop {
@@ -165,8 +166,9 @@ pub(super) fn stated(fitted: &Fitted, term: &EffectTerm, first: usize) -> Vec<Na
     (0..term.values.len()).filter_map(of_slot).collect()
 }
 
-/// Whether an effect matters by itself. One whose own part is not known (`None`) does.
-fn is_material(fitted: &Fitted, of: &FoundEffect, own: Option<Materiality>) -> bool {
+/// Whether an effect matters by itself. One whose own part is not known (`None`) does. A law of the drag beside another one need not show in
+/// the misfit where the flight path tells it (`by_path`): there the error of the autopilot's velocity hides nothing.
+fn is_material((fitted, by_path): (&Fitted, bool), of: &FoundEffect, own: Option<Materiality>) -> bool {
     let term = &fitted.base.effects[of.place];
     if term.is_of_every_vehicle(&fitted.base.size) {
         return false;
@@ -179,7 +181,9 @@ fn is_material(fitted: &Fitted, of: &FoundEffect, own: Option<Materiality>) -> b
     if term.is_of_sensors() {
         is_beyond_ordinary(fitted, term, of.columns.start) && own.is_none_or(|of| of.shows())
     } else {
-        own.is_none_or(|of| of.matters())
+        let beside_another = |other: &EffectTerm| other.signature.is_drag() && !other.is(term.signature);
+        let is_told = by_path && term.signature.is_drag() && fitted.base.effects.iter().any(beside_another);
+        own.is_none_or(|of| of.matters() || is_told && of.is_more_than_noise())
     }
 }
 

@@ -1,7 +1,7 @@
 //! One flight for the weak form: measured states, and the rotor thrusts in two versions, from commands and from the
 //! motion.
 
-use super::instruments::{Instruments, instruments};
+use super::instruments::{Instruments, instruments, of_lift};
 use super::momentum::{Momentum, MomentumRows, WeakMotion};
 use super::rotors::{OfRotors, RotorMotion, felt, filtered};
 use super::timing::{command_period_s, inertial_late};
@@ -82,6 +82,8 @@ pub struct Trace {
     pub velocity_error_m_s: Option<f64>,
     /// of the torques, if the commanded trajectory was recorded
     pub(super) instruments: Option<Arc<Instruments>>,
+    /// the same for the thrust; `None` where nothing is asked of it
+    pub(super) lift_instruments: Option<Arc<DMatrix<f64>>>,
     /// what every model of this motion is compared with, once it was asked for
     weak_motion: Arc<OnceLock<WeakMotion>>,
 }
@@ -154,6 +156,7 @@ impl Trace {
             own: signals.own.clone(),
             velocity_error_m_s: velocity_error_m_s(signals),
             instruments: None,
+            lift_instruments: None,
             weak_motion: Arc::default(),
         };
         trace.smooth()?;
@@ -161,6 +164,10 @@ impl Trace {
         trace.instruments = reference
             .map(|reference| instruments(reference, grid.step_s, |order, series| trace.weak(order, series)))
             .map(Arc::new);
+        let of_lift = |reference| {
+            of_lift(reference, (grid.step_s, trace.gravity_m_s2), |order, series| trace.weak(order, series))
+        };
+        trace.lift_instruments = reference.and_then(of_lift).map(Arc::new);
         Ok(trace)
     }
 

@@ -12,9 +12,10 @@ use super::traces::traces_of;
 use super::validation_data::ValidationData;
 use crate::diagnose::holdout::split_last_periods;
 use crate::diagnose::holdout::{Agreement, HoldoutSettings};
+use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{
-    ExplainError, ExplainSettings, Explanation, GyroscopicShare, Named, TorqueLaw, Verdict,
+    ExplainError, ExplainSettings, Explanation, GyroscopicShare, Named, Need, TorqueLaw, Verdict,
 };
 use crate::estimate::{
     Contradiction, NAMES, contradicted, contradicting_flights, contradicts_file, moved_by_guessed_curve,
@@ -363,10 +364,9 @@ fn names_wind(study: &ExplainStudy) -> bool {
     terms.any(|term| term.signature.role.of_the_day)
 }
 
-/// An effect that begins at an instant is among the names.
+/// An effect that begins at an instant, or that grows over the flight as the battery empties, is among the names.
 fn names_a_change(study: &ExplainStudy) -> bool {
-    study
-        .effects
-        .iter()
-        .any(|named| signature_of(named.id).is_some_and(|signature| signature.role.moment.is_some()))
+    let changes =
+        |signature: &Signature| signature.role.moment.is_some() || signature.needs.contains(&Need::Voltage);
+    study.effects.iter().any(|named| signature_of(named.id).is_some_and(changes))
 }

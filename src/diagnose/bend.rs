@@ -1,0 +1,216 @@
+//! A bent thrust curve, as the forces tell it that go with the commanded trajectory (two-stage least squares).
+//!
+//! Commands that react to noise hardly move the vehicle. By least squares the thrust then seems to follow its commands less than it does,
+//! and a curve that is bent upwards seems straight. What of the commands goes with the commanded trajectory has no such noise in it.
+
+use super::candidates::candidates;
+use super::channels::CHANNELS;
+use super::columns::Columns;
+use super::evidence::weighted;
+use super::feedback_noise::is_fed_back;
+use super::fit::{Fitted, Newton, fit};
+use super::gates::NAME_Z;
+use super::signature::EffectTerm;
+use super::signatures::ALL;
+use super::tested::Search;
+use super::trace::Trace;
+use crate::physics::PhysicsError;
+use nalgebra::{DMatrix, DVector};
+
+/// Standard errors that a bend needs which the search missed: one more than a name needs, and one as any bend. The search had its say.
+const ENTERS: f64 = NAME_Z + 2.0;
+/// Channel of the force along body z that is measured first.
+const ALONG_Z: usize = 2;
+
+/// A curvature with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Bend {
+    /// -, as `ThrustCurve` has it
+    pub(super) curvature: f64,
+    /// the same, standard error
+    pub(super) std: f64,
+}
+
+impl Bend {
+    /// The curvature of this effect, in a fit with or without it, by the forces along body z and instruments; drag along z is
+    /// estimated with it. The mass follows from the mean thrust, which is left out. `None` where nothing is asked of the thrust.
+    pub(super) fn by_instruments(flights: &[Trace], fitted: &Fitted, bend: &EffectTerm) -> Option<Self> {
+        let columns = columns(flights, fitted, bend)?;
+        let (count, all) = (columns.len(), CHANNELS * fitted.rows.len());
+        let (mut asked, mut given) = (DMatrix::zeros(all, count), DMatrix::zeros(all, count));
+        let residual = weighted(&fitted.rows.residual, &fitted.weighted.sigma);
+        let mut y = DVector::zeros(all);
+        let mut from = ALONG_Z * fitted.rows.len();
+        for trace in flights {
+            let rows = trace.rows();
+            if let Some(basis) = trace.lift_instruments.as_deref() {
+                let mut own = DMatrix::from_fn(rows, count, |row, column| columns[column][from + row]);
+                for mut column in own.column_iter_mut() {
+                    let mean = column.mean();
+                    column.add_scalar_mut(-mean);
+                }
+                let along = basis * basis.tr_mul(&own);
+                asked.view_mut((from, 0), (rows, count)).copy_from(&along);
+                given.view_mut((from, 0), (rows, count)).copy_from(&own);
+                let part = residual.rows(from, rows);
+                y.rows_mut(from, rows).copy_from(&part.add_scalar(-part.mean()));
+            }
+            from += rows;
+        }
+        let normal = asked.tr_mul(&asked);
+        let scale = normal.diagonal().map(f64::sqrt);
+        if scale.iter().any(|scale| *scale <= 0.0) {
+            return None;
+        }
+        let scaled = DMatrix::from_fn(count, count, |i, j| normal[(i, j)] / (scale[i] * scale[j]));
+        let inverse = scaled.cholesky()?.inverse();
+        let bread = DMatrix::from_fn(count, count, |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
+        let moved = &bread * asked.tr_mul(&y);
+        let left = &y - &given * &moved;
+        let tested = Columns::of(&asked, fitted.rows.len());
+        let covariance = fitted.weighted.sandwich(&bread, &tested, &left, &DMatrix::zeros(count, count));
+        let (curvature, std) = (bend.values[0] + moved[0], covariance[(0, 0)].sqrt());
+        tracing::debug!(curvature, std, by_fit = bend.values[0], "bend by instruments");
+        (std > 0.0).then_some(Self { curvature, std })
+    }
+
+    /// Whether it is this many standard errors from none.
+    pub(super) fn is_shown(&self, least: f64) -> bool {
+        self.curvature.abs() > least * self.std
+    }
+
+    /// Whether a curvature of the model is within this many standard errors.
+    pub(super) fn agrees(&self, curvature: f64, most: f64) -> bool {
+        (curvature - self.curvature).abs() < most * self.std
+    }
+}
+
+/// Takes a bent thrust curve into the model that the search missed, where the commands answer noise and instruments show it. One that is
+/// `refused` does not enter.
+///
+/// # Errors
+/// [`PhysicsError`] where the vehicle is not physical.
+pub(super) fn enter_bend(
+    traces: &[Trace],
+    (found, refused): (&mut Search, &[&'static str]),
+) -> Result<(), PhysicsError> {
+    let bends = |term: &EffectTerm| term.signature.role.bends_thrust.is_some();
+    let base = &found.after.base;
+    if !is_fed_back(traces) || base.effects.iter().any(bends) {
+        return Ok(());
+    }
+    let open = |part: &EffectTerm| bends(part) && !refused.contains(&part.id());
+    let candidates = candidates(&base.vehicle, traces, ALL);
+    let bend = candidates.iter().find_map(|candidate| match candidate.parts.as_slice() {
+        [part] if open(part) => Some(part),
+        _ => None,
+    });
+    let Some(bend) = bend else { return Ok(()) };
+    let Some(told) = Bend::by_instruments(traces, &found.after, bend) else { return Ok(()) };
+    let least = bend.signature.naming.ordinary.unwrap_or(0.0);
+    if !told.is_shown(ENTERS) || told.curvature.abs() < least {
+        return Ok(());
+    }
+    tracing::info!(told.curvature, told.std, "instruments show a bent thrust curve");
+    let mut base = base.clone();
+    let mut bend = bend.clone();
+    bend.values[0] = bend.possible(0, told.curvature, &base.size);
+    base.effects.push(bend);
+    found.after = fit(traces, base, Newton::Held)?;
+    found.last.retain(|tested| !tested.candidate.parts.iter().any(bends));
+    Ok(())
+}
+
+/// The weighted columns of the bend and of what acts along body z in the model; `None` where the model does not allow the bend's.
+fn columns(flights: &[Trace], fitted: &Fitted, bend: &EffectTerm) -> Option<Vec<DVector<f64>>> {
+    let rows = &fitted.rows;
+    let present = |first: usize| &rows.effects[first - rows.nuisances.len()];
+    let own = fitted.with_first_columns().find(|(term, _)| term.is(bend.signature));
+    let of_bend = match own {
+        Some((_, first)) => present(first).clone(),
+        None => rows.columns_of(flights, &fitted.base, bend).ok()?.into_iter().next()?,
+    };
+    let along_z = fitted.with_first_columns().flat_map(|(term, first)| {
+        let role = &term.signature.role;
+        let acts = move |slot: &usize| role.axial == Some(*slot) || role.vertical == Some(*slot);
+        let slots = term.free.iter().enumerate().filter(move |(_, slot)| acts(slot));
+        slots.map(move |(index, _)| present(first + index))
+    });
+    let all = std::iter::once(&of_bend).chain(along_z);
+    Some(all.map(|column| weighted(column, &fitted.weighted.sigma)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+    use super::*;
+    use crate::diagnose::ExplainSettings;
+    use crate::diagnose::base::Base;
+    use crate::diagnose::gates::Gates;
+    use crate::diagnose::made_flights::flown;
+    use crate::diagnose::pace::Pace;
+    use crate::diagnose::search::search;
+    use crate::physics::ActiveEffect;
+    use crate::physics::effects::by_id;
+    use crate::signals::Signals;
+    use crate::simulate::RandomTrajectory;
+    use crate::vehicle::Vehicle;
+
+    /// Names the thrust curve.
+    const CURVE: &str = "thrust_curve";
+
+    /// A flight with this curvature concealed. Its gyroscopes count as noisy, so that the bend is judged by instruments.
+    fn bent(curvature: f64) -> (Trace, Vehicle) {
+        let (mut signals, vehicle): (Signals, _) = flown(23, &RandomTrajectory::default(), |truth, _| {
+            let effect = by_id(CURVE).unwrap();
+            let mut whole = vec![curvature];
+            whole.resize(effect.parameters().len(), 0.0);
+            truth.effects.extend((curvature != 0.0).then(|| ActiveEffect::new(effect, &whole).unwrap()));
+        });
+        signals.quality.gyro_noise_rad_s = Some(1.0);
+        (Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap(), vehicle)
+    }
+
+    /// The bend of a model with this curvature, or without one.
+    fn told(trace: &Trace, vehicle: &Vehicle, in_model: Option<f64>) -> Bend {
+        let mut base = Base::anchored(vehicle);
+        let all = candidates(vehicle, std::slice::from_ref(trace), ALL);
+        let mut term = all.iter().find(|of| of.id == CURVE).unwrap().parts[0].clone();
+        if let Some(curvature) = in_model {
+            base.effects.push(EffectTerm { values: vec![curvature], ..term.clone() });
+            term = base.effects[0].clone();
+        }
+        let fitted = fit(std::slice::from_ref(trace), base, Newton::Held).unwrap();
+        let term = fitted.base.effects.first().unwrap_or(&term);
+        Bend::by_instruments(std::slice::from_ref(trace), &fitted, term).unwrap()
+    }
+
+    #[test]
+    fn instruments_tell_a_bend_whether_the_model_has_one_or_not() {
+        let (trace, vehicle) = bent(0.2);
+        for bend in [told(&trace, &vehicle, None), told(&trace, &vehicle, Some(0.1))] {
+            assert!(bend.is_shown(ENTERS) && bend.agrees(0.2, 3.0), "{bend:?}");
+        }
+        let (trace, vehicle) = bent(0.0);
+        let bend = told(&trace, &vehicle, None);
+        assert!(!bend.is_shown(3.0) && bend.agrees(0.0, 3.0), "{bend:?}");
+    }
+
+    #[test]
+    fn a_bend_that_the_search_missed_enters_unless_it_is_refused() {
+        let entered = |curvature: f64, refused: &[&'static str]| {
+            let (trace, vehicle) = bent(curvature);
+            let all: Vec<_> = ALL.iter().copied().filter(|of| of.effect.id() != CURVE).collect();
+            let tell = |_, _| {};
+            let mut pace = Pace::new(&tell);
+            let flights = [trace];
+            let mut found =
+                search(&flights, &vehicle, &Gates::default(), (&all, refused, &mut pace)).unwrap();
+            enter_bend(&flights, (&mut found, refused)).unwrap();
+            found.after.base.effects.iter().find(|term| term.id() == CURVE).map(|term| term.values[0])
+        };
+        assert!(entered(0.2, &[]).is_some_and(|curvature| (curvature - 0.2).abs() < 0.05));
+        assert_eq!(entered(0.2, &[CURVE]), None);
+        assert_eq!(entered(0.0, &[]), None);
+    }
+}
