@@ -152,8 +152,12 @@ fn settled(base: &Base, told: &Reconstructed) -> Option<Base> {
         tracing::debug!(law = law.term.id(), z = law.z, law.possible, is_there, is_told, "law of the drag");
         match (is_there, is_told) {
             (true, false) => out.effects.retain(|term| !term.is(law.term.signature)),
-            // in the form that the flight path shows best
-            (false, true) => out.effects.push(EffectTerm { free: Vec::new(), ..law.term.clone() }),
+            // in the form that the flight path shows best; only torques show where it acts
+            (false, true) => {
+                let mut free = (law.term.signature.refinement.freed)(law.term);
+                free.retain(|slot| law.term.is_share_at_hubs(*slot));
+                out.effects.push(EffectTerm { free, ..law.term.clone() });
+            }
             _ => {}
         }
         for term in out.effects.iter_mut().filter(|term| term.is(law.term.signature)) {

@@ -353,7 +353,7 @@ fn names(traces: &[Trace], found: &Search) -> (Vec<Named>, Vec<Slight>) {
         };
         found_effects.push(FoundEffect { effect, place, columns: first..index });
     }
-    named_and_slight((fitted, &found.by_other_law), found_effects, !found.paths.is_empty())
+    named_and_slight((fitted, &found.by_other_law), found_effects, found.laws_by_path)
 }
 
 fn strength(step: &Step) -> Strength {

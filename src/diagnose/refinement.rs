@@ -2,7 +2,7 @@
 //! not bias (flight path reconstruction, instruments).
 
 use super::base::Base;
-use super::bend::{Bend, enter_bend};
+use super::bend::Bend;
 use super::climb_alone::is_of_climb;
 use super::drag_law::settle_laws;
 use super::feedback_noise::is_fed_back;
@@ -50,7 +50,6 @@ pub(super) fn refine(
     (found, refused, pace): (&mut Search, &[&'static str], &mut Pace<'_>),
 ) -> Result<(), PhysicsError> {
     let trim = Trim::of(flights, vehicle);
-    enter_bend(traces, (found, refused))?;
     leave_out_unnamed((traces, (flights, vehicle)), &trim, (found, false))?;
     let mut start =
         tracing::info_span!("laws").in_scope(|| settle_laws(flights, traces, (found, refused)))?;
@@ -90,6 +89,7 @@ fn estimate_sizes(
         let start = start.take();
         let done = tracing::info_span!("reconstruct")
             .in_scope(|| reconstruct(flights, traces, (Forms::Chosen, found), start.as_ref()))?;
+        found.laws_by_path |= start.is_some() && done;
         if start.is_some() && !done {
             // laws without sizes of their own are none
             found.after.clone_from(&by_search);
@@ -214,7 +214,20 @@ fn unnamed(
         tracing::info!(effect = effects[place].id(), z, "effect is not certain beside the others");
         leaves[place] = true;
     }
+    leave_scatter(&fitted.base, &mut leaves);
     Ok(leaves)
+}
+
+/// Beside a weak rotor that stays, an offset of the balance that every vehicle has leaves as well: it is taken for the scatter of the other
+/// rotors, and would take a part of the weak one.
+fn leave_scatter(base: &Base, leaves: &mut [bool]) {
+    let mut rotors =
+        base.effects.iter().zip(leaves.iter()).filter(|(of, _)| of.signature.role.which.is_some());
+    if rotors.any(|(_, leaves)| !leaves) {
+        for (of, leaves) in base.effects.iter().zip(leaves) {
+            *leaves |= of.signature.role.of_the_loading && of.is_of_every_vehicle(&base.size);
+        }
+    }
 }
 
 /// Whether an effect is a wind that only the torques show: its moment is that of a centre of mass that is off.
@@ -227,7 +240,7 @@ fn only_turns(fitted: &Fitted, present: &EffectTerm, first: usize) -> bool {
 fn is_bent((bent, first): (&EffectTerm, usize), traces: &[Trace], fitted: &Fitted) -> bool {
     let by_all = || shows_in_forces(fitted, bent, first) && !is_noise(bent, traces, fitted);
     match Bend::by_instruments(traces, fitted, bent) {
-        Some(told) => told.is_shown(STAYS) || told.agrees(bent.values[0], STAYS) && by_all(),
+        Some(told) => told.shows(bent.values[0], STAYS) || told.agrees(bent.values[0], STAYS) && by_all(),
         None => by_all(),
     }
 }
@@ -252,10 +265,7 @@ fn is_ordinary(term: &EffectTerm, base: &Base, traces: &[Trace]) -> bool {
     let beside_sag = if sags && term.signature.role.moment.is_some() { BESIDE_SAG } else { 0.0 };
     let away =
         || term.signature.amounts.iter().map(|&slot| term.from_nothing(slot).abs()).fold(0.0, f64::max);
-    // what the scatter of ordinary rotors makes is that of the weak one
-    let beside_rotor = || base.effects.iter().any(|of| of.signature.role.which.is_some());
-    term.signature.role.of_the_loading && term.is_of_every_vehicle(&base.size) && beside_rotor()
-        || away() < least_weakness(traces, base, term.signature)
+    away() < least_weakness(traces, base, term.signature)
         || term.size() * over < naming.least_of_mass.max(beside_sag) * base.vehicle.body.mass_kg
         || naming.ordinary.is_some_and(|ordinary| term.size() < ordinary)
         || naming.least > 0.0 && of_all() < naming.least
@@ -345,18 +355,23 @@ mod tests {
     }
 
     #[test]
-    fn what_the_scatter_of_rotors_makes_leaves_beside_a_weak_rotor() {
+    fn what_the_scatter_of_rotors_makes_leaves_beside_a_weak_rotor_that_stays() {
         let mut base = Base::rigid(&vehicle());
         let [mut rotor, mut load] = ["weak_rotor", "com_offset"].map(|id| signature_of(id).unwrap().whole());
         rotor.values = vec![1.0, 0.9];
-        let leaves = |base: &Base, term: &EffectTerm| is_ordinary(term, base, &[]);
-        for (share, is_left) in [(0.005, true), (0.1, false)] {
+        for (share, is_ordinary) in [(0.005, true), (0.1, false)] {
             load.values[0] = share * base.size.arm_m;
-            base.effects = vec![load.clone()];
+            base.effects = vec![load.clone(), rotor.clone()];
+            for rotor_leaves in [false, true] {
+                let mut leaves = [false, rotor_leaves];
+                leave_scatter(&base, &mut leaves);
+                assert_eq!(leaves, [is_ordinary && !rotor_leaves, rotor_leaves]);
+            }
             // alone it stays, as a trace or with a name
-            assert!(!leaves(&base, &load));
-            base.effects.push(rotor.clone());
-            assert_eq!(leaves(&base, &load), is_left);
+            base.effects.truncate(1);
+            let mut leaves = [false];
+            leave_scatter(&base, &mut leaves);
+            assert!(!leaves[0]);
         }
     }
 }

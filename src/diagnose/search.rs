@@ -91,8 +91,19 @@ pub fn search(
     let after = with_last(flights, after)?;
     let latency = told(finding_of(&after), latency, beside);
     let (by_wider_window, by_other_law) = ([f64::NAN; 3], Vec::new());
-    let (misplaced, paths) = (Vec::new(), Vec::new());
-    Ok(Search { before, after, latency, steps, last, by_wider_window, by_other_law, misplaced, paths })
+    let (misplaced, paths, laws_by_path) = (Vec::new(), Vec::new(), false);
+    Ok(Search {
+        before,
+        after,
+        latency,
+        steps,
+        last,
+        by_wider_window,
+        by_other_law,
+        misplaced,
+        paths,
+        laws_by_path,
+    })
 }
 
 /// The latency of the final model, with its kind as the rigid body alone tells it. What could be taken for a latency makes it uncertain,

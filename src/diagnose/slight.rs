@@ -32,7 +32,8 @@ pub(super) struct FoundEffect {
 pub(super) const BEYOND: f64 = 2.0;
 
 /// Those that matter, and the others. What is one effect to a reader is judged as one; and where what each of several can take over
-/// of the others matters together, the greatest of them is named. `by_path`: the forces' sizes are those of the reconstructed flight path.
+/// of the others matters together, the greatest of them is named. `by_path`: the reconstructed
+/// flight path told the laws of the drag.
 pub(super) fn named_and_slight(
     (fitted, by_other_law): (&Fitted, &[f64]),
     candidates: Vec<FoundEffect>,

@@ -66,6 +66,8 @@ pub struct Search {
     pub(super) misplaced: Vec<&'static str>,
     /// of each flight, once its forces were estimated with it
     pub(super) paths: Vec<Path>,
+    /// the reconstructed flight path told which laws the drag follows, and their sizes
+    pub(super) laws_by_path: bool,
 }
 
 impl Search {
@@ -87,6 +89,7 @@ impl Search {
             by_other_law: Vec::new(),
             misplaced: Vec::new(),
             paths: Vec::new(),
+            laws_by_path: false,
         }
     }
 }

@@ -332,7 +332,7 @@ impl Task<'_> {
         let shown_on = ValidationData::Nothing { reason: CHANGES_LATE.to_owned() };
         let (mut of_whole, refused) = self.explained(flights, (&Prepared::default(), None, shown_on))?;
         of_whole.notes.extend(refused);
-        if names_a_change(&of_whole) && !names_a_change(&of_part) {
+        if changes(&of_whole).any(|id| changes(&of_part).all(|of| of != id)) {
             return Ok(of_whole);
         }
         if let Some(last) = flights.signals.last_mut() {
@@ -364,9 +364,10 @@ fn names_wind(study: &ExplainStudy) -> bool {
     terms.any(|term| term.signature.role.of_the_day)
 }
 
-/// An effect that begins at an instant, or that grows over the flight as the battery empties, is among the names.
-fn names_a_change(study: &ExplainStudy) -> bool {
+/// The names that begin at an instant, or that grow over the flight as the battery empties.
+fn changes(study: &ExplainStudy) -> impl Iterator<Item = &'static str> {
     let changes =
         |signature: &Signature| signature.role.moment.is_some() || signature.needs.contains(&Need::Voltage);
-    study.effects.iter().any(|named| signature_of(named.id).is_some_and(changes))
+    let named = study.effects.iter().map(|named| named.id);
+    named.filter(move |id| signature_of(id).is_some_and(changes))
 }
