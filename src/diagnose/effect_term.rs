@@ -73,7 +73,7 @@ impl EffectTerm {
         self.effect().hooks() == [Hook::Sensors]
     }
 
-    /// Whether every vehicle of this size has as much of it: it has no name, and stays in the model where it is certain.
+    /// Whether every vehicle of this size has as much of it: it has no name, and stays in the model where it is certain and no rotor is weak.
     pub(super) fn is_of_every_vehicle(&self, size: &VehicleSize) -> bool {
         self.size() < self.signature.naming.least_of_arm * size.arm_m
     }

@@ -1,4 +1,4 @@
-//! Instruments: the torques that the commanded trajectory needs. It causes the motion, and it does not contain the noise that the
+//! Instruments: the torques and the thrust that the commanded trajectory needs. It causes the motion, and it does not contain the noise that the
 //! measured motion and the commands share.
 
 use crate::signals::{Reference, central_difference};
@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, Rotation3, Vector3};
 
 /// Delays at which the trajectory serves, s: controllers follow it within these.
 const LATE_S: [f64; 3] = [0.0, 0.15, 0.3];
-/// Derivatives of the commanded acceleration: the torque follows its second.
+/// Derivatives of the commanded acceleration: the torque follows its second, the thrust itself.
 const ORDERS: usize = 3;
 /// Directions of the instruments with less than this share of the first one's length are left out. Above rounding,
 /// and far below any motion.

@@ -127,7 +127,7 @@ impl Materiality {
         self.is_more_than_noise() && self.shows() || self.over(&PLAIN) >= 1.0 || self.misfit >= MISFIT
     }
 
-    /// Whether it matters where it is told apart from noise.
+    /// Whether its force or torque is large enough to matter, whatever it is of the misfit.
     pub(super) fn is_more_than_noise(&self) -> bool {
         self.over(&SHOWN) >= 1.0
     }

@@ -82,7 +82,7 @@ pub struct Trace {
     pub velocity_error_m_s: Option<f64>,
     /// of the torques, if the commanded trajectory was recorded
     pub(super) instruments: Option<Arc<Instruments>>,
-    /// the same for the thrust; `None` where nothing is asked of it
+    /// the same for the thrust; `None` without a commanded trajectory, where nothing is asked of it, and where torques are not compared
     pub(super) lift_instruments: Option<Arc<DMatrix<f64>>>,
     /// what every model of this motion is compared with, once it was asked for
     weak_motion: Arc<OnceLock<WeakMotion>>,

@@ -11,7 +11,7 @@ use crate::text::{significant, with_error};
 /// Least standard error of the centre of mass, m. A position is not defined better on a vehicle.
 const NUISANCE_M: f64 = 0.000_15;
 /// Offset that is ordinary, as a share of the mean arm: four rotors that differ by 2 % each turn the vehicle as much, and rotors do. It has no
-/// name, and is in the model where it is certain: without it, what else turns the vehicle would be biased.
+/// name, and is in the model where it is certain and no rotor is weak: without it, what else turns the vehicle would be biased.
 const ORDINARY: f64 = 0.01;
 /// Largest change of the centre of mass by a battery pack that was put back in another place, m. Set by judgement:
 /// with more another vehicle would pass for a battery that was put back, with less each battery would be another
