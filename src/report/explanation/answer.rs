@@ -291,7 +291,7 @@ fn nothing(study: &ExplainStudy) -> String {
             100.0 * share
         );
     }
-    let left = if no_model(study).is_empty() {
+    let left = if no_model(study).is_empty() && study.doubts().is_empty() {
         format!("the rigid body with its rotors explains {it} down to the noise")
     } else {
         "what the rigid body with its rotors leaves follows nothing that was tested".to_owned()
