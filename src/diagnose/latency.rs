@@ -12,6 +12,7 @@ use super::fit::{Fitted, Newton, evaluate, fit};
 use super::flight_rows::residuals;
 use super::gyroscopic::left_out;
 use super::hausman::{contradict, differ};
+use super::latency_kind::of_kind;
 use super::latency_parts::{held_s, is_delay, lag_of, stated_lag_s, stated_uneven};
 use super::left_over::{of_left_over, of_tested};
 use super::rows::Rows;
@@ -65,14 +66,6 @@ const LONGEST_S: f64 = 0.2;
 /// Latency of sampling and a fast motor, s. A lag or delay is named if it is beyond it. With less every log would
 /// have a lag.
 pub(super) const FAST_MOTOR_S: f64 = 0.004;
-/// A split into delay and lag is rejected if a lag alone has a larger log-likelihood by this much a row. Something
-/// else then caused the second-order term, for example commands at a bound. In rows of half a second, flights with
-/// both kinds of latency differ by less than 0.15 either way, and a flight with half of its commands at a bound by
-/// 2.2.
-const SPLIT_REFUTED: f64 = 0.5;
-/// A kind of latency is rejected beyond this many standard deviations. Set by judgement; measured only together with
-/// all conditions of a name (see `Gates`).
-pub(super) const REFUSED: f64 = 6.0;
 
 /// Fits the rigid body alone with its latency. Damping and drag also act through the derivative of force and torque, so
 /// their columns are in the fit as well.
@@ -88,36 +81,29 @@ pub fn fit_latency(flights: &[Trace], base: Base) -> Result<(Fitted, LatencyFind
     if total_s > LEAST_S.max(4.0 * finding.std_s)
         && let Some((against_lag, against_delay, delay_s)) = second_order(flights, &fitted)?
     {
-        let both = against_lag > REFUSED && against_delay > REFUSED && (0.0..total_s).contains(&delay_s);
         // fed back, the gyroscopes' noise moves commands and motion together, and the second order with them
         let fed_back = is_fed_back(flights);
-        // of two kinds that both serve, the one that the description states; where it states none, motors have a lag
         let uneven = stated_uneven(&fitted.base.vehicle);
-        let propulsion = &fitted.base.vehicle.propulsion;
-        let has_lag =
-            propulsion.time_constant_down_s.is_some() || propulsion.mean_time_constant_s().is_none();
         latency = if fed_back {
             lag_of(flights, total_s, uneven)
-        } else if both {
-            let split = ActuationLatency { delay_s, lag_s: total_s - delay_s, uneven };
-            not_refuted(split, lag_of(flights, total_s, uneven), flights, &fitted)?
-        } else if against_lag < against_delay || (has_lag && against_lag < REFUSED) {
-            lag_of(flights, total_s, uneven)
         } else {
-            // behind the lag that is stated
-            let lag_s = stated_lag_s(&fitted.base.vehicle).min(total_s);
-            ActuationLatency { delay_s: total_s - lag_s, lag_s, uneven }
+            of_kind(flights, &fitted, total_s, (against_lag, against_delay, delay_s))?
         };
         let newton = if is_delay(latency, &fitted.base.vehicle) { Newton::Delay } else { Newton::Free };
         let base = Base { latency, ..fitted.base.clone() };
         // several of a long flight at a time take much memory
         drop(fitted);
         let (mut fitted, found) = with_latency(flights, base, newton)?;
-        finding = found;
-        if let Some((told, found)) = uneven_lag(flights, &mut fitted, uneven)? {
-            finding = LatencyFinding { uneven_std: Some(told), ..found };
+        // what instruments confirmed stays where they confirm none of this kind
+        if !finding.is_confirmed || found.is_confirmed {
+            finding = found;
+            if let Some((told, found)) = uneven_lag(flights, &mut fitted, uneven)? {
+                finding = LatencyFinding { uneven_std: Some(told), ..found };
+            }
+            latency = fitted.base.latency;
+        } else {
+            finding = LatencyFinding { parts: latency, ..finding };
         }
-        latency = fitted.base.latency;
         if !fed_back {
             finding = LatencyFinding { against_lag, against_delay, ..finding };
         }
@@ -159,7 +145,9 @@ pub(super) fn with_latency(
         let is_confirmed = !is_fed_back || by_s.is_some();
         LatencyFinding { std_s: finding.std_s.hypot(unsure_s), is_confirmed, ..finding }
     };
-    let Some(by) = fit_by_instruments(flights, &plain, newton)? else { return Ok((plain, unsure(None))) };
+    // of some flights they tell moments alone
+    let by = fit_by_instruments(flights, &plain, newton)?.filter(|by| of_covariance(by).std_s > 0.0);
+    let Some(by) = by else { return Ok((plain, unsure(None))) };
     let told = of_covariance(&by);
     tracing::debug!(
         least_squares_s = finding.total_s,
@@ -206,20 +194,6 @@ pub(super) fn with_any_latency(flights: &[Trace], base: Base) -> Result<(Fitted,
     let (fitted, LatencyFinding { std_s, .. }) = with_latency(flights, allowed, Newton::Free)?;
     let Base { vehicle, latency, is_unbiased, .. } = fitted.base;
     Ok((evaluate(flights, Base { vehicle, latency, is_unbiased, ..base })?, std_s))
-}
-
-/// The split into delay and lag, or the lag alone if it explains the flight far better.
-fn not_refuted(
-    split: ActuationLatency,
-    lag: ActuationLatency,
-    flights: &[Trace],
-    fitted: &Fitted,
-) -> Result<ActuationLatency, PhysicsError> {
-    let misfit = |latency| -> Result<f64, PhysicsError> {
-        Ok(fit(flights, Base { latency, ..fitted.base.clone() }, Newton::Held)?.misfit())
-    };
-    let worse = misfit(split)? - misfit(lag)?;
-    Ok(if worse > SPLIT_REFUTED * fitted.rows.len() as f64 { lag } else { split })
 }
 
 /// Effects whose columns resemble that of a latency.
@@ -384,4 +358,29 @@ fn turning(trace: &Trace, base: &Base, order: usize, behind: ActuationLatency) -
     let torque: Vec<Vector4<f64>> = torque.iter().map(|t| Vector4::new(t.x, t.y, t.z, 0.0)).collect();
     let late = delayed_wrench(&torque, trace.grid.step_s, behind);
     [0, 1, 2].map(|axis| trace.weak(order, &late.iter().map(|t| -t[axis]).collect::<Vec<f64>>()))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+    use super::*;
+    use crate::diagnose::ExplainSettings;
+    use crate::diagnose::made_flights::flown;
+    use crate::simulate::RandomTrajectory;
+    use std::sync::Arc;
+
+    /// Noise is fed back. Hardly any torque acts about body z.
+    #[test]
+    fn instruments_that_do_not_tell_a_latency_do_not_confirm_it() {
+        let (signals, vehicle) = flown(23, &RandomTrajectory::default(), |_, _| ());
+        let mut trace = Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap();
+        trace.gyro_noise_rad_s = 0.2;
+        let [_, _, about_z] = trace.instruments.as_deref().unwrap().clone();
+        let found = |trace: Trace| with_latency(&[trace], Base::anchored(&vehicle), Newton::Free).unwrap().1;
+        let all = found(trace.clone());
+        assert!(all.is_confirmed && all.std_s < UNCONFIRMED_S, "{all:?}");
+        trace.instruments = Some(Arc::new([None, None, about_z]));
+        let by_z = found(trace);
+        assert!(!by_z.is_confirmed && by_z.std_s >= UNCONFIRMED_S, "{by_z:?}");
+    }
 }

@@ -3,8 +3,9 @@
 use super::base::Base;
 use super::fit::Newton;
 use super::floors::FORM;
-use super::latency::{FAST_MOTOR_S, LatencyFinding, REFUSED, with_latency};
+use super::latency::{FAST_MOTOR_S, LatencyFinding, with_latency};
 use super::latency_distance::latency_distance;
+use super::latency_kind::REFUSED;
 use super::latency_parts::{held_s, is_delay, stated_lag_s};
 use super::named::{Confusable, Named, NamedParameter, Strength};
 use super::signature::LatencyKind;

@@ -43,6 +43,7 @@ mod kinematic;
 mod latency;
 mod latency_distance;
 mod latency_error;
+mod latency_kind;
 mod latency_name;
 mod latency_parts;
 mod left_over;
