@@ -46,7 +46,7 @@ impl Bend {
                 let mean = column.mean();
                 column.add_scalar_mut(-mean);
             }
-            if let Some(basis) = trace.lift_instruments.as_deref() {
+            if let Some(basis) = trace.instruments.as_ref().and_then(|all| all.thrust.as_ref()) {
                 let along = basis * basis.tr_mul(&own);
                 asked.view_mut((from, 0), (rows, count)).copy_from(&along);
                 told += along.column(0).norm_squared();

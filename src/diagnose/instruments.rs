@@ -16,15 +16,20 @@ const LEAST_DIRECTION: f64 = 1e-6;
 /// tells nothing and costs a column.
 const LEAST_RMS: f64 = 0.01;
 
-/// For the torque about each body axis the orthonormal directions of its instruments about their means, one row a row of the
-/// weak form; `None` where nothing is asked of it.
-pub(super) type Instruments = [Option<DMatrix<f64>>; 3];
+/// The orthonormal directions of instruments about their means, one row a row of the weak form; `None` where nothing is asked.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Instruments {
+    /// of the torque about each body axis
+    pub(super) torques: [Option<DMatrix<f64>>; 3],
+    /// of the thrust
+    pub(super) thrust: Option<DMatrix<f64>>,
+}
 
-/// Instruments of a flight on a grid of this step, s, by the weak form's derivatives of a series at its rows: sideways
-/// acceleration for roll, forward for pitch, turning for yaw.
+/// Instruments of a flight on a grid of this step, s, in this gravity, m/s^2, by the weak form's derivatives of a series at its rows: sideways
+/// acceleration for roll, forward for pitch, turning for yaw, and what gravity and the acceleration need together for the thrust.
 pub(super) fn instruments(
     reference: &Reference,
-    step_s: f64,
+    (step_s, gravity_m_s2): (f64, f64),
     weak: impl Fn(usize, &[f64]) -> Vec<f64>,
 ) -> Instruments {
     let turned = |axis: usize| -> Vec<f64> {
@@ -35,7 +40,10 @@ pub(super) fn instruments(
         .collect()
     };
     let turning = central_difference(&reference.yaw, step_s);
-    [turned(1), turned(0), turning].map(|series| directions(&late(&series, step_s, &weak)))
+    let lift = |world: &Vector3<f64>| (world + Vector3::z() * gravity_m_s2).norm();
+    let lift: Vec<f64> = reference.acceleration.iter().map(lift).collect();
+    let of = |series: &[f64]| directions(&late(series, step_s, &weak));
+    Instruments { torques: [turned(1), turned(0), turning].map(|series| of(&series)), thrust: of(&lift) }
 }
 
 /// A series at each of the delays, with its derivatives.
@@ -46,17 +54,6 @@ fn late(series: &[f64], step_s: f64, weak: impl Fn(usize, &[f64]) -> Vec<f64>) -
         (0..ORDERS).map(|order| weak(order, &behind)).collect::<Vec<_>>()
     };
     LATE_S.iter().flat_map(at).collect()
-}
-
-/// Directions of the instruments of the thrust: it carries what gravity and the commanded acceleration need together.
-pub(super) fn of_lift(
-    reference: &Reference,
-    (step_s, gravity_m_s2): (f64, f64),
-    weak: impl Fn(usize, &[f64]) -> Vec<f64>,
-) -> Option<DMatrix<f64>> {
-    let lift = |world: &Vector3<f64>| (world + Vector3::z() * gravity_m_s2).norm();
-    let series: Vec<f64> = reference.acceleration.iter().map(lift).collect();
-    directions(&late(&series, step_s, weak))
 }
 
 /// Number of grid steps nearest to a delay.

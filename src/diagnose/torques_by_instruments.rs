@@ -150,7 +150,7 @@ fn served<'a>(flights: &'a [Trace], fitted: &Fitted) -> Vec<Served<'a>> {
     let mut out = Vec::new();
     let mut first = 0;
     for trace in flights {
-        for (axis, basis) in trace.instruments.iter().flat_map(|all| all.iter()).enumerate() {
+        for (axis, basis) in trace.instruments.iter().flat_map(|all| all.torques.iter()).enumerate() {
             let from = (3 + axis) * fitted.rows.len() + first;
             out.extend(basis.iter().map(|basis| (from..from + trace.rows(), basis)));
         }

@@ -1,7 +1,7 @@
 //! One flight for the weak form: measured states, and the rotor thrusts in two versions, from commands and from the
 //! motion.
 
-use super::instruments::{Instruments, instruments, of_lift};
+use super::instruments::{Instruments, instruments};
 use super::momentum::{Momentum, MomentumRows, WeakMotion};
 use super::rotors::{OfRotors, RotorMotion, felt, filtered};
 use super::timing::{command_period_s, inertial_late};
@@ -80,10 +80,8 @@ pub struct Trace {
     pub own: OwnOfFlight,
     /// m/s rms, slow error of the horizontal velocity by a satellite receiver; `None` without one
     pub velocity_error_m_s: Option<f64>,
-    /// of the torques, if the commanded trajectory was recorded
+    /// if the commanded trajectory was recorded and torques are compared
     pub(super) instruments: Option<Arc<Instruments>>,
-    /// the same for the thrust; `None` without a commanded trajectory, where nothing is asked of it, and where torques are not compared
-    pub(super) lift_instruments: Option<Arc<DMatrix<f64>>>,
     /// what every model of this motion is compared with, once it was asked for
     weak_motion: Arc<OnceLock<WeakMotion>>,
 }
@@ -156,18 +154,12 @@ impl Trace {
             own: signals.own.clone(),
             velocity_error_m_s: velocity_error_m_s(signals),
             instruments: None,
-            lift_instruments: None,
             weak_motion: Arc::default(),
         };
         trace.smooth()?;
-        let reference = signals.reference.as_ref().filter(|_| trace.torques);
-        trace.instruments = reference
-            .map(|reference| instruments(reference, grid.step_s, |order, series| trace.weak(order, series)))
-            .map(Arc::new);
-        let of_lift = |reference| {
-            of_lift(reference, (grid.step_s, trace.gravity_m_s2), |order, series| trace.weak(order, series))
-        };
-        trace.lift_instruments = reference.and_then(of_lift).map(Arc::new);
+        let weak = |order, series: &[f64]| trace.weak(order, series);
+        let of = |reference| Arc::new(instruments(reference, (grid.step_s, trace.gravity_m_s2), weak));
+        trace.instruments = signals.reference.as_ref().filter(|_| trace.torques).map(of);
         Ok(trace)
     }
 
