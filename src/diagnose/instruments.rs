@@ -89,3 +89,15 @@ fn directions(instruments: &[Vec<f64>]) -> Option<DMatrix<f64>> {
     }
     Some(out)
 }
+
+/// Inverse of a normal matrix of the second stage, its columns brought to one length before; `None` where they are not told apart.
+pub(super) fn inverse(normal: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let count = normal.nrows();
+    let scale = normal.diagonal().map(f64::sqrt);
+    if scale.iter().any(|scale| *scale <= 0.0) {
+        return None;
+    }
+    let scaled = DMatrix::from_fn(count, count, |i, j| normal[(i, j)] / (scale[i] * scale[j]));
+    let inverse = scaled.cholesky()?.inverse();
+    Some(DMatrix::from_fn(count, count, |i, j| inverse[(i, j)] / (scale[i] * scale[j])))
+}

@@ -8,6 +8,7 @@ use super::columns::Columns;
 use super::evidence::weighted;
 use super::fit::{CONVERGED, Coefficients, Fitted, Newton, PASSES, linearised, step};
 use super::hausman::holds;
+use super::instruments::inverse;
 use super::latency_error::{by_latency, late_effects};
 use super::left_over::of_left_over;
 use super::priors::Priors;
@@ -120,13 +121,7 @@ impl Projected {
         let alike = fitted.weighted.alike();
         let priors = Priors::of(&fitted.rows.nuisances, fitted.coefficients.len(), alike);
         let normal = asked.tr_mul(&asked) + DMatrix::from_diagonal(&priors.precision.select_rows(&places));
-        let scale = normal.diagonal().map(f64::sqrt);
-        if scale.iter().any(|scale| *scale <= 0.0) {
-            return None;
-        }
-        let scaled = DMatrix::from_fn(count, count, |i, j| normal[(i, j)] / (scale[i] * scale[j]));
-        let inverse = scaled.cholesky()?.inverse();
-        let bread = DMatrix::from_fn(count, count, |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
+        let bread = inverse(&normal)?;
         let known = (priors.pull.select_rows(&places), priors.meat.select_rows(&places));
         Some(Self { places, given, asked, bread, known })
     }
