@@ -32,6 +32,8 @@ pub struct Base {
     /// kg: the vehicle has this mass, and the scale of its thrust is estimated; `None`: the stated thrust is trusted, and the
     /// mass is estimated
     pub weighed_kg: Option<f64>,
+    /// the scale is that of the stated mass and of the stated thrust together, as a bent thrust curve leaves both
+    pub has_stated_mass: bool,
     /// a simulator flew, and it leaves the gyroscopic torque out: the share that acts is estimated
     pub estimates_gyroscopic: bool,
     /// the accelerometer is taken to be without bias, because the bias that fitted best is no accelerometer's
@@ -74,6 +76,7 @@ impl Base {
             latency: ActuationLatency::default(),
             effects: Vec::new(),
             weighed_kg: None,
+            has_stated_mass: false,
             estimates_gyroscopic: false,
             is_unbiased: false,
             begun_kg_m2: vehicle.body.inertia_kg_m2,

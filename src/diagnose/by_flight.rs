@@ -21,6 +21,7 @@ use super::reconstructed::{self, Forms, reconstruct};
 use super::recorded::Recorded;
 use super::signature::EffectTerm;
 use super::signatures::{ALL, signature_of};
+use super::stated_mass::by_stated_thrust;
 use super::tested::Search;
 use super::torque_law::ABOUT_Z;
 use super::torques_by_instruments::torques_by_instruments;
@@ -59,8 +60,8 @@ pub struct FlightParameter {
     pub common_std: f64,
 }
 
-/// The parameters of each flight, fitted with every effect of the vehicle that one of the explanations has; there is one explanation a
-/// flight, whose latency is among them. Empty where a flight cannot be fitted so.
+/// The parameters of each flight, fitted with every effect of the vehicle that one of the explanations has, on the scale of the stated thrust
+/// unless the vehicle was weighed; there is one explanation a flight, whose latency is among them. Empty where a flight cannot be fitted so.
 #[must_use]
 pub fn by_flight(
     flights: &[Signals],
@@ -71,7 +72,8 @@ pub fn by_flight(
     let terms = of_the_vehicle(explanations);
     let one = |(signals, explanation): (&Signals, &&Explanation)| {
         let trace = Trace::new(signals, vehicle, settings.half_width_s).ok()?;
-        let base = with_terms(explanation, &terms, (vehicle, &trace));
+        let mut base = with_terms(explanation, &terms, (vehicle, &trace));
+        by_stated_thrust(&mut base, vehicle, trace.torques);
         let latency = latency_of(&trace, vehicle, &explanation.search.latency);
         let path = path_of(&base, explanation, 0);
         let of = (explanation.search.latency, Forms::Chosen);

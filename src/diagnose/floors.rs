@@ -1,10 +1,11 @@
 //! Lower bounds of the standard errors: the accuracy of the laws themselves, which the statistics of one flight do not contain.
 
-use super::base::{Base, follows_force, turns_about_z};
+use super::base::{follows_force, turns_about_z};
 use super::channels::{Channels, Nuisance};
 use super::fit::Fitted;
 use super::nuisances::BIAS_STD_M_S2;
 use super::signature::EffectTerm;
+use super::stated_mass::{bend_of, of_scale};
 use crate::estimate::INERTIA_ENTRIES;
 use crate::physics::Parameter;
 use crate::vehicle::{Guessed, Vehicle};
@@ -31,26 +32,11 @@ const SPARSE: f64 = 0.3;
 /// degrees from where they blew.
 const HEADING_STD_RAD: f64 = 0.02;
 
-/// Relative error of a law's thrust at hover by its curvature there, the middle of 1.0 to 1.7.
-const ELSEWHERE: f64 = 1.35;
-
 /// Standard error of moments of inertia by a bent thrust law, relative, over its curvature. Torques are differences of thrusts, so moments go
 /// with the slope of the law, and a curve that has not quite the form of the law has another slope. A linear thrust that was
 /// described with an exponent of 0.6 has a curvature of -0.3 at hover. Moments of a simulated flight up to full thrust were then 11 % too large
 /// and those of a calm one 6 %: 0.4 and 0.2 of it.
 const SLOPE: f64 = 0.3;
-
-fn bend_of(base: &Base) -> f64 {
-    let bend = |term: &EffectTerm| Some(term.values[term.signature.role.bends_thrust?].abs());
-    base.effects.iter().filter_map(bend).sum()
-}
-
-/// Relative standard error of the thrust, and of all that is on its scale, where the stated law does not hold and nothing was
-/// weighed: a law with another curvature about hover is elsewhere there by once to 1.7 times as much, at hover at
-/// 60 to 40 % of full thrust.
-fn of_scale(base: &Base) -> f64 {
-    if base.weighed_kg.is_some() { 0.0 } else { ELSEWHERE * bend_of(base) }
-}
 
 /// Relative standard error of a size by what the vehicle's description guesses of the torques: moments about z go with the torque per thrust,
 /// the others and places with the arms.

@@ -4,9 +4,9 @@ use super::trace::Trace;
 use crate::physics::ActuationLatency;
 use crate::vehicle::Vehicle;
 
-/// Delay of the mean command, as a share of the log's period. A command is held until the next one, and the control
-/// loop runs faster than the log.
-const HELD: f64 = 0.25;
+/// Most that is taken for the time between two motor commands, s: the control loops of PX4 and of ArduPilot's copters run at 400 Hz unless a parameter says
+/// otherwise. A log that has commands at a lower rate leaves some out.
+const LOOP_S: f64 = 1.0 / 400.0;
 
 /// A lag after the delay of the recording itself.
 pub(super) fn lag_of(flights: &[Trace], total_s: f64, uneven: f64) -> ActuationLatency {
@@ -14,9 +14,10 @@ pub(super) fn lag_of(flights: &[Trace], total_s: f64, uneven: f64) -> ActuationL
     ActuationLatency { delay_s, lag_s: total_s - delay_s, uneven }
 }
 
-/// Delay that is not the vehicle's, s: held commands and the filters of the inertial unit.
+/// Delay that is not the vehicle's, s: a command is held until the next one, which delays it by half of the time between them at the
+/// mean, and the filters of the inertial unit.
 pub(super) fn held_s(flights: &[Trace]) -> f64 {
-    let held = |trace: &Trace| HELD * trace.command_period_s + trace.inertial_late_s;
+    let held = |trace: &Trace| 0.5 * trace.command_period_s.min(LOOP_S) + trace.inertial_late_s;
     flights.iter().map(held).fold(0.0, f64::max)
 }
 

@@ -13,6 +13,7 @@ use super::left_over::add_left_over;
 use super::limits::is_beyond_showing;
 use super::measured_force::{Felt, shows_in_forces};
 use super::named::Strength;
+use super::one_balance::better_alone;
 use super::other_law::add_other_laws;
 use super::pace::Pace;
 use super::physical::make_physical;
@@ -20,6 +21,7 @@ use super::reconstructed::{Forms, reconstruct};
 use super::recorded::{Need, heights_flown_m};
 use super::rotor_axes::{is_refuted, least_weakness};
 use super::signature::EffectTerm;
+use super::stated_mass::settle_scale;
 use super::tested::Search;
 use super::thrust_slope::may_be_noise;
 use super::torques_by_instruments::torques_by_instruments;
@@ -65,6 +67,7 @@ pub(super) fn refine(
     }
     // which law a drag follows says nothing of whether it is there
     found.by_other_law = add_other_laws(traces, &found.last, &mut found.after);
+    settle_scale(traces, vehicle, (&mut found.after, &mut found.by_other_law))?;
     add_floors(&mut found.after);
     // the model where nothing serves
     add_left_over(&mut found.before, &[]);
@@ -154,16 +157,25 @@ fn leave_out_unnamed(
             beyond
         })
         .collect();
-    let leaves = if beyond.contains(&true) {
-        beyond
-    } else {
+    let are_shown = !beyond.contains(&true);
+    let leaves = if are_shown {
         found.misplaced.extend(&turning);
         unnamed((traces, given), trim, (fitted, &turning))?
+    } else {
+        beyond
     };
     if !leaves.contains(&true) {
         return Ok(false);
     }
-    found.after = fit(traces, without(&fitted.base, |place| leaves[place]), Newton::Held)?;
+    let left = fit(traces, without(&fitted.base, |place| leaves[place]), Newton::Held)?;
+    let instead = if are_shown { better_alone(traces, (fitted, &leaves), &left)? } else { None };
+    if let Some((alone, at)) = instead
+        && !unnamed((traces, given), trim, (&alone, &turning))?[at]
+    {
+        found.after = alone;
+        return Ok(true);
+    }
+    found.after = left;
     Ok(true)
 }
 

@@ -4,14 +4,17 @@
 //! the motion, where other causes can look like it. Means over seconds of hover and slow flight know less, and of nothing else.
 
 use super::base::Base;
+use super::channels::Nuisance;
+use super::hover_force::{excludes, sideways};
+use super::signature::EffectTerm;
 use crate::change::{LOADED, NAMED_SIGMAS};
 use crate::physics::{
-    Airframe, Condition, Effect, Input, MAX_ROTORS, PhysicsError, Rotors, State, effects_wrench,
+    Airframe, Condition, Effect, Input, MAX_ROTORS, PhysicsError, Rotors, State, Wrench, effects_wrench,
 };
 use crate::signals::{OwnOfFlight, Signals};
 use crate::trim::{AXES, Balance, balance, legs, mean_arm_m};
 use crate::vehicle::Vehicle;
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
 /// Share of the name's size below which the balance does not show it.
 const SHOWN: f64 = 0.5;
@@ -26,6 +29,8 @@ const HEIGHT_M: f64 = 100.0;
 pub(super) struct Trim {
     /// each with what is its own
     each: Vec<(Balance, OwnOfFlight)>,
+    /// what their accelerometers show across body z
+    sideways: Option<Vector2<f64>>,
 }
 
 impl Trim {
@@ -33,10 +38,11 @@ impl Trim {
     pub(super) fn of(flights: &[Signals], vehicle: &Vehicle) -> Self {
         let shown =
             flights.iter().filter_map(|signals| Some((legs(signals, vehicle).ok()?, signals.own.clone())));
-        Self { each: shown.map(|(legs, own)| (balance(&[legs]), own)).collect() }
+        let each = shown.map(|(legs, own)| (balance(&[legs]), own)).collect();
+        Self { each, sideways: sideways(flights) }
     }
 
-    /// The effect of the model, by its place, that the balance of hover excludes most clearly.
+    /// The effect of the model, by its place, that the balance of hover excludes most clearly, or that the accelerometer does not feel there.
     ///
     /// # Errors
     /// [`PhysicsError`] where the vehicle is not physical.
@@ -62,7 +68,21 @@ impl Trim {
                 worst = Some((missed, place));
             }
         }
-        Ok(worst.map(|(_, place)| place))
+        Ok(worst.map(|(_, place)| place).or_else(|| self.unfelt(base, &airframe)))
+    }
+
+    /// The place of a thrust axis that leans, where the accelerometer does not feel it in hover. A wind pushes there as well, and then
+    /// hover excludes nothing.
+    fn unfelt(&self, base: &Base, airframe: &Airframe) -> Option<usize> {
+        let shown = self.sideways?;
+        let leans = |term: &EffectTerm| (term.signature.role.stands_for)(term, Nuisance::Tilt(0));
+        let place = base.effects.iter().position(leans)?;
+        if base.estimates(|term| term.signature.role.wind.is_some()) {
+            return None;
+        }
+        let rotors = base.vehicle.rotors.len();
+        let force = hover_wrench(airframe, base, &[place], &vec![1.0 / rotors as f64; rotors]).force_n;
+        excludes(shown, force.xy() / force.z).then_some(place)
     }
 }
 
@@ -116,25 +136,29 @@ impl Hover<'_> {
 
     /// The balance of a model with these effects, with the commands of hover.
     fn by_model(&self, base: &Base, places: &[usize]) -> Vector3<f64> {
-        let shares = &self.of.flights[0].shares;
-        let weight_n = base.vehicle.body.mass_kg * self.airframe.gravity_m_s2;
-        let mut speed = [0.0; MAX_ROTORS];
-        for (speed, share) in speed.iter_mut().zip(shares) {
-            *speed = self.airframe.relative_speed_of_thrust(share * weight_n);
-        }
-        let rotors = Rotors::as_commanded(self.airframe, &speed);
-        let input = Input { speed_command: speed, ..Input::from_commands(self.airframe, 0.0, &[]) };
-        let state = State::at_rest(Vector3::z() * HEIGHT_M, 0.0);
-        let at = Condition::new(self.airframe, &state, &input, Vector3::zeros());
-        let effects = places.iter().map(|&place| {
-            let term = &base.effects[place];
-            (term.effect() as &dyn Effect, term.values.as_slice())
-        });
-        let wrench = effects_wrench(effects, &at, &rotors);
+        let wrench = hover_wrench(self.airframe, base, places, &self.of.flights[0].shares);
         let (force_n, torque) = (wrench.force_n.z, wrench.torque_nm);
         let about_z = base.vehicle.propulsion.torque_per_thrust_m;
         Vector3::new(-torque.y / self.arm_m, torque.x / self.arm_m, torque.z / about_z) / force_n
     }
+}
+
+/// Force and torque of a model with these effects that hovers in still air, with these shares of the rotors in the thrust.
+fn hover_wrench(airframe: &Airframe, base: &Base, places: &[usize], shares: &[f64]) -> Wrench {
+    let weight_n = base.vehicle.body.mass_kg * airframe.gravity_m_s2;
+    let mut speed = [0.0; MAX_ROTORS];
+    for (speed, share) in speed.iter_mut().zip(shares) {
+        *speed = airframe.relative_speed_of_thrust(share * weight_n);
+    }
+    let rotors = Rotors::as_commanded(airframe, &speed);
+    let input = Input { speed_command: speed, ..Input::from_commands(airframe, 0.0, &[]) };
+    let state = State::at_rest(Vector3::z() * HEIGHT_M, 0.0);
+    let at = Condition::new(airframe, &state, &input, Vector3::zeros());
+    let effects = places.iter().map(|&place| {
+        let term = &base.effects[place];
+        (term.effect() as &dyn Effect, term.values.as_slice())
+    });
+    effects_wrench(effects, &at, &rotors)
 }
 
 #[cfg(test)]
@@ -159,7 +183,8 @@ mod tests {
             let [x, y, z] = lean.map(|lean| lean + noise);
             leg_of(number, [x + 0.5 * felt, y, z], [felt, 0.0], shares)
         };
-        Trim { each: vec![(balance(&[(0..2 * LEAST_LEGS).map(leg).collect()]), OwnOfFlight::default())] }
+        let each = vec![(balance(&[(0..2 * LEAST_LEGS).map(leg).collect()]), OwnOfFlight::default())];
+        Trim { each, sideways: None }
     }
 
     fn leg_of(number: usize, lean: [f64; AXES], felt: [f64; 2], shares: [f64; 4]) -> Leg {
@@ -173,6 +198,22 @@ mod tests {
             lift: None,
             voltage_v: None,
         }
+    }
+
+    #[test]
+    fn a_thrust_axis_that_leans_has_to_be_felt_in_hover() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/p01_vehicle.toml");
+        let vehicle = crate::config::load_vehicle(&path).unwrap();
+        let mut base = Base::anchored(&vehicle);
+        let tilt = signature_of("thrust_tilt").unwrap();
+        base.effects.push(tilt.term(&[0.0, 0.04], &[0, 1]));
+        let felt = |x| Trim { each: Vec::new(), sideways: Some(Vector2::new(x, 0.0)) };
+        assert_eq!(felt(0.001).refuted(&base).unwrap(), Some(0));
+        assert_eq!(felt(0.03).refuted(&base).unwrap(), None);
+        assert_eq!(Trim { each: Vec::new(), sideways: None }.refuted(&base).unwrap(), None);
+        // a wind pushes as well
+        base.effects.push(signature_of("steady_wind").unwrap().term(&[3.0, 0.0, 0.0], &[0, 1]));
+        assert_eq!(felt(0.001).refuted(&base).unwrap(), None);
     }
 
     #[test]

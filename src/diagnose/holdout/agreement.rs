@@ -75,7 +75,7 @@ impl Agreement {
 }
 
 /// Largest share of the mass that a payload is, with which a multirotor still flies well.
-const PAYLOAD_SHARE: f64 = 0.5;
+pub(super) const PAYLOAD_SHARE: f64 = 0.5;
 /// Standard errors beyond which flights certainly differ: twice what a name needs, because a false word takes the whole hold-out away.
 const SIGMAS: f64 = 8.0;
 /// Least relevant difference, as a share of the mass. Set by judgement: with less, two batteries would be two

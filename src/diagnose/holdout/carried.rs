@@ -6,7 +6,7 @@ use super::settings::{Explained, HeldOut, HoldoutSettings};
 use crate::diagnose::base::Base;
 use crate::diagnose::empirical::Empirical;
 use crate::diagnose::explanation::Verdict;
-use crate::diagnose::latency_parts::{stated_lag_s, stated_uneven};
+use crate::diagnose::latency_parts::{held_s, stated_lag_s, stated_uneven};
 use crate::diagnose::recorded::Need;
 use crate::diagnose::rows::Rows;
 use crate::diagnose::signature::EffectTerm;
@@ -77,12 +77,12 @@ impl Pair {
 
 /// The rigid body alone, and the model with its effects. A latency with a name is an effect: the rigid body alone then
 /// has the stated motor and the log's sampling instead.
-pub(super) fn pair(explained: Explained, vehicle: &Vehicle, command_period_s: f64) -> Pair {
+pub(super) fn pair(explained: Explained, vehicle: &Vehicle, trace: &Trace) -> Pair {
     let Explained { explanation, empirical, rate_law } = explained;
     let mut before = explanation.search.before.base.clone();
     if explanation.named.iter().any(|named| latency_kind(named.id).is_some()) {
         before.latency = ActuationLatency {
-            delay_s: 0.5 * command_period_s,
+            delay_s: held_s(std::slice::from_ref(trace)),
             lag_s: stated_lag_s(vehicle),
             uneven: stated_uneven(vehicle),
         };
@@ -100,7 +100,7 @@ pub(super) fn pair(explained: Explained, vehicle: &Vehicle, command_period_s: f6
 
 /// The pair on a flight that was explained, with what is its own.
 pub(super) fn pair_on(explained: Explained, vehicle: &Vehicle, trace: &Trace) -> Pair {
-    let mut pair = pair(explained, vehicle, trace.command_period_s);
+    let mut pair = pair(explained, vehicle, trace);
     pair.own(trace, f64::NEG_INFINITY);
     pair
 }
@@ -113,7 +113,7 @@ pub(super) fn carried_over(
     settings: &HoldoutSettings,
 ) -> Result<Pair, PhysicsError> {
     let about = || About::File(flight.name.to_owned());
-    let mut pair = pair(explained, vehicle, trace.command_period_s);
+    let mut pair = pair(explained, vehicle, trace);
     let moment = pair.after.effects.iter().enumerate().find_map(|(place, term)| {
         Some((place, term.signature.role.moment?, *term.signature.amounts.first()?))
     });

@@ -1,5 +1,6 @@
 //! Mass and centre of mass of a held-out flight: it has its own payload, and a battery that was put back elsewhere.
 
+use super::agreement::PAYLOAD_SHARE;
 use super::settings::HoldoutSettings;
 use crate::diagnose::base::Base;
 use crate::diagnose::channels::AXES;
@@ -129,7 +130,7 @@ fn moved(base: &mut Base, trace: &Trace) -> Result<Option<([f64; 2], f64)>, Phys
 }
 
 /// Mass beyond that of the base, kg, and up to when (s) the flight was used; `None` where it is less than a share of the mass or so many
-/// standard errors.
+/// standard errors, and where no vehicle lifts so much beyond its own mass, or is so much lighter.
 fn heavier(
     base: &Base,
     trace: &Trace,
@@ -157,7 +158,9 @@ fn heavier(
     let scatter =
         blocks.iter().map(|(_, score)| score * score).sum::<f64>() * blocks.len() as f64 / left as f64;
     let (more_kg, std_kg) = (own_kg - mass_kg, factor * scatter.sqrt() / squares);
-    let is_payload = more_kg.abs() > sigmas * std_kg && more_kg.abs() > least * mass_kg;
+    let is_payload = more_kg.abs() > sigmas * std_kg
+        && more_kg.abs() > least * mass_kg
+        && more_kg.abs() < PAYLOAD_SHARE * mass_kg;
     Ok(is_payload.then_some((more_kg, until_s)))
 }
 

@@ -7,12 +7,12 @@ use super::short::Short;
 use crate::diagnose::locate::{Quantity, Redness};
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{Named, Verdict};
+use crate::diagnose::{Fitted, Named, STATED_MASS, Verdict};
 use crate::estimate::{Contradiction, Finding, FlightApart, MOMENTS, NAMES, ThrustScale, stated};
 use crate::note::{About, Note};
 use crate::study::doubts::{Moment, TWO_VEHICLES, doubts, of_mass, of_shape};
 use crate::text::significant;
-use crate::vehicle::Guessed;
+use crate::vehicle::{Guessed, Vehicle};
 
 /// Share of the weight from which on what is left is not called noise. Set by judgement: simulated flights as noisy as real ones leave 5 %.
 const MUCH_LEFT: f64 = 0.15;
@@ -192,4 +192,16 @@ pub(in crate::study) fn of_voltage(named: &Named) -> Option<Note> {
         significant(full_v, 3)
     );
     Some(Note::remark(About::Estimate, text))
+}
+
+/// What the mass and all forces rest on, where the model has a bent thrust curve and nothing was weighed.
+pub(in crate::study) fn of_bent_scale(fitted: &Fitted, stated: &Vehicle) -> Option<Note> {
+    let text = format!(
+        "the thrust curve is bent, and the stated thrust says less of the thrust at hover. The mass, the moments of inertia and all forces rest \
+         on the stated mass of {} kg (+- {:.0} %) as well, and their errors have that of the scale, which is common to all. If the vehicle was \
+         weighed as it flew, write anchor = \"mass\" under [identify] into the vehicle file",
+        significant(stated.body.mass_kg, 3),
+        100.0 * STATED_MASS
+    );
+    fitted.base.has_stated_mass.then(|| Note::remark(About::Estimate, text))
 }

@@ -1,7 +1,7 @@
 //! Flights that are ready: held out, explained, shown, and explained again where that is called for.
 
 use super::along::{with_own, with_own_winds, without_gust_of_none};
-use super::doubts::of_voltage;
+use super::doubts::{of_bent_scale, of_voltage};
 use super::hold_out::hold_back;
 use super::limited::{FlightLimit, limits_of_flights};
 use super::refuted::BetterBy;
@@ -300,6 +300,7 @@ impl Task<'_> {
         study.tell_mass();
         study.tell_shape();
         study.notes.extend(study.explanation.named.iter().filter_map(of_voltage).collect::<Vec<_>>());
+        study.notes.extend(of_bent_scale(study.fitted(), &study.given.vehicle));
         study.notes.extend(study.explanation.torque_law.iter().map(TorqueLaw::note));
         study.notes.extend(study.gyroscopic().iter().map(GyroscopicShare::note));
         study.tell_wandering();
