@@ -61,6 +61,15 @@ impl Base {
         }
     }
 
+    /// The model without some of its effects, by their places.
+    pub(super) fn without(&self, leaves: impl Fn(usize) -> bool) -> Self {
+        let mut left = self.clone();
+        let mut places = 0..;
+        left.effects.retain(|_| places.next().is_some_and(|place| !leaves(place)));
+        left.drop_wind_alone();
+        left
+    }
+
     /// Steady wind of the model in the world frame (NWU), m/s; zero where it has none.
     pub(crate) fn wind_m_s(&self) -> Vector3<f64> {
         let wind = self.effects.iter().find(|term| term.signature.role.wind.is_some());

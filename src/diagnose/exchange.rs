@@ -8,7 +8,7 @@ use super::candidates::{Candidate, candidates};
 use super::fit::{Fitted, Newton, fit};
 use super::gates::{Gates, NAME_Z, passes};
 use super::price::Price;
-use super::refinement::{fitted_strength, weakest, without};
+use super::refinement::{fitted_strength, weakest};
 use super::score::test_all;
 use super::signature::Signature;
 use super::signatures::signature_of;
@@ -34,7 +34,7 @@ pub(super) fn exchanged(
         if rivals.is_empty() {
             continue;
         }
-        let left = fit(flights, without(&after.base, |of| of == place), Newton::Held)?;
+        let left = fit(flights, after.base.without(|of| of == place), Newton::Held)?;
         let open = |of: &&Candidate| of.id == term.id() || rivals.contains(&of.id);
         let open: Vec<Candidate> = all.iter().filter(open).cloned().collect();
         let (own, others): (Vec<Tested>, Vec<Tested>) = test_all(flights, &left, &open, signatures)
@@ -91,7 +91,7 @@ fn without_superfluous(flights: &[Trace], mut fitted: Fitted) -> Result<Fitted, 
         let strengths =
             fitted.with_first_columns().map(|(present, first)| fitted_strength(&fitted, present, first));
         let Some((_, place)) = weakest(strengths.enumerate(), NAME_Z) else { return Ok(fitted) };
-        fitted = fit(flights, without(&fitted.base, |of| of == place), Newton::Held)?;
+        fitted = fit(flights, fitted.base.without(|of| of == place), Newton::Held)?;
     }
 }
 

@@ -6,7 +6,6 @@
 use super::base::Base;
 use super::fit::{Fitted, Newton, fit};
 use super::price::Price;
-use super::refinement::without;
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
@@ -30,7 +29,7 @@ pub(super) fn better_alone(
     let mut best: Option<(Fitted, usize)> = None;
     for place in (0..effects.len()).filter(|&place| leaves[place] && is_balance(place)) {
         let goes = |of: usize| of != place && (leaves[of] || is_balance(of));
-        let alone = fit(traces, without(&fitted.base, goes), Newton::Held)?;
+        let alone = fit(traces, fitted.base.without(goes), Newton::Held)?;
         let least = price.cost(best.as_ref().map_or(left, |(least, _)| least));
         if price.cost(&alone) < least {
             best = place_in(&alone.base, &effects[place]).map(|at| (alone, at));
@@ -87,7 +86,7 @@ mod tests {
         base.effects = vec![rotor, load];
         let both = fit(&flights, base, Newton::Held).unwrap();
         let leave: Vec<bool> = both.base.effects.iter().map(|of| of.id() == leaves).collect();
-        let left = fit(&flights, without(&both.base, |place| leave[place]), Newton::Held).unwrap();
+        let left = fit(&flights, both.base.without(|place| leave[place]), Newton::Held).unwrap();
         let better = better_alone(&flights, (&both, &leave), &left).unwrap();
         better.map(|(model, at)| {
             assert_eq!(model.base.effects.len(), 1);

@@ -62,7 +62,7 @@ pub(super) fn refine(
             effect = found.after.base.effects[place].id(),
             "effect is not certain with what is left over"
         );
-        found.after = fit(traces, without(&found.after.base, |of| of == place), Newton::Held)?;
+        found.after = fit(traces, found.after.base.without(|of| of == place), Newton::Held)?;
         pace.again();
     }
     // which law a drag follows says nothing of whether it is there
@@ -167,7 +167,7 @@ fn leave_out_unnamed(
     if !leaves.contains(&true) {
         return Ok(false);
     }
-    let left = fit(traces, without(&fitted.base, |place| leaves[place]), Newton::Held)?;
+    let left = fit(traces, fitted.base.without(|place| leaves[place]), Newton::Held)?;
     let instead = if are_shown { better_alone(traces, (fitted, &leaves), &left)? } else { None };
     if let Some((alone, at)) = instead
         && !unnamed((traces, given), trim, (&alone, &turning))?[at]
@@ -177,15 +177,6 @@ fn leave_out_unnamed(
     }
     found.after = left;
     Ok(true)
-}
-
-/// A model without some of its effects.
-pub(super) fn without(base: &Base, leaves: impl Fn(usize) -> bool) -> Base {
-    let mut left = base.clone();
-    let mut places = 0..;
-    left.effects.retain(|_| places.next().is_some_and(|place| !leaves(place)));
-    left.drop_wind_alone();
-    left
 }
 
 /// Which effects of a fit get no name: those of ordinary size, the least certain of those that are not certain, those that the

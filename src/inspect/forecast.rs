@@ -120,7 +120,8 @@ impl Learnt {
 
 /// With the errors that the laws of thrust and torque add to mass and moments of inertia.
 fn with_laws(mut body: Estimated) -> Estimated {
-    for (index, law) in [(0, LAW_OF_THRUST), (1, LAW_OF_TORQUE), (4, LAW_OF_TORQUE), (6, LAW_OF_TORQUE)] {
+    let [about_x, about_y, about_z] = LAW_OF_TORQUE;
+    for (index, law) in [(0, LAW_OF_THRUST), (1, about_x), (4, about_y), (6, about_z)] {
         body.covariance[(index, index)] += (law * body.theta[index]).powi(2);
     }
     body
