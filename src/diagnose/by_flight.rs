@@ -192,7 +192,8 @@ pub fn of_one_flight(
         let forms = plain.map_or_else(Vec::new, |signature| (signature.forms)(&recorded));
         terms.extend(forms.into_iter().map(|form| form.term).find(drags));
     }
-    let base = with_terms(explanation, &terms, (vehicle, &trace));
+    let mut base = with_terms(explanation, &terms, (vehicle, &trace));
+    by_stated_thrust(&mut base, vehicle, trace.torques);
     let path = path_of(&base, explanation, 0);
     let fit = flight_fit((signals, &[trace]), (base, path), (explanation.search.latency, Forms::Chosen)).ok();
     fit.map_or_else(Vec::new, |fit| parameters(&fit, explanation, &terms, None))

@@ -5,6 +5,7 @@ use super::channels::{AXES, CHANNELS, Nuisance, NuisanceColumn};
 use super::evidence::Weighted;
 use super::priors::Alike;
 use super::rows::Rows;
+use super::scale_error::beyond_stated_mass;
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::estimate::{Estimated, INERTIA_ENTRIES, THETA, ThetaCovariance, theta_of};
@@ -77,11 +78,14 @@ impl Fitted {
     pub fn with_stated_thrust(&self, stated: &Propulsion) -> Estimated {
         let of_stated = stated.full_thrust_n() / self.base.vehicle.propulsion.full_thrust_n();
         let estimated = self.rigid_body();
-        Estimated {
-            theta: estimated.theta * of_stated,
-            covariance: estimated.covariance * of_stated.powi(2),
-            ..estimated
+        let theta = estimated.theta * of_stated;
+        let mut covariance = estimated.covariance * of_stated.powi(2);
+        // without the stated mass the scale is as unsure as the curve leaves it
+        let more = beyond_stated_mass(&self.base);
+        for index in (0..theta.len()).filter(|_| more > 0.0) {
+            covariance[(index, index)] += (more * theta[index]).powi(2);
         }
+        Estimated { theta, covariance, ..estimated }
     }
 
     /// Share of the variance of the torques about body x, y, z that the inertia explains, without the part of nuisances and

@@ -6,42 +6,10 @@
 use super::base::{Base, follows_force};
 use super::channels::Nuisance;
 use super::fit::Fitted;
-use super::signature::EffectTerm;
+use super::scale_error::{of_curve, share_of_mass};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::vehicle::{Guessed, Vehicle};
-
-/// Relative error of a law's thrust at hover by its curvature there, the middle of 1.0 to 1.7: a law with another curvature about hover is
-/// elsewhere there by so much, at hover at 60 to 40 % of full thrust.
-const ELSEWHERE: f64 = 1.35;
-/// Relative standard error of the mass that a vehicle file states. Set by judgement: a battery is a third of the mass of a multirotor, and
-/// another one weighs up to a fifth more or less.
-pub const STATED_MASS: f64 = 0.07;
-
-/// Relative standard error of the thrust, and of all that is on its scale, where the stated law does not hold and nothing was weighed.
-pub(super) fn of_scale(base: &Base) -> f64 {
-    let by_curve = of_curve(base);
-    match base.weighed_kg {
-        Some(_) => 0.0,
-        None if base.has_stated_mass => by_curve * (1.0 - share_of_mass(by_curve)).sqrt(),
-        None => by_curve,
-    }
-}
-
-/// Curvature of the bent thrust curve of a model, -; 0 without one.
-pub(super) fn bend_of(base: &Base) -> f64 {
-    let bend = |term: &EffectTerm| Some(term.values[term.signature.role.bends_thrust?].abs());
-    base.effects.iter().filter_map(bend).sum()
-}
-
-fn of_curve(base: &Base) -> f64 {
-    ELSEWHERE * bend_of(base)
-}
-
-/// Weight of the stated mass beside the stated thrust, each by its variance.
-fn share_of_mass(by_curve: f64) -> f64 {
-    by_curve.powi(2) / (by_curve.powi(2) + STATED_MASS.powi(2))
-}
 
 /// Brings a model with a bent thrust curve to the scale that the stated mass and the stated thrust have together; ratios of forces and mass
 /// stay. A vehicle that was weighed has its scale, a guessed thrust says no less for a bend, and a load of one flight alone is known on the
@@ -114,6 +82,7 @@ mod tests {
     use crate::diagnose::fit::{Newton, fit};
     use crate::diagnose::latency::fit_latency;
     use crate::diagnose::made_flights::flown;
+    use crate::diagnose::scale_error::{STATED_MASS, of_scale};
     use crate::diagnose::signatures::signature_of;
     use crate::physics::ActiveEffect;
     use crate::physics::effects::by_id;

@@ -195,7 +195,7 @@ pub(in crate::study) fn of_voltage(named: &Named) -> Option<Note> {
 }
 
 /// What the mass and all forces rest on, where the model has a bent thrust curve and nothing was weighed.
-pub(in crate::study) fn of_bent_scale(fitted: &Fitted, stated: &Vehicle) -> Option<Note> {
+pub(super) fn of_bent_scale(fitted: &Fitted, stated: &Vehicle) -> Option<Note> {
     let text = format!(
         "the thrust curve is bent, and the stated thrust says less of the thrust at hover. The mass, the moments of inertia and all forces rest \
          on the stated mass of {} kg (+- {:.0} %) as well, and their errors have that of the scale, which is common to all. If the vehicle was \

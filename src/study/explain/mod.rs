@@ -36,7 +36,7 @@ mod worth_measured;
 
 pub use along_flights::AlongFlights;
 pub use body::{BodyParameter, Estimate};
-pub(super) use doubts::{of_bent_scale, of_voltage};
+pub(super) use doubts::of_voltage;
 pub use evidence::{Tried, TriedAs};
 pub use figures::{AxisResidual, Figures, Followed, Harmonics, Heat, LeftAlongTime, RecordedAndSimulated};
 pub use left_out_force::LeftOutForce;

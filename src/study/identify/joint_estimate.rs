@@ -9,8 +9,7 @@ use crate::note::Note;
 use crate::signals::Signals;
 use crate::study::doubts::{Moment, of_mass, of_shape};
 use crate::study::explain::{
-    Asked, BY_CONTROL, FlightLimit, KEPT, explain_prepared, kept_about_z, limits_of_flights, of_bent_scale,
-    of_voltage,
+    Asked, BY_CONTROL, FlightLimit, KEPT, explain_prepared, kept_about_z, limits_of_flights, of_voltage,
 };
 use crate::study::flights::Prepared;
 use crate::study::{Progress, StudyError};
@@ -152,11 +151,7 @@ pub(super) fn joint_estimate(of: &Found, vehicle: &Vehicle) -> EstimateWithEffec
     let unexplained = found.verdict == Verdict::Unexplained;
     // what serves as no explanation is not in the model
     let fitted = if unexplained { &found.search.before } else { &found.search.after };
-    let mut estimated = if fitted.base.has_stated_mass {
-        fitted.rigid_body()
-    } else {
-        fitted.with_stated_thrust(&vehicle.propulsion)
-    };
+    let mut estimated = fitted.with_stated_thrust(&vehicle.propulsion);
     estimated.by_wider_window = Some(found.search.by_wider_window);
     if !fitted.base.estimates_bend() {
         let moved = moved_by_guessed_curve(flights, vehicle).map(|by| by.on(&estimated.theta));
@@ -185,7 +180,6 @@ pub(super) fn joint_estimate(of: &Found, vehicle: &Vehicle) -> EstimateWithEffec
             .chain(mass_apart(&estimated, vehicle))
             .chain(odd_shape(&estimated, &fitted.base.vehicle).filter(|_| torque_law.is_none()))
             .chain(found.named.iter().filter_map(of_voltage))
-            .chain(of_bent_scale(fitted, vehicle))
             .collect(),
     }
 }
