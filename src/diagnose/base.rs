@@ -61,6 +61,14 @@ impl Base {
         }
     }
 
+    /// Factor of the scale of force over that of another model of the same flights, beside a bent thrust curve: residuals of both, N and N m,
+    /// are compared on one scale.
+    #[must_use]
+    pub fn scale_over(&self, other: &Self) -> f64 {
+        let full_n = |base: &Self| base.vehicle.propulsion.full_thrust_n();
+        if self.has_stated_mass { full_n(self) / full_n(other) } else { 1.0 }
+    }
+
     /// The model without some of its effects, by their places.
     pub(super) fn without(&self, leaves: impl Fn(usize) -> bool) -> Self {
         let mut left = self.clone();

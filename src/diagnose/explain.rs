@@ -325,10 +325,12 @@ fn gust_name(gust: &GustFound) -> Option<Named> {
 /// Energy that the accepted effects explain, in sigma squared of the final residual.
 fn explained_energy(found: &Search) -> f64 {
     let (before, after) = (&found.before.weighted, &found.after.weighted);
+    let scale = found.after.base.scale_over(&found.before.base);
     let rows = |channel: usize| found.after.rows.count_of(channel) as f64;
+    let ratio = |channel: usize| scale * before.sigma[channel] / after.sigma[channel];
     (0..AXES)
         .filter(|&channel| after.sigma[channel] > 0.0)
-        .map(|channel| rows(channel) * ((before.sigma[channel] / after.sigma[channel]).powi(2) - 1.0))
+        .map(|channel| rows(channel) * (ratio(channel).powi(2) - 1.0))
         .sum()
 }
 

@@ -113,13 +113,14 @@ pub(super) fn effect_rows(of: &FlightOf<'_>, flight: &AloneFlight) -> Vec<Effect
 pub(super) fn residual_rows(of: &FlightOf<'_>, flight: &AloneFlight) -> Vec<ResidualRow> {
     let Some(explanation) = explanation(flight) else { return Vec::new() };
     let (before, after) = (&explanation.search.before, &explanation.search.after);
+    let scale = after.base.scale_over(&before.base);
     let channels = CHANNEL_NAMES.into_iter().enumerate().map(|(channel, axis)| ResidualRow {
         log: of.log.to_owned(),
         flight: of.place,
         vehicle: of.vehicle.to_owned(),
         axis: axis.to_owned(),
         unit: if axis.starts_with("torque") { "N m" } else { "N" }.to_owned(),
-        before: before.weighted.sigma[channel],
+        before: scale * before.weighted.sigma[channel],
         after: after.weighted.sigma[channel],
     });
     channels.filter(|row| row.after > 0.0 && row.before.is_finite() && row.after.is_finite()).collect()

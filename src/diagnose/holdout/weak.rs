@@ -52,7 +52,9 @@ pub(super) fn residuals(
                 Ok((without_known_nuisances(&own, from), own))
             };
             let (base_before, base_after) = ready.pair.predicting();
-            let (before, _) = frozen(base_before, &search.before)?;
+            let (mut before, _) = frozen(base_before, &search.before)?;
+            let scale = base_after.scale_over(base_before);
+            before.iter_mut().flatten().for_each(|left| *left *= scale);
             let (mut after, own) = frozen(base_after, &search.after)?;
             if let Some(empirical) = empirical {
                 subtract(&mut after, empirical, &trace);

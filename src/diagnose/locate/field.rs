@@ -240,11 +240,12 @@ fn taken(before: &Fitted, after: &Fitted, columns: &[Channels]) -> f64 {
     let theta: DVector<f64> = factor.solve(&partialled.tr_mul(left));
     let rest = left - &partialled * theta;
     let rows = before.rows.len();
+    let of_force = after.base.scale_over(&before.base);
     (0..AXES)
         .filter(|&channel| after.weighted.sigma[channel] > 0.0)
         .map(|channel| {
             let part = |v: &DVector<f64>| v.rows(channel * rows, rows).norm_squared();
-            let scale = before.weighted.sigma[channel] / after.weighted.sigma[channel];
+            let scale = of_force * before.weighted.sigma[channel] / after.weighted.sigma[channel];
             (part(left) - part(&rest)) * scale * scale
         })
         .sum()

@@ -148,15 +148,17 @@ impl ExplainStudy {
         self.located.worst_axis().or_else(shown).unwrap_or(0)
     }
 
-    /// What is left of an axis over all flights, before; an empirical force is fitted to what the sensors' own part is out
+    /// What is left of an axis over all flights, before, on the final model's scale of force; an empirical force is fitted to what the sensors' own part is out
     /// of.
     pub(super) fn left_before(&self, axis: usize) -> Vec<f64> {
         let before = &self.explanation.search.before;
-        if self.empirical.is_some() {
+        let left = if self.empirical.is_some() {
             before.weighted.left_of(axis)
         } else {
             before.rows.residual[axis].clone()
-        }
+        };
+        let scale = self.scale_over_alone();
+        left.into_iter().map(|left| scale * left).collect()
     }
 
     /// The same after: of the model found, less the empirical force where there is one.
@@ -199,17 +201,19 @@ impl ExplainStudy {
     fn recorded_and_simulated(&self, rows: &[Range<usize>]) -> Vec<RecordedAndSimulated> {
         let axis = self.worst_axis();
         let (before, after) = (&self.explanation.search.before, self.fitted_after());
-        let scale = |fitted: &Fitted| {
+        let of_alone = self.scale_over_alone();
+        // the mass or moment of inertia on the scale of what is left
+        let inertia = |fitted: &Fitted, scale: f64| {
             let body = &fitted.base.vehicle.body;
-            if axis < 3 { body.mass_kg } else { body.inertia_kg_m2[(axis - 3, axis - 3)] }
+            scale * if axis < 3 { body.mass_kg } else { body.inertia_kg_m2[(axis - 3, axis - 3)] }
         };
         let left = (self.left_before(axis), self.left_after(axis));
         let flights = self.traces.iter().zip(rows).enumerate();
         flights
             .filter_map(|(flight, (trace, rows))| {
                 let recorded = recorded(trace, axis)?;
-                let simulated = |fitted: &Fitted, left: &[f64]| -> Vec<f64> {
-                    recorded.iter().zip(left).map(|(r, e)| r - e / scale(fitted)).collect()
+                let simulated = |inertia: f64, left: &[f64]| -> Vec<f64> {
+                    recorded.iter().zip(left).map(|(r, e)| r - e / inertia).collect()
                 };
                 let spans = self.explanation.located_before.iter().flat_map(|located| &located.spans);
                 let here = spans.filter(|span| span.channel == axis && span.flight == flight);
@@ -217,8 +221,8 @@ impl ExplainStudy {
                     flight,
                     axis,
                     time_s: before.rows.time_s[rows.clone()].to_vec(),
-                    before: simulated(before, &left.0[rows.clone()]),
-                    after: simulated(after, &left.1[rows.clone()]),
+                    before: simulated(inertia(before, of_alone), &left.0[rows.clone()]),
+                    after: simulated(inertia(after, 1.0), &left.1[rows.clone()]),
                     spans_s: here.map(|span| [span.from_s, span.to_s]).collect(),
                     recorded,
                 })
@@ -275,7 +279,8 @@ impl ExplainStudy {
         };
         let residual = |axis: usize| {
             let after = search.after.weighted.sigma[axis] * share(axis);
-            AxisResidual { axis: CHANNEL_NAMES[axis], before: search.before.weighted.sigma[axis] / after }
+            let before = self.scale_over_alone() * search.before.weighted.sigma[axis];
+            AxisResidual { axis: CHANNEL_NAMES[axis], before: before / after }
         };
         self.compared_axes().map(residual).collect()
     }

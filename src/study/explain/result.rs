@@ -225,15 +225,22 @@ impl ExplainStudy {
         (0..AXES).filter(|&axis| self.explanation.search.before.rows.count_of(axis) > 0)
     }
 
+    /// Factor of the final model's scale of force over that of the rigid body alone.
+    pub(super) fn scale_over_alone(&self) -> f64 {
+        let search = &self.explanation.search;
+        search.after.base.scale_over(&search.before.base)
+    }
+
     /// What is left of each axis that is compared.
     #[must_use]
     pub fn residual(&self) -> Vec<AxisFit> {
         let search = &self.explanation.search;
         let (before, after) = (search.before.weighted.sigma, search.after.weighted.sigma);
+        let scale = self.scale_over_alone();
         let axis = |index: usize| AxisFit {
             name: CHANNEL_NAMES[index],
             unit: unit_of(CHANNEL_NAMES[index]),
-            before: before[index],
+            before: scale * before[index],
             after: after[index],
         };
         self.compared_axes().map(axis).collect()
