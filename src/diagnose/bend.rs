@@ -113,10 +113,8 @@ mod tests {
     use crate::diagnose::base::Base;
     use crate::diagnose::candidates::candidates;
     use crate::diagnose::fit::{Newton, fit};
-    use crate::diagnose::made_flights::flown;
+    use crate::diagnose::made_flights::{conceal, flown};
     use crate::diagnose::signatures::ALL;
-    use crate::physics::ActiveEffect;
-    use crate::physics::effects::by_id;
     use crate::signals::Signals;
     use crate::simulate::RandomTrajectory;
     use crate::vehicle::Vehicle;
@@ -127,10 +125,7 @@ mod tests {
     /// A flight with this curvature concealed. Its gyroscopes count as noisy, so that the bend is judged by instruments.
     fn bent(curvature: f64) -> (Trace, Vehicle) {
         let (mut signals, vehicle): (Signals, _) = flown(23, &RandomTrajectory::default(), |truth, _| {
-            let effect = by_id(CURVE).unwrap();
-            let mut whole = vec![curvature];
-            whole.resize(effect.parameters().len(), 0.0);
-            truth.effects.extend((curvature != 0.0).then(|| ActiveEffect::new(effect, &whole).unwrap()));
+            conceal(truth, (curvature != 0.0).then_some((CURVE, &[curvature] as &[f64])));
         });
         signals.quality.gyro_noise_rad_s = Some(1.0);
         (Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap(), vehicle)

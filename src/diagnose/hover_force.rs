@@ -42,16 +42,12 @@ pub(super) fn excludes(shown: Vector2<f64>, expected: Vector2<f64>) -> bool {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
     use super::*;
-    use crate::diagnose::made_flights::flown;
-    use crate::physics::ActiveEffect;
-    use crate::physics::effects::by_id;
+    use crate::diagnose::made_flights::{conceal, flown};
     use crate::simulate::RandomTrajectory;
 
     fn shown(tilt: Option<[f64; 2]>) -> Vector2<f64> {
         let (signals, _) = flown(17, &RandomTrajectory::default(), |truth, _| {
-            truth
-                .effects
-                .extend(tilt.map(|tilt| ActiveEffect::new(by_id("thrust_tilt").unwrap(), &tilt).unwrap()));
+            conceal(truth, tilt.as_ref().map(|tilt| ("thrust_tilt", tilt as &[f64])));
         });
         sideways(&[signals]).unwrap()
     }

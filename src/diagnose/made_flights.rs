@@ -1,6 +1,8 @@
 //! Flights for the tests of the diagnosis: a vehicle of a seed, with what the test conceals in it.
 #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
 
+use crate::physics::ActiveEffect;
+use crate::physics::effects::by_id;
 use crate::signals::{ConditionSettings, Signals, condition};
 use crate::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight};
 use crate::vehicle::Vehicle;
@@ -22,4 +24,17 @@ pub(in crate::diagnose) fn flown(
     let conditioning = ConditionSettings { transient_s: Some(1.0), ..ConditionSettings::default() };
     let signals = condition(&flight.recording, &pair.nominal, &conditioning).unwrap();
     (signals, pair.nominal)
+}
+
+/// Adds effects to what is concealed, by their names and first values; the others are zero.
+pub(in crate::diagnose) fn conceal<'a>(
+    truth: &mut Truth,
+    effects: impl IntoIterator<Item = (&'a str, &'a [f64])>,
+) {
+    truth.effects.extend(effects.into_iter().map(|(id, values)| {
+        let effect = by_id(id).unwrap();
+        let mut whole = values.to_vec();
+        whole.resize(effect.parameters().len(), 0.0);
+        ActiveEffect::new(effect, &whole).unwrap()
+    }));
 }

@@ -130,11 +130,9 @@ mod tests {
     use crate::diagnose::ExplainSettings;
     use crate::diagnose::base::Base;
     use crate::diagnose::fit::{Newton, fit};
-    use crate::diagnose::made_flights::flown;
+    use crate::diagnose::made_flights::{conceal, flown};
     use crate::diagnose::signatures::signature_of;
     use crate::diagnose::trace::Trace;
-    use crate::physics::ActiveEffect;
-    use crate::physics::effects::by_id;
     use crate::simulate::RandomTrajectory;
 
     /// Whether the forces of a flight with these effects concealed, of a drag of 0.04 1/s, show the wind of a model with drag, hub moment and
@@ -143,12 +141,7 @@ mod tests {
         let (signals, vehicle) = flown(23, &RandomTrajectory::default(), |truth, weight_n| {
             let drag = 0.04 * weight_n;
             let all = [("linear_drag", &[drag, drag] as &[f64]), ("blade_flapping", &[0.02])];
-            truth.effects.extend(all.iter().chain(concealed).map(|(id, values)| {
-                let effect = by_id(id).unwrap();
-                let mut whole = values.to_vec();
-                whole.resize(effect.parameters().len(), 0.0);
-                ActiveEffect::new(effect, &whole).unwrap()
-            }));
+            conceal(truth, all.iter().chain(concealed).copied());
         });
         let flights = [Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap()];
         let mut base = Base::anchored(&vehicle);

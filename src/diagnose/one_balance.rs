@@ -60,21 +60,14 @@ mod tests {
     use super::*;
     use crate::diagnose::ExplainSettings;
     use crate::diagnose::latency::fit_latency;
-    use crate::diagnose::made_flights::flown;
+    use crate::diagnose::made_flights::{conceal, flown};
     use crate::diagnose::signatures::signature_of;
-    use crate::physics::ActiveEffect;
-    use crate::physics::effects::by_id;
     use crate::simulate::RandomTrajectory;
 
     /// What takes the place of a rotor and a centre of mass of which the one named `leaves` leaves, of a flight with these.
     fn alone(concealed: &[(&str, [f64; 2])], leaves: &str) -> Option<&'static str> {
         let (signals, vehicle) = flown(41, &RandomTrajectory::default(), |truth, _| {
-            truth.effects.extend(concealed.iter().map(|(id, values)| {
-                let effect = by_id(id).unwrap();
-                let mut whole = values.to_vec();
-                whole.resize(effect.parameters().len(), 0.0);
-                ActiveEffect::new(effect, &whole).unwrap()
-            }));
+            conceal(truth, concealed.iter().map(|(id, values)| (*id, values as &[f64])));
         });
         let flights = [Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap()];
         let (before, _) = fit_latency(&flights, Base::anchored(&vehicle)).unwrap();

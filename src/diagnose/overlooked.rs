@@ -109,10 +109,8 @@ mod tests {
     use crate::diagnose::ExplainSettings;
     use crate::diagnose::candidates::candidates;
     use crate::diagnose::latency::fit_latency;
-    use crate::diagnose::made_flights::flown;
+    use crate::diagnose::made_flights::{conceal, flown};
     use crate::diagnose::score::test_all;
-    use crate::physics::ActiveEffect;
-    use crate::physics::effects::by_id;
     use crate::simulate::RandomTrajectory;
 
     #[test]
@@ -120,13 +118,7 @@ mod tests {
         for (com_m, found) in [(0.02, true), (0.0, false)] {
             let (signals, vehicle) = flown(41, &RandomTrajectory::default(), |truth, weight_n| {
                 let drag = 0.04 * weight_n;
-                let all = [("linear_drag", vec![drag, drag, 0.0]), ("com_offset", vec![com_m, 0.0])];
-                truth.effects.extend(all.iter().map(|(id, values)| {
-                    let effect = by_id(id).unwrap();
-                    let mut whole = values.clone();
-                    whole.resize(effect.parameters().len(), 0.0);
-                    ActiveEffect::new(effect, &whole).unwrap()
-                }));
+                conceal(truth, [("linear_drag", &[drag, drag] as &[f64]), ("com_offset", &[com_m])]);
             });
             let flights = [Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap()];
             let (before, _) = fit_latency(&flights, Base::anchored(&vehicle)).unwrap();

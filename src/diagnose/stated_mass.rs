@@ -81,23 +81,16 @@ mod tests {
     use crate::diagnose::ExplainSettings;
     use crate::diagnose::fit::{Newton, fit};
     use crate::diagnose::latency::fit_latency;
-    use crate::diagnose::made_flights::flown;
+    use crate::diagnose::made_flights::{conceal, flown};
     use crate::diagnose::scale_error::{STATED_MASS, of_scale};
     use crate::diagnose::signatures::signature_of;
-    use crate::physics::ActiveEffect;
-    use crate::physics::effects::by_id;
     use crate::simulate::RandomTrajectory;
 
     /// A fit with a drag and a bend of this curvature, and what it was fitted to.
     fn fitted(curvature: f64) -> (Vec<Trace>, Vehicle, Fitted) {
         let (signals, vehicle) = flown(29, &RandomTrajectory::default(), |truth, weight_n| {
-            let all = [("linear_drag", [0.04 * weight_n; 2]), ("thrust_curve", [curvature, 0.0])];
-            truth.effects.extend(all.iter().map(|(id, values)| {
-                let effect = by_id(id).unwrap();
-                let mut whole = values.to_vec();
-                whole.resize(effect.parameters().len(), 0.0);
-                ActiveEffect::new(effect, &whole).unwrap()
-            }));
+            let drag = [0.04 * weight_n; 2];
+            conceal(truth, [("linear_drag", &drag as &[f64]), ("thrust_curve", &[curvature])]);
         });
         let traces = vec![Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap()];
         let (before, _) = fit_latency(&traces, Base::anchored(&vehicle)).unwrap();

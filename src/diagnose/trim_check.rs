@@ -200,11 +200,17 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_thrust_axis_that_leans_has_to_be_felt_in_hover() {
+    /// The vehicle of a practice case, and a rigid body of it.
+    fn practice() -> (Vehicle, Base) {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/p01_vehicle.toml");
         let vehicle = crate::config::load_vehicle(&path).unwrap();
-        let mut base = Base::anchored(&vehicle);
+        let base = Base::anchored(&vehicle);
+        (vehicle, base)
+    }
+
+    #[test]
+    fn a_thrust_axis_that_leans_has_to_be_felt_in_hover() {
+        let (_, mut base) = practice();
         let tilt = signature_of("thrust_tilt").unwrap();
         base.effects.push(tilt.term(&[0.0, 0.04], &[0, 1]));
         let felt = |x| Trim { each: Vec::new(), sideways: Some(Vector2::new(x, 0.0)) };
@@ -218,9 +224,7 @@ mod tests {
 
     #[test]
     fn a_weak_rotor_has_to_show_in_hover() {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/p01_vehicle.toml");
-        let vehicle = crate::config::load_vehicle(&path).unwrap();
-        let mut base = Base::anchored(&vehicle);
+        let (vehicle, mut base) = practice();
         let weak = signature_of("weak_rotor").unwrap();
         base.effects.push(weak.term(&[1.0, 0.7], &[1]));
         // commands without torque exclude a rotor that gives seven tenths

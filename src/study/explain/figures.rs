@@ -315,7 +315,10 @@ impl ExplainStudy {
         let axis = self.worst_axis();
         let after = self.explanation.lack_of_fit.as_ref()?;
         let alone = &self.explanation.search.before.rows;
-        let residual = std::array::from_fn(|channel| &alone.residual[channel][rows.clone()]);
+        let scale = self.scale_over_alone();
+        let scaled = |left: &[f64]| left.iter().map(|left| scale * left).collect::<Vec<f64>>();
+        let left = alone.residual.each_ref().map(|of| of.get(rows.clone()).map_or_else(Vec::new, scaled));
+        let residual = std::array::from_fn(|channel| left[channel].as_slice());
         let before = lack_of_fit(&alone.time_s[rows.clone()], residual, after.period_s)?;
         Some(Harmonics {
             axis: CHANNEL_NAMES[axis],
