@@ -197,9 +197,9 @@ pub(in crate::study) fn of_voltage(named: &Named) -> Option<Note> {
 /// What the mass and all forces rest on, where the model has a bent thrust curve and nothing was weighed.
 pub(super) fn of_bent_scale(fitted: &Fitted, stated: &Vehicle) -> Option<Note> {
     let text = format!(
-        "the thrust curve is bent, and the stated thrust says less of the thrust at hover. The mass, the moments of inertia and all forces rest \
-         on the stated mass of {} kg (+- {:.0} %) as well, and their errors have that of the scale, which is common to all. If the vehicle was \
-         weighed as it flew, write anchor = \"mass\" under [identify] into the vehicle file",
+        "the thrust curve is bent, so the stated thrust tells less about the thrust at hover. The mass, the moments of inertia and all forces \
+         rest on the stated mass as well, {} kg (+- {:.0} %). The error of this scale is in all of their errors. If the vehicle was weighed as \
+         it flew, write anchor = \"mass\" under [identify] into the vehicle file",
         significant(stated.body.mass_kg, 3),
         100.0 * STATED_MASS
     );
