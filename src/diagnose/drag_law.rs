@@ -136,7 +136,15 @@ fn settled(base: &Base, told: &Reconstructed) -> Option<Base> {
     let was = |law: &Law| base.effects.iter().any(|term| term.is(law.term.signature));
     let told: Vec<Law> = laws(told).collect();
     let stays = |law: &Law| law.possible && law.z > if was(law) { STAYS_Z } else { ENTERS_Z };
-    if !told.iter().any(stays) || told.iter().all(|law| was(law) == stays(law)) {
+    // where one law hides what the other one has along an axis, neither has it alone
+    let lacks_axis = |law: &Law| {
+        let mut present = base.effects.iter().filter(|term| term.is(law.term.signature));
+        let vertical = law.term.signature.role.vertical;
+        present.any(|term| law.free.iter().any(|slot| Some(*slot) != vertical && !term.free.contains(slot)))
+    };
+    let shares = told.iter().filter(|law| stays(law)).count() > 1 && told.iter().any(lacks_axis);
+    let changes = shares || told.iter().any(|law| was(law) != stays(law));
+    if !told.iter().any(stays) || !changes {
         return None;
     }
     let mut out = base.clone();
@@ -205,6 +213,23 @@ mod tests {
             .iter()
             .map(|term| (term.id(), term.free.clone()))
             .collect()
+    }
+
+    #[test]
+    fn two_laws_share_the_axes_across_the_rotors() {
+        let laws = both_laws();
+        let told = [[1.4, 1.4], [0.4, 0.3]];
+        let all = |free: [&[usize]; 2]| {
+            let mut base = Base::rigid(&vehicle());
+            let terms = laws.iter().zip(free);
+            base.effects =
+                terms.map(|(law, free)| EffectTerm { free: free.to_vec(), ..law.whole() }).collect();
+            base
+        };
+        let told = Reconstructed::by_hand(all([&[0, 1], &[0, 1]]), told.as_flattened(), 0.1);
+        let settled = settled(&all([&[0, 1], &[0]]), &told).expect("one law lacks an axis");
+        assert!(settled.effects.iter().all(|term| term.free == [0, 1]));
+        assert!(super::settled(&all([&[0, 1], &[0, 1]]), &told).is_none());
     }
 
     #[test]

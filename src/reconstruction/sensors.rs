@@ -14,9 +14,9 @@ use super::residuals::{Residuals, Row};
 /// Share of the accelerometer that the autopilot's velocity integrates. Estimators predict with the accelerometer and
 /// correct the rest from the receiver; the learned noise level takes up an error of this.
 const SHARED: f64 = 0.9;
-/// Its forgetting, 1/s. It is the time of 2 s in which an estimator follows its receiver; the learned noise level
-/// takes up an error of this.
-const FORGET_1_S: f64 = 0.5;
+/// Its forgetting, 1/s. The position has told what is slower than a second of the error; the learned noise level takes up an error of
+/// this. Half of it and twice as much change no bar of the simulated flights.
+const FORGET_1_S: f64 = 1.0;
 
 /// Standard deviation of the time by which the body turns between a force and the frame of the accelerometer's sample of it, s. A sample is
 /// a mean over 1 to 8 ms, and the simulator of an autopilot turns the body between force and sample by a step of its own (4 ms in

@@ -1,19 +1,18 @@
 //! Conditioning of one flight: streams are chosen, aligned, interpolated to one grid, and masked.
 
 use super::actuation::{Actuation, ThrustPreference};
-use super::align::{
-    AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, rate_offset,
-    vectors_onto, velocity_offset,
-};
+use super::align::{AlignFrame, vectors_onto};
 use super::changed::{changes_in_the_air, resting_on_defaults};
-use super::flight::{AsRecorded, Quality, Series, Signals};
+use super::chosen::Chosen;
+use super::flight::{Quality, Series, Signals};
 use super::height::{is_height_by_pose, is_position_by_receiver};
 use super::lifts::too_little;
+use super::motion::Motion;
 use super::noise::gyro_noise_rad_s;
 use super::own::OwnOfFlight;
 use super::reference::reference;
 use super::rotor_thrusts::ThrustSource;
-use super::select::{best, best_of, mean_rate_hz, median_period_s, too_short};
+use super::select::{mean_rate_hz, median_period_s, too_short};
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
 use super::usable::{Evidence, Usable, airborne_spans, usable};
 use super::voltage::{battery_voltage_v, steady_voltage_v};
@@ -22,8 +21,7 @@ use crate::autopilot::is_simulated;
 use crate::note::Note;
 use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
-use nalgebra::{UnitQuaternion, Vector3};
-use std::sync::Arc;
+use nalgebra::Vector3;
 
 /// Half width of the weak form's test function, s: over less a mean force is noise, over more it loses motion of over 2 Hz.
 pub const WEAK_HALF_WIDTH_S: f64 = 0.2;
@@ -63,7 +61,8 @@ impl Default for ConditionSettings {
     }
 }
 
-/// Conditions one flight: chooses streams, aligns them in time, and puts them on one grid. Nothing is smoothed.
+/// Conditions one flight: chooses streams, aligns them in time, puts them on one grid, and takes the slow error out of the velocity
+/// that its position tells. Nothing is smoothed.
 ///
 /// ```
 /// use mavid::config::load_vehicle;
@@ -128,7 +127,7 @@ pub fn condition(
         wrench: felt.wrench.into(),
         jitter_wrench: felt.jitter_wrench.map(Series::new),
         battery_voltage_v: battery_voltage_v(recording, &grid).map(Series::new),
-        as_recorded: chosen.as_recorded(),
+        as_recorded: chosen.as_recorded(motion.slow_error_m_s.as_deref(), &grid),
         reference: reference(recording, &grid),
         own: OwnOfFlight::default(),
         air_m_s: Vector3::zeros(),
@@ -218,62 +217,6 @@ pub fn stride(step_s: f64) -> usize {
     stride
 }
 
-/// The streams that were chosen.
-struct Chosen<'a> {
-    attitude: Option<(&'static str, &'a Stream)>,
-    rate: Option<(&'static str, &'a Stream)>,
-    specific_force: Option<(&'static str, &'a Stream)>,
-    world_acceleration: Option<(&'static str, &'a Stream)>,
-    position: Option<(&'static str, &'a Stream)>,
-    velocity: Option<(&'static str, &'a Stream)>,
-    gps_velocity: Option<(&'static str, &'a Stream)>,
-    /// body rates of the message that brings the specific force, where the chosen rates come by another
-    inertial_rate: Option<&'a Stream>,
-}
-
-impl<'a> Chosen<'a> {
-    fn from(recording: &'a Recording) -> Self {
-        let pick = |quantity, width| {
-            best(recording, quantity, |s: &Stream| s.width == width).map(|(key, stream)| (key.source, stream))
-        };
-        let (rate, specific_force) = (pick(Quantity::AngularRate, 3), pick(Quantity::SpecificForce, 3));
-        let by_another = rate.zip(specific_force).filter(|((of_rate, _), (of_force, _))| of_rate != of_force);
-        let inertial_rate = by_another.and_then(|(_, (of_force, _))| {
-            best_of(recording, Quantity::AngularRate, |key, s| s.width == 3 && key.source == of_force)
-        });
-        Self {
-            attitude: pick(Quantity::Attitude, 4),
-            rate,
-            inertial_rate: inertial_rate.map(|(_, stream)| stream),
-            specific_force,
-            world_acceleration: pick(Quantity::WorldAcceleration, 3),
-            position: pick(Quantity::Position, 3),
-            velocity: pick(Quantity::Velocity, 3),
-            gps_velocity: pick(Quantity::GpsVelocity, 3),
-        }
-    }
-
-    fn as_recorded(&self) -> AsRecorded {
-        let kept = |stream: Option<(&'static str, &Stream)>| stream.map(|(_, s)| Arc::new(s.clone()));
-        AsRecorded {
-            specific_force: kept(self.specific_force),
-            velocity: kept(self.velocity),
-            gps_velocity: kept(self.gps_velocity),
-        }
-    }
-
-    fn list(&self) -> [(Quantity, Option<(&'static str, &'a Stream)>); 6] {
-        [
-            (Quantity::Attitude, self.attitude),
-            (Quantity::AngularRate, self.rate),
-            (Quantity::SpecificForce, self.specific_force),
-            (Quantity::WorldAcceleration, self.world_acceleration),
-            (Quantity::Position, self.position),
-            (Quantity::Velocity, self.velocity),
-        ]
-    }
-}
-
 fn step(
     recording: &Recording,
     chosen: &Chosen<'_>,
@@ -329,64 +272,4 @@ fn common_grid(chosen: &Chosen<'_>, actuation: &Stream, step_s: f64) -> Result<G
         return Err(SignalsError::NoOverlap { overlap_s: (end - start).max(0.0) });
     }
     Ok(Grid::covering(start, end, step_s))
-}
-
-/// The body's motion on the grid, with corrected offsets.
-struct Motion {
-    attitude: Option<Vec<UnitQuaternion<f64>>>,
-    rate: Option<Vec<Vector3<f64>>>,
-    specific_force: Option<Vec<Vector3<f64>>>,
-    world_acceleration: Option<Vec<Vector3<f64>>>,
-    position: Option<Vec<Vector3<f64>>>,
-    velocity: Option<Vec<Vector3<f64>>>,
-    offsets: Vec<(Quantity, StreamOffset)>,
-}
-
-impl Motion {
-    fn aligned(
-        chosen: &Chosen<'_>,
-        rate: Option<Vec<Vector3<f64>>>,
-        frame: &AlignFrame<'_>,
-        gravity_m_s2: f64,
-    ) -> Self {
-        let grid = frame.grid;
-        let plain = |s: Option<(&'static str, &Stream)>| s.and_then(|(_, s)| vectors_onto(s, 0.0, grid));
-        let mut offsets = Vec::new();
-        let mut rate = rate;
-        if let Some(((_, stream), inertial)) = chosen.rate.zip(chosen.inertial_rate)
-            && let Some(offset) = rate_offset(stream, inertial, frame)
-        {
-            offsets.push((Quantity::AngularRate, offset));
-            if offset.repaired {
-                rate = vectors_onto(stream, offset.late_s, grid);
-            }
-        }
-        let mut note = |quantity, offset: Option<StreamOffset>| {
-            offset.map_or(0.0, |offset| {
-                offsets.push((quantity, offset));
-                if offset.repaired { offset.late_s } else { 0.0 }
-            })
-        };
-        let specific_force = plain(chosen.specific_force);
-        let attitude = chosen.attitude.and_then(|(_, stream)| {
-            let offset = rate.as_ref().and_then(|rate| attitude_offset(stream, rate, frame));
-            attitudes_onto(stream, note(Quantity::Attitude, offset), grid)
-        });
-        let velocity = chosen.velocity.and_then(|(_, stream)| {
-            let offset = match (&attitude, &rate, &specific_force) {
-                (Some(attitude), Some(rate), Some(specific_force)) => {
-                    let inertial = InertialOnGrid { attitude, rate, specific_force, gravity_m_s2 };
-                    velocity_offset(stream, &inertial, frame)
-                }
-                _ => None,
-            };
-            vectors_onto(stream, note(Quantity::Velocity, offset), grid)
-        });
-        let position = chosen.position.and_then(|(_, stream)| {
-            let offset = velocity.as_ref().and_then(|velocity| position_offset(stream, velocity, frame));
-            vectors_onto(stream, note(Quantity::Position, offset), grid)
-        });
-        let world_acceleration = plain(chosen.world_acceleration);
-        Self { attitude, rate, specific_force, world_acceleration, position, velocity, offsets }
-    }
 }
