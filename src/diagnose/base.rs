@@ -32,8 +32,9 @@ pub struct Base {
     /// kg: the vehicle has this mass, and the scale of its thrust is estimated; `None`: the stated thrust is trusted, and the
     /// mass is estimated
     pub weighed_kg: Option<f64>,
-    /// the scale is that of the stated mass and of the stated thrust together, as a bent thrust curve leaves both
-    pub has_stated_mass: bool,
+    /// the scale is that of the stated mass and of the stated thrust together, as a bent thrust curve leaves both: by how many standard
+    /// errors they differ
+    pub stated_mass_differs: Option<f64>,
     /// a simulator flew, and it leaves the gyroscopic torque out: the share that acts is estimated
     pub estimates_gyroscopic: bool,
     /// the accelerometer is taken to be without bias, because the bias that fitted best is no accelerometer's
@@ -66,7 +67,7 @@ impl Base {
     #[must_use]
     pub fn scale_over(&self, other: &Self) -> f64 {
         let full_n = |base: &Self| base.vehicle.propulsion.full_thrust_n();
-        if self.has_stated_mass { full_n(self) / full_n(other) } else { 1.0 }
+        if self.stated_mass_differs.is_some() { full_n(self) / full_n(other) } else { 1.0 }
     }
 
     /// The model without some of its effects, by their places.
@@ -93,7 +94,7 @@ impl Base {
             latency: ActuationLatency::default(),
             effects: Vec::new(),
             weighed_kg: None,
-            has_stated_mass: false,
+            stated_mass_differs: None,
             estimates_gyroscopic: false,
             is_unbiased: false,
             begun_kg_m2: vehicle.body.inertia_kg_m2,

@@ -18,6 +18,7 @@ use super::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::signals::Signals;
 use crate::stats::normal_deviate;
+use nalgebra::{DMatrix, DVector};
 
 /// Normal deviate that a law needs that the search missed. One more than a name needs: the search had its say.
 const ENTERS_Z: f64 = NAME_Z + 1.0;
@@ -106,6 +107,8 @@ struct Law<'a> {
     z: f64,
     /// none of these coefficients is certainly below nothing
     possible: bool,
+    /// place of the law among the effects of the flight path
+    place: usize,
     /// slots of those across the rotor axis, and of that along it where it is told
     free: Vec<usize>,
 }
@@ -116,31 +119,43 @@ fn laws(told: &Reconstructed) -> impl Iterator<Item = Law<'_>> {
         let vertical = term.signature.role.vertical;
         let is_across = |slot: &usize| term.is_amount(*slot) && Some(*slot) != vertical;
         let mut free: Vec<usize> = term.free.iter().copied().filter(is_across).collect();
-        let (values, covariance) = told.of(place, &free);
+        let places = |slots: &[usize]| slots.iter().map(|slot| (place, *slot)).collect::<Vec<_>>();
+        let (values, covariance) = told.of(&places(&free));
         let std = |at: usize| covariance[(at, at)].max(0.0).sqrt();
         let possible = (0..values.len()).all(|at| values[at] > -CERTAIN * std(at)) && values.sum() > 0.0;
         if let Some(slot) = vertical {
-            let (along, variance) = told.of(place, &[slot]);
+            let (along, variance) = told.of(&[(place, slot)]);
             let is_told = |value: &&f64| **value > CERTAIN * variance[(0, 0)].max(0.0).sqrt();
             free.extend(along.iter().find(is_told).map(|_| slot));
         }
-        let information = covariance.cholesky().map(|root| root.inverse());
-        let wald = information.map_or(0.0, |information| values.dot(&(information * &values)));
-        let z = normal_deviate(wald, values.len());
-        Law { term, z, possible, free }
+        Law { term, z: away_from_nothing((values, covariance)), possible, place, free }
     })
+}
+
+/// Normal deviate of estimates together from nothing (Wald).
+fn away_from_nothing((values, covariance): (DVector<f64>, DMatrix<f64>)) -> f64 {
+    let information = covariance.cholesky().map(|root| root.inverse());
+    let wald = information.map_or(0.0, |information| values.dot(&(information * &values)));
+    normal_deviate(wald, values.len())
 }
 
 /// The model with the laws that the flight path tells; `None` where it has these, or where the flight path tells none.
 fn settled(base: &Base, told: &Reconstructed) -> Option<Base> {
     let was = |law: &Law| base.effects.iter().any(|term| term.is(law.term.signature));
-    let told: Vec<Law> = laws(told).collect();
+    let path = told;
+    let told: Vec<Law> = laws(path).collect();
     let stays = |law: &Law| law.possible && law.z > if was(law) { STAYS_Z } else { ENTERS_Z };
-    // where one law hides what the other one has along an axis, neither has it alone
+    // where one law hides what the other one has along an axis across the rotors', neither has it alone
+    let is_axis_told = |slot: usize| {
+        let places: Vec<_> = told.iter().map(|law| (law.place, slot)).collect();
+        away_from_nothing(path.of(&places)) > STAYS_Z
+    };
     let lacks_axis = |law: &Law| {
         let mut present = base.effects.iter().filter(|term| term.is(law.term.signature));
-        let vertical = law.term.signature.role.vertical;
-        present.any(|term| law.free.iter().any(|slot| Some(*slot) != vertical && !term.free.contains(slot)))
+        let is_across = |slot: usize| law.term.signature.role.vertical != Some(slot);
+        present.any(|term| {
+            law.free.iter().any(|&slot| is_across(slot) && !term.free.contains(&slot) && is_axis_told(slot))
+        })
     };
     let shares = told.iter().filter(|law| stays(law)).count() > 1 && told.iter().any(lacks_axis);
     let changes = shares || told.iter().any(|law| was(law) != stays(law));
@@ -169,7 +184,8 @@ fn settled(base: &Base, told: &Reconstructed) -> Option<Base> {
             _ => {}
         }
         for term in out.effects.iter_mut().filter(|term| term.is(law.term.signature)) {
-            term.free.extend(&law.free);
+            let is_new = |slot: &usize| !is_there || !shares || is_axis_told(*slot);
+            term.free.extend(law.free.iter().copied().filter(is_new));
             term.free.extend(along(law).filter(|_| leaves_along));
             term.free.sort_unstable();
             term.free.dedup();
@@ -226,10 +242,14 @@ mod tests {
                 terms.map(|(law, free)| EffectTerm { free: free.to_vec(), ..law.whole() }).collect();
             base
         };
-        let told = Reconstructed::by_hand(all([&[0, 1], &[0, 1]]), told.as_flattened(), 0.1);
-        let settled = settled(&all([&[0, 1], &[0]]), &told).expect("one law lacks an axis");
-        assert!(settled.effects.iter().all(|term| term.free == [0, 1]));
-        assert!(super::settled(&all([&[0, 1], &[0, 1]]), &told).is_none());
+        let both = || all([&[0, 1], &[0, 1]]);
+        let path = Reconstructed::by_hand(both(), told.as_flattened(), 0.1);
+        let settled_to = settled(&all([&[0, 1], &[0]]), &path).expect("one law lacks an axis");
+        assert!(settled_to.effects.iter().all(|term| term.free == [0, 1]));
+        assert!(settled(&both(), &path).is_none());
+        // along y the flight path tells neither
+        let path = Reconstructed::by_hand(both(), &[1.4, 0.1, 0.4, 0.1], 0.1);
+        assert!(settled(&all([&[0, 1], &[0]]), &path).is_none());
     }
 
     #[test]

@@ -91,13 +91,13 @@ impl Reconstructed {
         Self { base, terms, pooled: PooledEstimate { values, covariance }, paths: Vec::new() }
     }
 
-    /// Estimates, SI, and covariance of those `slots` of the effect at `place` that the forces tell.
-    pub(super) fn of(&self, place: usize, slots: &[usize]) -> (DVector<f64>, DMatrix<f64>) {
-        let own = self.terms[place].free.iter().enumerate();
-        let at: Vec<usize> = own
-            .filter(|(_, slot)| slots.contains(slot))
-            .map(|(index, _)| self.first(place) + index)
-            .collect();
+    /// Estimates, SI, and covariance of those values, each by the place of its effect and its slot, that the forces tell.
+    pub(super) fn of(&self, asked: &[(usize, usize)]) -> (DVector<f64>, DMatrix<f64>) {
+        let place_of = |&(place, slot): &(usize, usize)| {
+            let own = self.terms[place].free.iter().position(|free| *free == slot)?;
+            Some(self.first(place) + own)
+        };
+        let at: Vec<usize> = asked.iter().filter_map(place_of).collect();
         let PooledEstimate { values, covariance } = &self.pooled;
         (values.select_rows(&at), covariance.select_rows(&at).select_columns(&at))
     }

@@ -3,7 +3,9 @@
 use super::*;
 use crate::diagnose::channels::SECOND;
 use crate::recording::Quantity;
-use crate::signals::{AsRecorded, Grid, OwnOfFlight, Quality, Series, Signals, ThrustSource, Usable};
+use crate::signals::{
+    AsRecorded, Grid, OwnOfFlight, Quality, Series, Signals, ThrustSource, Usable, VelocityHeldBy,
+};
 use crate::simulate::random_vehicle;
 use crate::vehicle::{RigidBody, Rotor, Spin, Vehicle};
 use nalgebra::{Matrix3, UnitQuaternion, Vector4};
@@ -83,7 +85,7 @@ pub(in super::super) fn turning_on_the_spot() -> Signals {
             usable: Usable::default(),
             torques: true,
             gyro_noise_rad_s: None,
-            height_by_pose: None,
+            velocity_held_by: VelocityHeldBy::default(),
             position_by_receiver: false,
             steady_voltage_v: None,
             torque_std: 0.0,

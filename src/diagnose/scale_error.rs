@@ -15,8 +15,10 @@ pub(super) fn of_scale(base: &Base) -> f64 {
     let by_curve = of_curve(base);
     match base.weighed_kg {
         Some(_) => 0.0,
-        None if base.has_stated_mass => by_curve * (1.0 - share_of_mass(by_curve)).sqrt(),
-        None => by_curve,
+        None => base.stated_mass_differs.map_or(by_curve, |differs| {
+            // a mean of what differs by more than its errors is as unsure as it differs (Birge 1932)
+            by_curve * (1.0 - share_of_mass(by_curve)).sqrt() * differs.abs().max(1.0)
+        }),
     }
 }
 
@@ -33,7 +35,19 @@ pub(super) fn of_curve(base: &Base) -> f64 {
 
 /// Relative standard error that the scale of the stated thrust alone has beyond that of a settled model; 0 of others.
 pub(super) fn beyond_stated_mass(base: &Base) -> f64 {
-    if base.has_stated_mass { (of_curve(base).powi(2) - of_scale(base).powi(2)).max(0.0).sqrt() } else { 0.0 }
+    if base.stated_mass_differs.is_none() {
+        return 0.0;
+    }
+    (of_curve(base).powi(2) - of_scale(base).powi(2)).max(0.0).sqrt()
+}
+
+/// By how many standard errors of both the stated mass (kg) and the mass by the stated thrust differ, where the thrust curve of the model is bent and
+/// nothing was weighed; `None` of other models.
+#[must_use]
+pub fn stated_mass_differs(base: &Base, stated_kg: f64) -> Option<f64> {
+    let by_curve = of_curve(base);
+    let apart = (stated_kg / base.vehicle.body.mass_kg).ln();
+    (by_curve > 0.0 && base.weighed_kg.is_none()).then(|| apart / by_curve.hypot(STATED_MASS))
 }
 
 /// Weight of the stated mass beside the stated thrust, each by its variance.

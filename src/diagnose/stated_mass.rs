@@ -6,14 +6,18 @@
 use super::base::{Base, follows_force};
 use super::channels::Nuisance;
 use super::fit::Fitted;
-use super::scale_error::{of_curve, share_of_mass};
+use super::scale_error::{of_curve, share_of_mass, stated_mass_differs};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
 use crate::vehicle::{Guessed, Vehicle};
 
+/// Standard errors by which the stated mass and the stated thrust may differ. Beyond, one of both is of another vehicle, and a mean of both is of
+/// none.
+pub const CONTRADICTED: f64 = 3.0;
+
 /// Brings a model with a bent thrust curve to the scale that the stated mass and the stated thrust have together; ratios of forces and mass
-/// stay. A vehicle that was weighed has its scale, a guessed thrust says no less for a bend, and a load of one flight alone is known on the
-/// scale of the stated thrust. `by_other_law` are variances of the effects' free values, which go with them.
+/// stay. A vehicle that was weighed has its scale, a guessed thrust says no less for a bend, a load of one flight alone is known on the
+/// scale of the stated thrust, and that scale stays where both contradict each other. `by_other_law` are variances of the effects' free values, which go with them.
 ///
 /// # Errors
 /// [`PhysicsError`] where the model is not physical.
@@ -23,14 +27,14 @@ pub(super) fn settle_scale(
     (fitted, by_other_law): (&mut Fitted, &mut [f64]),
 ) -> Result<(), PhysicsError> {
     let base = &fitted.base;
-    let by_curve = of_curve(base);
     let is_loaded = traces.iter().any(|trace| trace.own.payload_kg != 0.0);
-    if by_curve == 0.0 || base.weighed_kg.is_some() || stated.guessed(Guessed::ThrustMax) > 0.0 || is_loaded {
+    let Some(differs) = stated_mass_differs(base, stated.body.mass_kg) else { return Ok(()) };
+    if stated.guessed(Guessed::ThrustMax) > 0.0 || is_loaded || differs.abs() > CONTRADICTED {
         return Ok(());
     }
-    let apart = stated.body.mass_kg / base.vehicle.body.mass_kg;
+    let (by_curve, apart) = (of_curve(base), stated.body.mass_kg / base.vehicle.body.mass_kg);
     let mass_kg = base.vehicle.body.mass_kg * apart.powf(share_of_mass(by_curve));
-    let mut settled = Base { has_stated_mass: true, ..base.clone() };
+    let mut settled = Base { stated_mass_differs: Some(differs), ..base.clone() };
     let factor = scale_to(&mut settled, mass_kg, fitted.rows.compares_torques);
     let mut after = fitted.moved_to(traces, settled)?;
     for column in following(fitted) {
@@ -49,10 +53,10 @@ pub(super) fn settle_scale(
 /// Brings a model back to the scale of the stated thrust alone. Flights that are explained each alone are compared there: each has its own mass,
 /// and the stated one would hide by how much they differ.
 pub(super) fn by_stated_thrust(base: &mut Base, stated: &Vehicle, compares_torques: bool) {
-    if base.has_stated_mass {
+    if base.stated_mass_differs.is_some() {
         let factor = stated.propulsion.full_thrust_n() / base.vehicle.propulsion.full_thrust_n();
         scale_to(base, factor * base.vehicle.body.mass_kg, compares_torques);
-        base.has_stated_mass = false;
+        base.stated_mass_differs = None;
     }
 }
 
@@ -140,6 +144,24 @@ mod tests {
     }
 
     #[test]
+    fn a_mass_that_contradicts_the_stated_thrust_sets_no_scale() {
+        let (traces, mut stated, before) = fitted(0.25);
+        let by_curve = of_scale(&before.base);
+        for (deviates, sets) in [(2.9, true), (3.1, false), (-2.9, true), (-3.1, false)] {
+            let apart = f64::exp(deviates * by_curve.hypot(STATED_MASS));
+            stated.body.mass_kg = apart * before.base.vehicle.body.mass_kg;
+            let mut after = before.clone();
+            settle_scale(&traces, &stated, (&mut after, &mut [])).unwrap();
+            assert_eq!(after.base.stated_mass_differs.is_some(), sets, "{deviates}");
+            // the error of their mean is as large as they differ
+            let as_alike = by_curve * (1.0 - share_of_mass(by_curve)).sqrt();
+            let expected = if sets { 2.9 * as_alike } else { by_curve };
+            assert!(near(of_scale(&after.base), expected));
+            assert_eq!(near(after.base.vehicle.body.mass_kg, before.base.vehicle.body.mass_kg), !sets);
+        }
+    }
+
+    #[test]
     fn a_vehicle_that_was_weighed_and_a_curve_that_holds_keep_their_scale() {
         let (traces, stated, mut bent) = fitted(0.25);
         bent.base.weighed_kg = Some(bent.base.vehicle.body.mass_kg);
@@ -149,7 +171,7 @@ mod tests {
             let mut after = fitted.clone();
             settle_scale(&traces, &stated, (&mut after, &mut [])).unwrap();
             assert!(near(after.base.vehicle.body.mass_kg, fitted.base.vehicle.body.mass_kg));
-            assert!(!after.base.has_stated_mass && of_scale(&after.base) == 0.0);
+            assert!(after.base.stated_mass_differs.is_none() && of_scale(&after.base) == 0.0);
         }
     }
 }

@@ -9,7 +9,8 @@ use super::trace_error::TraceError;
 use crate::physics::{ActuationLatency, Airframe, State};
 use crate::reconstruction::velocity_error_m_s;
 use crate::signals::{
-    Butterworth, Grid, OwnOfFlight, Series, Signals, ThrustSource, WeakKernel, central_difference, stride,
+    Butterworth, Grid, OwnOfFlight, Series, Signals, ThrustSource, VelocityHeldBy, WeakKernel,
+    central_difference, stride,
 };
 use crate::vehicle::{Propulsion, RigidBody, Vehicle};
 use nalgebra::{DMatrix, UnitQuaternion, Vector3, Vector4};
@@ -68,8 +69,8 @@ pub struct Trace {
     pub(super) felt_m_s2: Series<Vector3<f64>>,
     /// m/s^2
     pub gravity_m_s2: f64,
-    /// whether motion capture or a camera gives the height; `None` where it is not known
-    pub height_by_pose: Option<bool>,
+    /// what holds the vertical velocity beside the accelerometer
+    pub velocity_held_by: VelocityHeldBy,
     /// a satellite receiver gives the position
     pub position_by_receiver: bool,
     /// relative standard error that all torques about x and y have in common
@@ -147,7 +148,7 @@ impl Trace {
             smooth_lift: Series::default(),
             felt_m_s2: Series::default(),
             gravity_m_s2: vehicle.gravity_m_s2,
-            height_by_pose: signals.quality.height_by_pose,
+            velocity_held_by: signals.quality.velocity_held_by,
             position_by_receiver: signals.quality.position_by_receiver,
             torque_std: signals.quality.torque_std,
             simulated: signals.quality.simulated,

@@ -4,7 +4,7 @@ use super::super::rows::Rows;
 use super::super::rows::tests::{turning_on_the_spot, vehicle};
 use super::super::signatures::signature_of;
 use super::*;
-use crate::signals::Signals;
+use crate::signals::{Signals, VelocityHeldBy};
 use std::sync::Arc;
 
 /// Errors of the vertical velocity at the knots, m/s.
@@ -74,9 +74,14 @@ fn the_error_has_the_stated_root_mean_square() {
         |of: &dyn Fn(f64) -> f64| (0..1000).map(|i| of((f64::from(i) + 0.5) * 1e-3)).sum::<f64>() * 1e-3;
     let between = mean(&|s| (1.0 - s).powi(2) + s * s);
     assert!((between - BETWEEN_KNOTS).abs() < 1e-6);
-    for (height_by_pose, rms_m_s) in [(false, RMS_M_S), (true, RMS_BY_POSE_M_S)] {
+    for (pose, position, rms_m_s) in [
+        (Some(false), false, RMS_M_S),
+        (None, true, RMS_BY_POSITION_M_S),
+        (Some(true), false, RMS_BY_POSE_M_S),
+        (Some(true), true, RMS_BY_POSE_M_S),
+    ] {
         let mut signals = turning_on_the_spot();
-        signals.quality.height_by_pose = Some(height_by_pose);
+        signals.quality.velocity_held_by = VelocityHeldBy { pose, position };
         let rows = rows(signals, |_| 0.0);
         let of_knot = rows.nuisances.iter().find(|column| column.nuisance == Nuisance::VelocityError);
         let std_m_s = of_knot.and_then(|column| column.prior_std).unwrap();

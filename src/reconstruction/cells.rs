@@ -10,6 +10,9 @@ use crate::recording::{Quantity, Stream};
 use crate::signals::{Grid, Signals, white_level};
 use crate::vehicle::Vehicle;
 
+/// Forgetting of the error of the autopilot's velocity, 1/s. It is the time of 2 s in which an estimator follows its receiver; of 1 s where the
+/// position has told what is slower. The learned noise level takes up an error of this.
+const FORGET_1_S: (f64, f64) = (0.5, 1.0);
 /// Height over the place of take-off at which a vehicle is in the air, m: on the ground it is carried, and the fit would explain
 /// that by drag.
 const AIRBORNE_M: f64 = 1.0;
@@ -27,6 +30,10 @@ const LEAST_CELLS: usize = 200;
 /// Accelerometers read no less than this, m/s^2: the resolution of the messages. MAVLink's RAW_IMU counts in milli-g,
 /// 0.0098 m/s^2, whose rounding has a standard deviation of 0.0028.
 const LEAST_NOISE_M_S2: f64 = 0.003;
+
+/// An accelerometer with less noise than this, m/s^2 a sample, is that of a simulator, or very well mounted: the estimate that
+/// rests on it is as good.
+pub(super) const QUIET_M_S2: f64 = 0.1;
 
 /// A flight in cells of [`STEP_S`], body FLU and world NWU.
 #[derive(Debug)]
@@ -51,6 +58,8 @@ pub struct Cells {
     pub velocity_m_s: Vec<(usize, f64, Vector3<f64>)>,
     /// velocity at the cells' borders, m/s, where a fit begins
     pub borders_m_s: Vec<Vector3<f64>>,
+    /// forgetting of the error of the autopilot's velocity, 1/s
+    pub forgetting_1_s: f64,
     /// what a satellite receiver said of the velocity
     pub receiver: Received,
     /// of the rotors
@@ -86,6 +95,8 @@ impl Cells {
         let vectors = |of: &[Vector3<f64>]| places.iter().map(|place| place.between(of)).collect::<Vec<_>>();
         let white = white_level(force);
         let noise = |axis: usize, _| white.get(axis).copied().unwrap_or(0.1).max(LEAST_NOISE_M_S2);
+        let accelerometer_noise_m_s2 = Vector3::from_fn(noise);
+        let is_held = signals.quality.velocity_held_by.position;
         let voltage = |of: &Vec<f64>| places.iter().map(|place| place.between(of)).collect();
         Ok(Self {
             attitude: places.iter().map(|place| place.turned(attitude)).collect(),
@@ -97,8 +108,9 @@ impl Cells {
             battery_voltage_v: signals.battery_voltage_v.as_ref().map(|series| voltage(series)),
             driven: driven(signals, &time_s),
             specific_force_m_s2: force_by_cell(force, &time_s),
-            accelerometer_noise_m_s2: Vector3::from_fn(noise),
+            accelerometer_noise_m_s2,
             velocity_m_s: velocity_by_cell(velocity, &time_s),
+            forgetting_1_s: if is_held { FORGET_1_S.1 } else { FORGET_1_S.0 },
             receiver: raw.gps_velocity.as_deref().map_or_else(Received::default, |stream| {
                 Received::of(stream, (&signals.grid, on_grid), &time_s)
             }),

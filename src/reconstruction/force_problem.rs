@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::blocks::State;
-use super::cells::Cells;
+use super::cells::{Cells, QUIET_M_S2};
 use super::error::ReconstructionError;
 use super::forces::{Flight, MOST_TERMS, MOST_VALUES, Process, Term};
 use super::place::STEP_S;
@@ -20,10 +20,6 @@ use super::thrusts::LATENESS_S;
 use crate::physics::Airframe;
 use crate::signals::Signals;
 use crate::vehicle::Vehicle;
-
-/// An accelerometer with less noise than this, m/s^2 a sample, is that of a simulator, or very well mounted: the estimate that
-/// rests on it is as good.
-const QUIET_M_S2: f64 = 0.1;
 
 /// What is known of the rotors' answer to their commands beforehand.
 #[derive(Debug, Clone, Copy, PartialEq)]

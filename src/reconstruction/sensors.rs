@@ -14,9 +14,6 @@ use super::residuals::{Residuals, Row};
 /// Share of the accelerometer that the autopilot's velocity integrates. Estimators predict with the accelerometer and
 /// correct the rest from the receiver; the learned noise level takes up an error of this.
 const SHARED: f64 = 0.9;
-/// Its forgetting, 1/s. The position has told what is slower than a second of the error; the learned noise level takes up an error of
-/// this. Half of it and twice as much change no bar of the simulated flights.
-const FORGET_1_S: f64 = 1.0;
 
 /// Standard deviation of the time by which the body turns between a force and the frame of the accelerometer's sample of it, s. A sample is
 /// a mean over 1 to 8 ms, and the simulator of an autopilot turns the body between force and sample by a step of its own (4 ms in
@@ -117,7 +114,7 @@ impl Residuals for Start {
 }
 
 /// The autopilot integrates the same accelerometer with its own attitude, so the error of its velocity takes in what that
-/// has of noise and lean: `e' = 0.9 (R (a - b) + g - v') - 0.5 e`, m/s.
+/// has of noise and lean: `e' = 0.9 (R (a - b) + g - v') - k e` with its forgetting `k`, m/s.
 #[derive(Debug)]
 pub(super) struct Mechanization(pub(super) Arc<Flight>);
 
@@ -136,7 +133,7 @@ impl Residuals for Mechanization {
 
     fn row(&self, cell: usize, a: &State, b: &State, theta: &[f64]) -> Row {
         let cells = &self.0.cells;
-        let kept = 1.0 - STEP_S * FORGET_1_S;
+        let kept = 1.0 - STEP_S * cells.forgetting_1_s;
         let mut residual = part(b, ERROR) - part(a, ERROR) * kept;
         let mut by_states = Pair::zeros();
         put(&mut by_states, ERROR, &(-Matrix3::identity() * kept));

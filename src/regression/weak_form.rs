@@ -238,7 +238,7 @@ impl GyroscopicColumns {
 mod tests {
     use super::*;
     use crate::recording::Quantity;
-    use crate::signals::{AsRecorded, OwnOfFlight, Quality, ThrustSource, Usable};
+    use crate::signals::{AsRecorded, OwnOfFlight, Quality, ThrustSource, Usable, VelocityHeldBy};
     use nalgebra::SVector;
 
     const STEP_S: f64 = 0.01;
@@ -280,7 +280,7 @@ mod tests {
                 torques: true,
                 torque_std: 0.0,
                 gyro_noise_rad_s: None,
-                height_by_pose: None,
+                velocity_held_by: VelocityHeldBy::default(),
                 position_by_receiver: false,
                 steady_voltage_v: None,
                 simulated: false,

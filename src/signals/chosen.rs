@@ -1,11 +1,8 @@
 //! The streams of a recording that a flight is conditioned from.
 
-use super::Grid;
 use super::flight::AsRecorded;
 use super::select::{best, best_of};
-use super::slow_velocity::without;
 use crate::recording::{Quantity, Recording, Stream};
-use nalgebra::Vector3;
 use std::sync::Arc;
 
 /// The streams that were chosen.
@@ -17,6 +14,8 @@ pub(super) struct Chosen<'a> {
     pub(super) position: Option<(&'static str, &'a Stream)>,
     pub(super) velocity: Option<(&'static str, &'a Stream)>,
     pub(super) gps_velocity: Option<(&'static str, &'a Stream)>,
+    /// position of the message that brings the velocity
+    pub(super) position_of_velocity: Option<&'a Stream>,
     /// body rates of the message that brings the specific force, where the chosen rates come by another
     pub(super) inertial_rate: Option<&'a Stream>,
 }
@@ -32,6 +31,10 @@ impl<'a> Chosen<'a> {
         let inertial_rate = by_another.and_then(|(_, (of_force, _))| {
             best_of(recording, Quantity::AngularRate, |key, s| s.width == 3 && key.source == of_force)
         });
+        let velocity = pick(Quantity::Velocity, 3);
+        let position_of_velocity = velocity.and_then(|(of_velocity, _)| {
+            best_of(recording, Quantity::Position, |key, s| s.width == 3 && key.source == of_velocity)
+        });
         Self {
             attitude: pick(Quantity::Attitude, 4),
             rate,
@@ -39,20 +42,18 @@ impl<'a> Chosen<'a> {
             specific_force,
             world_acceleration: pick(Quantity::WorldAcceleration, 3),
             position: pick(Quantity::Position, 3),
-            velocity: pick(Quantity::Velocity, 3),
+            velocity,
+            position_of_velocity: position_of_velocity.map(|(_, stream)| stream),
             gps_velocity: pick(Quantity::GpsVelocity, 3),
         }
     }
 
-    /// The streams whose raw samples are needed; `slow_error_m_s` is that of the velocity, on the grid.
-    pub(super) fn as_recorded(&self, slow_error_m_s: Option<&[Vector3<f64>]>, grid: &Grid) -> AsRecorded {
+    /// The streams whose raw samples are needed.
+    pub(super) fn as_recorded(&self) -> AsRecorded {
         let kept = |stream: Option<(&'static str, &Stream)>| stream.map(|(_, s)| Arc::new(s.clone()));
-        let without_error = |(_, stream): (&'static str, &Stream)| {
-            Arc::new(slow_error_m_s.map_or_else(|| stream.clone(), |error| without(stream, grid, error)))
-        };
         AsRecorded {
             specific_force: kept(self.specific_force),
-            velocity: self.velocity.map(without_error),
+            velocity: kept(self.velocity),
             gps_velocity: kept(self.gps_velocity),
         }
     }

@@ -5,7 +5,7 @@ use super::align::{AlignFrame, vectors_onto};
 use super::changed::{changes_in_the_air, resting_on_defaults};
 use super::chosen::Chosen;
 use super::flight::{Quality, Series, Signals};
-use super::height::{is_height_by_pose, is_position_by_receiver};
+use super::height::{VelocityHeldBy, is_height_by_pose, is_position_by_receiver};
 use super::lifts::too_little;
 use super::motion::Motion;
 use super::noise::gyro_noise_rad_s;
@@ -13,6 +13,7 @@ use super::own::OwnOfFlight;
 use super::reference::reference;
 use super::rotor_thrusts::ThrustSource;
 use super::select::{mean_rate_hz, median_period_s, too_short};
+use super::slow_velocity::Estimated;
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
 use super::usable::{Evidence, Usable, airborne_spans, usable};
 use super::voltage::{battery_voltage_v, steady_voltage_v};
@@ -22,6 +23,7 @@ use crate::note::Note;
 use crate::recording::{Quantity, Recording, Stream};
 use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
+use std::sync::Arc;
 
 /// Half width of the weak form's test function, s: over less a mean force is noise, over more it loses motion of over 2 Hz.
 pub const WEAK_HALF_WIDTH_S: f64 = 0.2;
@@ -61,8 +63,8 @@ impl Default for ConditionSettings {
     }
 }
 
-/// Conditions one flight: chooses streams, aligns them in time, puts them on one grid, and takes the slow error out of the velocity
-/// that its position tells. Nothing is smoothed.
+/// Conditions one flight: chooses streams, aligns them in time, puts them on one grid, and takes the slow error that its
+/// position tells out of the velocity. Nothing else is smoothed.
 ///
 /// ```
 /// use mavid::config::load_vehicle;
@@ -127,7 +129,7 @@ pub fn condition(
         wrench: felt.wrench.into(),
         jitter_wrench: felt.jitter_wrench.map(Series::new),
         battery_voltage_v: battery_voltage_v(recording, &grid).map(Series::new),
-        as_recorded: chosen.as_recorded(motion.slow_error_m_s.as_deref(), &grid),
+        as_recorded: chosen.as_recorded(),
         reference: reference(recording, &grid),
         own: OwnOfFlight::default(),
         air_m_s: Vector3::zeros(),
@@ -140,7 +142,7 @@ pub fn condition(
             usable: used,
             torques: sufficiency.torques,
             torque_std: actuation.torque_std(),
-            height_by_pose: is_height_by_pose(recording),
+            velocity_held_by: VelocityHeldBy { pose: is_height_by_pose(recording), position: false },
             position_by_receiver: is_position_by_receiver(recording),
             steady_voltage_v: steady_voltage_v(recording),
             simulated: is_simulated(|name| recording.parameters.get(name).copied()),
@@ -148,6 +150,9 @@ pub fn condition(
         },
     };
     let doubts = plausible::check(&signals, vehicle);
+    if plausible::position_agrees(&signals) {
+        take_slow_error_out(&mut signals, &chosen, &resets_s(recording));
+    }
     signals.quality.notes.extend(doubts);
     signals.emit();
     Ok(signals)
@@ -177,12 +182,32 @@ fn mask(
 ) -> (Vec<bool>, Usable) {
     let streams: Vec<&Stream> =
         chosen.list().iter().filter_map(|(_, s)| s.map(|(_, s)| s)).chain([actuation.stream()]).collect();
-    // the vehicle's clock restarted, or its estimator jumped
-    let resets_s = [recording.clock_resets_s.as_slice(), &recording.estimator_resets_s].concat();
+    let resets_s = resets_s(recording);
     let command = actuation.command();
     let is_damaged = recording.is_damaged;
     let evidence = Evidence { streams: &streams, airborne_s, resets_s: &resets_s, command, rate, is_damaged };
     usable(grid, &evidence, transient_s)
+}
+
+/// Instants at which the vehicle's clock restarted or its estimator jumped, in order, s.
+fn resets_s(recording: &Recording) -> Vec<f64> {
+    let mut all = [recording.clock_resets_s.as_slice(), &recording.estimator_resets_s].concat();
+    all.sort_by(f64::total_cmp);
+    all
+}
+
+/// Takes the slow error that the position tells out of the velocity, on the grid and at its own instants.
+fn take_slow_error_out(signals: &mut Signals, chosen: &Chosen<'_>, resets_s: &[f64]) {
+    let Some(((_, velocity), position)) = chosen.velocity.zip(chosen.position_of_velocity) else { return };
+    let estimated = Estimated { position, velocity, resets_s, airborne_s: &signals.quality.airborne_s };
+    let receiver = chosen.gps_velocity.map(|(_, stream)| stream);
+    let Some(velocity) = estimated.without_slow_error(receiver) else { return };
+    let offset = signals.quality.offsets.iter().find(|(quantity, _)| *quantity == Quantity::Velocity);
+    let late_s = offset.filter(|(_, offset)| offset.repaired).map_or(0.0, |(_, offset)| offset.late_s);
+    let Some(on_grid) = vectors_onto(&velocity, late_s, &signals.grid) else { return };
+    signals.velocity = Some(Series::new(on_grid));
+    signals.as_recorded.velocity = Some(Arc::new(velocity));
+    signals.quality.velocity_held_by.position = true;
 }
 
 /// Quantity, message and samples a second of what is used.

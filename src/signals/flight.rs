@@ -2,6 +2,7 @@
 
 use super::align::StreamOffset;
 use super::grid::Grid;
+use super::height::VelocityHeldBy;
 use super::own::OwnOfFlight;
 use super::rotor_thrusts::ThrustSource;
 use super::usable::Usable;
@@ -136,8 +137,8 @@ pub struct Quality {
     pub torques: bool,
     /// relative standard error that all torques about x and y have in common, where the commands are rebuilt from others
     pub torque_std: f64,
-    /// whether motion capture or a camera gives the height, or else satellites and air pressure; `None` where it is not known
-    pub height_by_pose: Option<bool>,
+    /// what holds the vertical velocity beside the accelerometer
+    pub velocity_held_by: VelocityHeldBy,
     /// a satellite receiver gives the position
     pub position_by_receiver: bool,
     /// voltage of a battery that never changes, as a simulator's may, V: no effect can be told from it; `None` where it changes
@@ -181,7 +182,7 @@ mod tests {
                 usable: Usable::default(),
                 torques: true,
                 torque_std: 0.0,
-                height_by_pose: None,
+                velocity_held_by: VelocityHeldBy::default(),
                 position_by_receiver: false,
                 steady_voltage_v: None,
                 simulated: false,

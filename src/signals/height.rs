@@ -2,6 +2,15 @@
 
 use crate::recording::{Quantity, Recording};
 
+/// What holds the vertical velocity of an estimate beside its accelerometer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct VelocityHeldBy {
+    /// whether motion capture or a camera gives the height, or else satellites and air pressure; `None` where it is not known
+    pub pose: Option<bool>,
+    /// the position took the slow error out of the velocity
+    pub position: bool,
+}
+
 /// Poses from outside of the vehicle's own sensors: motion capture, or a camera on it.
 const POSES: [&str; 4] =
     ["vehicle_mocap_odometry", "vehicle_visual_odometry", "att_pos_mocap", "vehicle_vision_position"];

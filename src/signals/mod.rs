@@ -54,6 +54,7 @@ pub use error::SignalsError;
 pub use filter::{Butterworth, ButterworthMemory, FilterPair, PairMemory, WindowedFir, central_difference};
 pub use flight::{AsRecorded, Quality, Reference, Series, Signals};
 pub use grid::{Grid, cubic_onto, hold_onto, linear_onto};
+pub use height::VelocityHeldBy;
 pub use hover::hover_command;
 pub use noise::white_level;
 pub use off_ground::{SHORTEST_FLIGHT_S, off_ground, spans, until_down, within};

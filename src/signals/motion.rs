@@ -1,11 +1,10 @@
-//! The body's motion on the grid: its streams aligned, the velocity without its slow error.
+//! The body's motion on the grid: its streams aligned.
 
 use super::align::{
     AlignFrame, InertialOnGrid, StreamOffset, attitude_offset, attitudes_onto, position_offset, rate_offset,
     vectors_onto, velocity_offset,
 };
 use super::chosen::Chosen;
-use super::slow_velocity::slow_error_m_s;
 use crate::recording::{Quantity, Stream};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -17,8 +16,6 @@ pub(super) struct Motion {
     pub(super) world_acceleration: Option<Vec<Vector3<f64>>>,
     pub(super) position: Option<Vec<Vector3<f64>>>,
     pub(super) velocity: Option<Vec<Vector3<f64>>>,
-    /// of the velocity as it came, which is taken out of it
-    pub(super) slow_error_m_s: Option<Vec<Vector3<f64>>>,
     pub(super) offsets: Vec<(Quantity, StreamOffset)>,
 }
 
@@ -53,7 +50,7 @@ impl Motion {
             let offset = rate.as_ref().and_then(|rate| attitude_offset(stream, rate, frame));
             attitudes_onto(stream, note(Quantity::Attitude, offset), grid)
         });
-        let mut velocity = chosen.velocity.and_then(|(_, stream)| {
+        let velocity = chosen.velocity.and_then(|(_, stream)| {
             let offset = match (&attitude, &rate, &specific_force) {
                 (Some(attitude), Some(rate), Some(specific_force)) => {
                     let inertial = InertialOnGrid { attitude, rate, specific_force, gravity_m_s2 };
@@ -67,21 +64,7 @@ impl Motion {
             let offset = velocity.as_ref().and_then(|velocity| position_offset(stream, velocity, frame));
             vectors_onto(stream, note(Quantity::Position, offset), grid)
         });
-        let slow_error_m_s = position.as_ref().zip(velocity.as_mut()).and_then(|(position, velocity)| {
-            let error = slow_error_m_s(grid, position, velocity)?;
-            velocity.iter_mut().zip(&error).for_each(|(velocity, error)| *velocity -= error);
-            Some(error)
-        });
         let world_acceleration = plain(chosen.world_acceleration);
-        Self {
-            attitude,
-            rate,
-            specific_force,
-            world_acceleration,
-            position,
-            velocity,
-            slow_error_m_s,
-            offsets,
-        }
+        Self { attitude, rate, specific_force, world_acceleration, position, velocity, offsets }
     }
 }

@@ -189,6 +189,11 @@ fn other_scale(changed: &[f64], felt: &[f64]) -> Option<f64> {
     (tells && !(1.0 / OTHER_UNIT..=OTHER_UNIT).contains(&ratio)).then_some(ratio)
 }
 
+/// Whether position and velocity are in units and axes that agree, as far as the flight tells.
+pub(super) fn position_agrees(signals: &Signals) -> bool {
+    positions(signals).is_empty()
+}
+
 /// Changes of the position against the velocity.
 fn positions(signals: &Signals) -> Vec<String> {
     let (Some(position), Some(velocity)) = (&signals.position, &signals.velocity) else { return Vec::new() };

@@ -7,7 +7,9 @@ use std::sync::Arc;
 use mavid::physics::effects::LinearDrag;
 use mavid::reconstruction::{Fit, KnownLag, STATE, State, Term, fit, force_problem};
 use mavid::recording::{Quantity, Stream};
-use mavid::signals::{AsRecorded, Grid, OwnOfFlight, Quality, Series, Signals, ThrustSource, Usable};
+use mavid::signals::{
+    AsRecorded, Grid, OwnOfFlight, Quality, Series, Signals, ThrustSource, Usable, VelocityHeldBy,
+};
 use mavid::simulate::random_vehicle;
 use mavid::vehicle::Vehicle;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3, Vector4};
@@ -115,7 +117,7 @@ fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
             torques: true,
             torque_std: 0.0,
             gyro_noise_rad_s: None,
-            height_by_pose: None,
+            velocity_held_by: VelocityHeldBy::default(),
             position_by_receiver: false,
             steady_voltage_v: None,
             simulated: false,

@@ -2,10 +2,12 @@
 //! battery; a change of mass in the same flight is still named.
 
 use mavid::diagnose::{ExplainSettings, Explanation, explain};
+use mavid::note::Note;
 use mavid::physics::ActiveEffect;
 use mavid::recording::{Quantity, Recording};
-use mavid::signals::{ConditionSettings, ThrustPreference, condition};
+use mavid::signals::{ConditionSettings, Signals, ThrustPreference, condition};
 use mavid::simulate::{FlightSettings, RandomTrajectory, Reference, Truth, random_vehicle, simulate_flight};
+use mavid::vehicle::Vehicle;
 
 /// Adds a slow error to the vertical velocity: 0.17 m/s rms.
 fn add_error(recording: &mut Recording) {
@@ -19,7 +21,8 @@ fn add_error(recording: &mut Recording) {
     }
 }
 
-fn explained(seed: u64, mass_change: Option<f64>) -> Explanation {
+/// A flight with a drag and, as a share of the mass, a change of mass; the vehicle file with it.
+fn flown(seed: u64, mass_change: Option<f64>) -> (Recording, Vehicle) {
     let pair = random_vehicle(seed);
     let size = pair.truth.size();
     let drag = 0.7 * size.mass_kg;
@@ -32,11 +35,47 @@ fn explained(seed: u64, mass_change: Option<f64>) -> Explanation {
     let reference = Reference { trajectory, hover_s: 4.0, ramp_s: 2.0 };
     let truth = Truth { vehicle: pair.truth, effects, disturbance: None };
     let settings = FlightSettings { seed, duration_s: 40.0, ..FlightSettings::default() };
-    let mut recording = simulate_flight(truth, &pair.nominal, &reference, &settings).unwrap().recording;
-    add_error(&mut recording);
+    (simulate_flight(truth, &pair.nominal, &reference, &settings).unwrap().recording, pair.nominal)
+}
+
+fn conditioned(recording: &Recording, vehicle: &Vehicle) -> Signals {
     let how = ConditionSettings { thrust: ThrustPreference::Commands, ..ConditionSettings::default() };
-    let signals = condition(&recording, &pair.nominal, &how).unwrap();
-    explain(&[signals], &pair.nominal, &ExplainSettings::default()).unwrap()
+    condition(recording, vehicle, &how).unwrap()
+}
+
+fn explained(seed: u64, mass_change: Option<f64>) -> Explanation {
+    let (mut recording, vehicle) = flown(seed, mass_change);
+    add_error(&mut recording);
+    explain(&[conditioned(&recording, &vehicle)], &vehicle, &ExplainSettings::default()).unwrap()
+}
+
+/// Root mean square by which the vertical velocities of two flights differ on their grid, m/s.
+fn apart_m_s(a: &Signals, b: &Signals) -> f64 {
+    let (a, b) = (a.velocity.as_ref().unwrap(), b.velocity.as_ref().unwrap());
+    let squares = a.iter().zip(b.iter()).map(|(a, b)| (a.z - b.z).powi(2));
+    (squares.sum::<f64>() / a.len() as f64).sqrt()
+}
+
+#[test]
+fn the_position_tells_the_error() {
+    let (mut recording, vehicle) = flown(21, None);
+    let right = conditioned(&recording, &vehicle);
+    add_error(&mut recording);
+    let apart = apart_m_s(&conditioned(&recording, &vehicle), &right);
+    assert!(apart < 0.02, "{apart} m/s");
+}
+
+#[test]
+fn a_position_that_contradicts_the_velocity_tells_nothing() {
+    let (mut recording, vehicle) = flown(21, None);
+    let right = conditioned(&recording, &vehicle);
+    let positions = recording.streams.iter_mut().filter(|(key, _)| key.quantity == Quantity::Position);
+    positions.for_each(|(_, stream)| stream.values.iter_mut().for_each(|value| *value *= 100.0));
+    let found = conditioned(&recording, &vehicle);
+    let contradicts = |note: &Note| note.text.contains("the position north changes by 100");
+    assert!(found.quality.notes.iter().any(contradicts), "{:?}", found.quality.notes);
+    let apart = apart_m_s(&found, &right);
+    assert!(apart < 0.02, "{apart} m/s");
 }
 
 fn names(found: &Explanation) -> Vec<&str> {

@@ -240,7 +240,7 @@ impl SimulatedSeries {
                 usable: Usable::default(),
                 torques: true,
                 gyro_noise_rad_s: Some(like.gyro_noise_rad_s),
-                height_by_pose: like.height_by_pose,
+                velocity_held_by: like.velocity_held_by,
                 position_by_receiver: like.position_by_receiver,
                 steady_voltage_v: None,
                 torque_std: like.torque_std,

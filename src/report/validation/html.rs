@@ -138,7 +138,7 @@ fn error_table(of: &ErrorTable) -> Markup {
 mod tests {
     use super::*;
     use crate::compare::Fit;
-    use crate::signals::{Quality, ThrustSource, Usable};
+    use crate::signals::{Quality, ThrustSource, Usable, VelocityHeldBy};
     use crate::study::{InputFile, ValidatedModel, playback_table};
 
     fn tables(second: f64) -> Vec<ErrorTable> {
@@ -165,7 +165,7 @@ mod tests {
             torques: true,
             torque_std: 0.0,
             gyro_noise_rad_s: None,
-            height_by_pose: None,
+            velocity_held_by: VelocityHeldBy::default(),
             position_by_receiver: false,
             steady_voltage_v: None,
             simulated: false,

@@ -7,7 +7,7 @@ use super::short::Short;
 use crate::diagnose::locate::{Quantity, Redness};
 use crate::diagnose::signature::Signature;
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{Fitted, Named, STATED_MASS, Verdict};
+use crate::diagnose::{CONTRADICTED, Fitted, Named, STATED_MASS, Verdict, stated_mass_differs};
 use crate::estimate::{Contradiction, Finding, FlightApart, MOMENTS, NAMES, ThrustScale, stated};
 use crate::note::{About, Note};
 use crate::study::doubts::{Moment, TWO_VEHICLES, doubts, of_mass, of_shape};
@@ -196,12 +196,24 @@ pub(in crate::study) fn of_voltage(named: &Named) -> Option<Note> {
 
 /// What the mass and all forces rest on, where the model has a bent thrust curve and nothing was weighed.
 pub(super) fn of_bent_scale(fitted: &Fitted, stated: &Vehicle) -> Option<Note> {
+    let stated_kg = stated.body.mass_kg;
+    if fitted.base.stated_mass_differs.is_some() {
+        let text = format!(
+            "the thrust curve is bent, so the stated thrust tells less about the thrust at hover. The mass, the moments of inertia and all forces \
+             rest on the stated mass as well, {} kg (+- {:.0} %). The error of this scale is in all of their errors. If the vehicle was weighed as \
+             it flew, write anchor = \"mass\" under [identify] into the vehicle file",
+            significant(stated_kg, 3),
+            100.0 * STATED_MASS
+        );
+        return Some(Note::remark(About::Estimate, text));
+    }
+    let differs = stated_mass_differs(&fitted.base, stated_kg)?.abs();
     let text = format!(
-        "the thrust curve is bent, so the stated thrust tells less about the thrust at hover. The mass, the moments of inertia and all forces \
-         rest on the stated mass as well, {} kg (+- {:.0} %). The error of this scale is in all of their errors. If the vehicle was weighed as \
-         it flew, write anchor = \"mass\" under [identify] into the vehicle file",
-        significant(stated.body.mass_kg, 3),
-        100.0 * STATED_MASS
+        "the stated mass, {} kg, and the mass by the stated thrust, {} kg, differ by {differs:.1} standard errors, although the thrust curve is bent: \
+         one of both is of another vehicle, or the vehicle carried a load. All forces rest on the stated thrust. Weigh the vehicle as it flew, and \
+         write its mass and anchor = \"mass\" under [identify] into the vehicle file",
+        significant(stated_kg, 3),
+        significant(fitted.base.vehicle.body.mass_kg, 3)
     );
-    fitted.base.has_stated_mass.then(|| Note::remark(About::Estimate, text))
+    (differs > CONTRADICTED).then(|| Note::warning(About::Contradiction, text))
 }
