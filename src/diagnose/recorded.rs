@@ -17,6 +17,8 @@ pub enum Need {
     ForceTwice,
     /// accelerometer, velocity and attitude, and a position that is not by satellites
     Frame,
+    /// position and attitude, not by satellites: a flight under a ceiling
+    UnderRoof,
     /// battery voltage
     Voltage,
     /// commands and body rates fast enough to compare torques row by row, in one of the flights
@@ -40,6 +42,10 @@ impl Need {
             Self::Frame => (
                 "accelerometer, velocity, attitude and a position reference with axes of its own",
                 "a satellite receiver has none that could be askew",
+            ),
+            Self::UnderRoof => (
+                "position and attitude, the position not by satellites",
+                "where satellites are received there is no ceiling",
             ),
             Self::Voltage => ("battery voltage", "thrust falls with it; record BATTERY_STATUS or SYS_STATUS"),
             Self::Torques => (
@@ -103,6 +109,7 @@ impl<'a> Recorded<'a> {
             Need::Accelerometer => self.all(Trace::has_accelerometer),
             Need::ForceTwice => self.all(Trace::reads_force_twice),
             Need::Frame => self.all(|trace| trace.reads_force_twice() && !trace.position_by_receiver),
+            Need::UnderRoof => self.has(Need::Position) && self.all(|trace| !trace.position_by_receiver),
             Need::Voltage => self.full_voltage().is_some(),
             Need::Torques => self.compares_torques(),
             Need::OneFlight => self.flights.len() == 1,
@@ -132,4 +139,28 @@ pub(super) fn heights_flown_m(flights: &[Trace]) -> f64 {
         (most - least).max(0.0)
     };
     flights.iter().map(span).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test ends where it fails")]
+    use super::*;
+    use crate::diagnose::ExplainSettings;
+    use crate::diagnose::made_flights::flown;
+    use crate::simulate::RandomTrajectory;
+
+    #[test]
+    fn no_ceiling_is_over_a_vehicle_that_receives_satellites() {
+        let (mut signals, vehicle) = flown(29, &RandomTrajectory::default(), |_, _| ());
+        let mut lacks = |by_receiver| {
+            signals.quality.position_by_receiver = by_receiver;
+            let flights = [Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap()];
+            Recorded::new(&vehicle, &flights).lacks(&[Need::UnderRoof]).map(|(need, ..)| need)
+        };
+        assert_eq!(lacks(false), None);
+        assert_eq!(lacks(true), Some(Need::UnderRoof));
+        signals.position = None;
+        let flights = [Trace::new(&signals, &vehicle, ExplainSettings::default().half_width_s).unwrap()];
+        assert!(Recorded::new(&vehicle, &flights).lacks(&[Need::UnderRoof]).is_some());
+    }
 }

@@ -28,7 +28,7 @@ const WEAKEST: f64 = 20.0;
 
 /// More thrust under a ceiling.
 pub static SIGNATURE: Signature = Signature {
-    needs: &[Need::Position],
+    needs: &[Need::UnderRoof],
     growth: Growth::Inverse { usual: USUAL },
     nothing: NO_CEILING,
     forms: |recorded| {
