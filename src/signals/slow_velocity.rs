@@ -70,7 +70,7 @@ impl Estimated<'_> {
                 sample[2] = raw[2];
             }
         }
-        tracing::debug!(across, up, "nearer to the receiver without it");
+        tracing::debug!(across, up, "nearer to the receiver with it");
         (across || up).then_some(out)
     }
 

@@ -59,16 +59,17 @@ fn a_hover_says_first_that_it_is_one() {
     assert!(study.effects.is_empty() || said.contains("; no name is certain. "), "{}", &said[..300]);
 }
 
-/// The trajectory ended after twelve seconds, before its first period was over.
+/// It moves for two periods only, and a force that follows the climb predicts another flight worse.
 #[test]
-fn an_aborted_flight_says_first_that_it_has_too_few_periods_and_its_harmful_force_is_left_out() {
-    let (Some(log), Some(vehicle)) = (sitl("px11.ulg"), sitl("px4-v2.toml")) else { return };
-    let study = study(&[log], &vehicle);
-    assert!(
-        matches!(study.limited()[..], [FlightLimit::FewPeriods { period_s: None, moving_s }] if moving_s < 16.0)
-    );
+fn a_harmful_force_is_left_out_of_a_short_flight() {
+    let Some(folder) = support::shared().map(|shared| shared.join("noisy/n12")) else { return };
+    let request = ExplainRequest {
+        holdout: vec![folder.join("holdout.tlog")],
+        ..request(&[folder.join("identify.tlog")], &folder.join("vehicle.toml"))
+    };
+    let study = explained_study(&request, &Silent).unwrap();
     begins_with(&study, "the vehicle moves for 1");
-    // with an empirical force the part that was held back is predicted worse
+    // with an empirical force the hold-out is predicted worse
     let force = study.left_out_force.unwrap();
     assert!(force.worse_percent > 1.0 && study.empirical.is_none());
     let said = explanation_text(&study);
@@ -77,6 +78,19 @@ fn an_aborted_flight_says_first_that_it_has_too_few_periods_and_its_harmful_forc
     assert!(document["empirical"].is_null());
     assert_eq!(document["empirical_left_out"]["worse_percent"], force.worse_percent);
     assert!(document["answer"].as_str().unwrap().contains("so no model has it"));
+}
+
+/// The trajectory ended after twelve seconds, before its first period was over.
+#[test]
+fn an_aborted_flight_says_first_that_it_has_too_few_periods() {
+    let (Some(log), Some(vehicle)) = (sitl("px11.ulg"), sitl("px4-v2.toml")) else { return };
+    let study = study(&[log], &vehicle);
+    assert!(
+        matches!(study.limited()[..], [FlightLimit::FewPeriods { period_s: None, moving_s }] if moving_s < 16.0)
+    );
+    begins_with(&study, "the vehicle moves for 1");
+    let said = explanation_text(&study);
+    let document = serde_json::to_value(ExplanationDocument::new(&study)).unwrap();
     // and at which horizons a state that does not change is better
     let all = study.holdout.as_ref().unwrap().no_model_of();
     let (name, windows_s) = &all[0];
