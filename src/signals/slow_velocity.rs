@@ -79,7 +79,7 @@ impl Estimated<'_> {
         let (position, velocity) = (self.position, self.velocity);
         let period_s = median_period_s(velocity);
         let is_one_message = position.time_s == velocity.time_s && (position.width, velocity.width) == (3, 3);
-        if !is_one_message || !(period_s <= LONGEST_PERIOD_S) {
+        if !is_one_message || period_s.is_nan() || period_s > LONGEST_PERIOD_S {
             return None;
         }
         let at = |stream: &Stream, index: usize| Vector3::from_row_slice(stream.sample(index));
@@ -116,14 +116,14 @@ fn without_jumps(mut excess: Vec<Option<Vector3<f64>>>) -> Option<Vec<Option<Vec
         })
         .collect();
     let jumps = |excess: &Vector3<f64>| excess.iter().zip(&bound).any(|(part, bound)| part.abs() > *bound);
-    let (mut seen, mut jumped) = (0, 0);
+    let (mut seen, mut jumped) = (0_u32, 0_u32);
     for place in &mut excess {
-        seen += usize::from(place.is_some());
+        seen += u32::from(place.is_some());
         if place.as_ref().is_some_and(jumps) {
             (*place, jumped) = (None, jumped + 1);
         }
     }
-    (jumped as f64 <= MOST_JUMPS * seen as f64).then_some(excess)
+    (f64::from(jumped) <= MOST_JUMPS * f64::from(seen)).then_some(excess)
 }
 
 /// Mean of what each interval between two instants has, at each instant: an interval at a distance of `t` weighs as `exp(-|t| / tau)` and its
