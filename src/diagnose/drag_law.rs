@@ -140,25 +140,12 @@ fn away_from_nothing((values, covariance): (DVector<f64>, DMatrix<f64>)) -> f64 
 }
 
 /// The model with the laws that the flight path tells; `None` where it has these, or where the flight path tells none.
-fn settled(base: &Base, told: &Reconstructed) -> Option<Base> {
+fn settled(base: &Base, path: &Reconstructed) -> Option<Base> {
     let was = |law: &Law| base.effects.iter().any(|term| term.is(law.term.signature));
-    let path = told;
     let told: Vec<Law> = laws(path).collect();
     let stays = |law: &Law| law.possible && law.z > if was(law) { STAYS_Z } else { ENTERS_Z };
-    // where one law hides what the other one has along an axis across the rotors', neither has it alone
-    let is_axis_told = |slot: usize| {
-        let places: Vec<_> = told.iter().map(|law| (law.place, slot)).collect();
-        away_from_nothing(path.of(&places)) > STAYS_Z
-    };
-    let lacks_axis = |law: &Law| {
-        let mut present = base.effects.iter().filter(|term| term.is(law.term.signature));
-        let is_across = |slot: usize| law.term.signature.role.vertical != Some(slot);
-        present.any(|term| {
-            law.free.iter().any(|&slot| is_across(slot) && !term.free.contains(&slot) && is_axis_told(slot))
-        })
-    };
-    let shares = told.iter().filter(|law| stays(law)).count() > 1 && told.iter().any(lacks_axis);
-    let changes = shares || told.iter().any(|law| was(law) != stays(law));
+    let shared = shared_slots(base, path, &told.iter().filter(|law| stays(law)).collect::<Vec<_>>());
+    let changes = !shared.is_empty() || told.iter().any(|law| was(law) != stays(law));
     if !told.iter().any(stays) || !changes {
         return None;
     }
@@ -184,7 +171,7 @@ fn settled(base: &Base, told: &Reconstructed) -> Option<Base> {
             _ => {}
         }
         for term in out.effects.iter_mut().filter(|term| term.is(law.term.signature)) {
-            let is_new = |slot: &usize| !is_there || !shares || is_axis_told(*slot);
+            let is_new = |slot: &usize| !is_there || shared.is_empty() || shared.contains(slot);
             term.free.extend(law.free.iter().copied().filter(is_new));
             term.free.extend(along(law).filter(|_| leaves_along));
             term.free.sort_unstable();
@@ -192,6 +179,25 @@ fn settled(base: &Base, told: &Reconstructed) -> Option<Base> {
         }
     }
     Some(out)
+}
+
+/// Slots of the laws that stay on which the flight path tells them together, where one of them lacks such a slot across the rotor axis: the other one
+/// hides what it has there. None where a single law stays, or where none lacks any.
+fn shared_slots(base: &Base, path: &Reconstructed, staying: &[&Law]) -> Vec<usize> {
+    if staying.len() < 2 {
+        return Vec::new();
+    }
+    let is_told = |slot: &usize| {
+        let places: Vec<_> = staying.iter().map(|law| (law.place, *slot)).collect();
+        away_from_nothing(path.of(&places)) > STAYS_Z
+    };
+    let slots: Vec<usize> = staying.iter().flat_map(|law| law.free.iter().copied()).filter(is_told).collect();
+    let lacks = |law: &&Law| {
+        let is_across = |slot: &usize| law.term.signature.role.vertical != Some(*slot);
+        let mut present = base.effects.iter().filter(|term| term.is(law.term.signature));
+        present.any(|term| slots.iter().filter(|slot| is_across(slot)).any(|slot| !term.free.contains(slot)))
+    };
+    if staying.iter().any(lacks) { slots } else { Vec::new() }
 }
 
 #[cfg(test)]

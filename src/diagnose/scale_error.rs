@@ -2,6 +2,7 @@
 
 use super::base::Base;
 use super::signature::EffectTerm;
+use crate::vehicle::{Guessed, Vehicle};
 
 /// Relative error of a law's thrust at hover by its curvature there, the middle of 1.0 to 1.7: a law with another curvature about hover is
 /// elsewhere there by so much, at hover at 60 to 40 % of full thrust.
@@ -41,13 +42,14 @@ pub(super) fn beyond_stated_mass(base: &Base) -> f64 {
     (of_curve(base).powi(2) - of_scale(base).powi(2)).max(0.0).sqrt()
 }
 
-/// By how many standard errors of both the stated mass (kg) and the mass by the stated thrust differ, where the thrust curve of the model is bent and
-/// nothing was weighed; `None` of other models.
+/// By how many standard errors of both the stated mass and the mass by the stated thrust differ, where the thrust curve of the model is bent; `None` of
+/// other models, where the vehicle was weighed, and where the thrust is a guess.
 #[must_use]
-pub fn stated_mass_differs(base: &Base, stated_kg: f64) -> Option<f64> {
+pub fn stated_mass_differs(base: &Base, stated: &Vehicle) -> Option<f64> {
     let by_curve = of_curve(base);
-    let apart = (stated_kg / base.vehicle.body.mass_kg).ln();
-    (by_curve > 0.0 && base.weighed_kg.is_none()).then(|| apart / by_curve.hypot(STATED_MASS))
+    let apart = (stated.body.mass_kg / base.vehicle.body.mass_kg).ln();
+    let is_told = by_curve > 0.0 && base.weighed_kg.is_none() && stated.guessed(Guessed::ThrustMax) == 0.0;
+    is_told.then(|| apart / by_curve.hypot(STATED_MASS))
 }
 
 /// Weight of the stated mass beside the stated thrust, each by its variance.

@@ -9,7 +9,7 @@ use super::fit::Fitted;
 use super::scale_error::{of_curve, share_of_mass, stated_mass_differs};
 use super::trace::Trace;
 use crate::physics::PhysicsError;
-use crate::vehicle::{Guessed, Vehicle};
+use crate::vehicle::Vehicle;
 
 /// Standard errors by which the stated mass and the stated thrust may differ. Beyond, one of both is of another vehicle, and a mean of both is of
 /// none.
@@ -28,8 +28,8 @@ pub(super) fn settle_scale(
 ) -> Result<(), PhysicsError> {
     let base = &fitted.base;
     let is_loaded = traces.iter().any(|trace| trace.own.payload_kg != 0.0);
-    let Some(differs) = stated_mass_differs(base, stated.body.mass_kg) else { return Ok(()) };
-    if stated.guessed(Guessed::ThrustMax) > 0.0 || is_loaded || differs.abs() > CONTRADICTED {
+    let Some(differs) = stated_mass_differs(base, stated) else { return Ok(()) };
+    if is_loaded || differs.abs() > CONTRADICTED {
         return Ok(());
     }
     let (by_curve, apart) = (of_curve(base), stated.body.mass_kg / base.vehicle.body.mass_kg);

@@ -201,13 +201,13 @@ fn take_slow_error_out(signals: &mut Signals, chosen: &Chosen<'_>, resets_s: &[f
     let Some(((_, velocity), position)) = chosen.velocity.zip(chosen.position_of_velocity) else { return };
     let estimated = Estimated { position, velocity, resets_s, airborne_s: &signals.quality.airborne_s };
     let receiver = chosen.gps_velocity.map(|(_, stream)| stream);
-    let Some(velocity) = estimated.without_slow_error(receiver) else { return };
+    let Some((velocity, is_up)) = estimated.without_slow_error(receiver) else { return };
     let offset = signals.quality.offsets.iter().find(|(quantity, _)| *quantity == Quantity::Velocity);
     let late_s = offset.filter(|(_, offset)| offset.repaired).map_or(0.0, |(_, offset)| offset.late_s);
     let Some(on_grid) = vectors_onto(&velocity, late_s, &signals.grid) else { return };
     signals.velocity = Some(Series::new(on_grid));
     signals.as_recorded.velocity = Some(Arc::new(velocity));
-    signals.quality.velocity_held_by.position = true;
+    signals.quality.velocity_held_by.position = is_up;
 }
 
 /// Quantity, message and samples a second of what is used.

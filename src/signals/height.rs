@@ -7,7 +7,7 @@ use crate::recording::{Quantity, Recording};
 pub struct VelocityHeldBy {
     /// whether motion capture or a camera gives the height, or else satellites and air pressure; `None` where it is not known
     pub pose: Option<bool>,
-    /// the position took the slow error out of the velocity
+    /// the position took the slow error out of the vertical velocity
     pub position: bool,
 }
 

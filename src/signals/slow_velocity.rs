@@ -7,7 +7,7 @@
 
 use super::select::median_period_s;
 use crate::recording::Stream;
-use crate::stats::median;
+use crate::stats::normal_sigma;
 use nalgebra::Vector3;
 use std::ops::Range;
 
@@ -24,8 +24,8 @@ const GAP_PERIODS: f64 = 5.0;
 const JUMP: (f64, f64) = (1.0, 6.0);
 /// Share of intervals with a jump beyond which the position does not move as its velocity says, as where it is held between rare updates.
 const MOST_JUMPS: f64 = 0.01;
-/// Median of the absolute values, of a normal distribution of unit variance.
-const MEDIAN_ABSOLUTE: f64 = 0.6745;
+/// Weight, of two for all that is near, below which nothing near was seen: the nearest is 2.4 s away.
+const LEAST_WEIGHT: f64 = 0.05;
 /// A slow error of less stays in the velocity, m/s rms of an axis in flight: the position's own errors are of this size. The estimates of ArduPilot, of
 /// motion capture and of good inertial units are nearer to their positions.
 const MATTERS_M_S: f64 = 0.05;
@@ -48,9 +48,9 @@ pub(super) struct Estimated<'a> {
 }
 
 impl Estimated<'_> {
-    /// The velocity without the error that the position tells; `None` where it tells none, or where the velocity then is further from that of the
-    /// receiver.
-    pub(super) fn without_slow_error(&self, receiver: Option<&Stream>) -> Option<Stream> {
+    /// The velocity without the error that the position tells, and whether that along the vertical is; `None` where it tells none, or where the
+    /// velocity then is further from that of the receiver.
+    pub(super) fn without_slow_error(&self, receiver: Option<&Stream>) -> Option<(Stream, bool)> {
         let error_m_s = self.slow_error_m_s()?;
         let mut out = self.velocity.clone();
         for (sample, error) in out.values.chunks_exact_mut(3).zip(&error_m_s) {
@@ -71,7 +71,7 @@ impl Estimated<'_> {
             }
         }
         tracing::debug!(across, up, "nearer to the receiver with it");
-        (across || up).then_some(out)
+        (across || up).then_some((out, up))
     }
 
     /// What the velocity exceeds that of the position by, slower than the crossover, m/s, one a sample.
@@ -96,9 +96,8 @@ impl Estimated<'_> {
             .map(|excess| excess.filter(|excess| excess.iter().all(|part| part.is_finite())))
             .collect();
         let error_m_s = smoothed(&velocity.time_s, &without_jumps(excess)?);
-        let is_flown = |t: f64| self.airborne_s.iter().any(|(from_s, to_s)| (*from_s..=*to_s).contains(&t));
-        let flown =
-            || velocity.time_s.iter().zip(&error_m_s).filter(|(t, _)| is_flown(**t)).map(|(_, error)| error);
+        let errors = || velocity.time_s.iter().zip(&error_m_s);
+        let flown = || errors().filter(|(t, _)| is_flown(self.airborne_s, **t)).map(|(_, error)| error);
         let squares: f64 = flown().map(Vector3::norm_squared).sum();
         let rms_m_s = (squares / (3 * flown().count().max(1)) as f64).sqrt();
         let is_possible = flown().all(|error| error.amax() < JUMP.0);
@@ -107,12 +106,16 @@ impl Estimated<'_> {
     }
 }
 
+fn is_flown(airborne_s: &[(f64, f64)], t: f64) -> bool {
+    airborne_s.iter().any(|(from_s, to_s)| (*from_s..=*to_s).contains(&t))
+}
+
 /// The excesses without those in which the position jumped; `None` where it jumps often.
 fn without_jumps(mut excess: Vec<Option<Vector3<f64>>>) -> Option<Vec<Option<Vector3<f64>>>> {
     let bound: Vec<f64> = (0..3)
         .map(|axis| {
             let mut sizes: Vec<f64> = excess.iter().flatten().map(|excess| excess[axis].abs()).collect();
-            (JUMP.1 / MEDIAN_ABSOLUTE * median(&mut sizes)).max(JUMP.0)
+            (JUMP.1 * normal_sigma(&mut sizes)).max(JUMP.0)
         })
         .collect();
     let jumps = |excess: &Vector3<f64>| excess.iter().zip(&bound).any(|(part, bound)| part.abs() > *bound);
@@ -134,7 +137,8 @@ fn smoothed(time_s: &[f64], of_interval: &[Option<Vector3<f64>>]) -> Vec<Vector3
     let mut along = |order: &mut dyn Iterator<Item = (usize, usize)>| {
         let mut kept = (Vector3::zeros(), 0.0);
         for (interval, next) in order {
-            let length_s = time_s[interval + 1] - time_s[interval];
+            // a clock that went back has no time between
+            let length_s = (time_s[interval + 1] - time_s[interval]).max(0.0);
             let faded = (-length_s / CROSSOVER_S).exp();
             let weight = of_interval[interval].map_or(0.0, |_| 1.0 - faded);
             kept.0 = kept.0 * faded + of_interval[interval].unwrap_or_default() * weight;
@@ -150,9 +154,6 @@ fn smoothed(time_s: &[f64], of_interval: &[Option<Vector3<f64>>]) -> Vec<Vector3
         .collect()
 }
 
-/// Weight, of two for all that is near, below which nothing near was seen: the nearest is 2.4 s away.
-const LEAST_WEIGHT: f64 = 0.05;
-
 /// Root mean square by which a velocity differs from a receiver's along these axes in flight, m/s, at the lateness at which it is least; `None` with too
 /// few samples.
 fn apart_m_s(
@@ -162,11 +163,10 @@ fn apart_m_s(
     airborne_s: &[(f64, f64)],
 ) -> Option<f64> {
     let (first_s, last_s) = (*velocity.time_s.first()? + LATE_S.1, *velocity.time_s.last()? + LATE_S.0);
-    let is_flown = |t: f64| airborne_s.iter().any(|(from_s, to_s)| (*from_s..*to_s).contains(&t));
     let is_told = |index: &usize| {
         let t = receiver.time_s[*index];
         let parts = &receiver.sample(*index)[axes.clone()];
-        (first_s..last_s).contains(&t) && is_flown(t) && parts.iter().all(|part| part.is_finite())
+        (first_s..last_s).contains(&t) && is_flown(airborne_s, t) && parts.iter().all(|part| part.is_finite())
     };
     let samples: Vec<usize> = (0..receiver.len()).filter(is_told).collect();
     let at = |t: f64, axis: usize| {
@@ -218,7 +218,8 @@ mod tests {
 
     fn corrected(position: &Stream, velocity: &Stream, receiver: Option<&Stream>) -> Option<Stream> {
         let airborne_s = &[(5.0, 90.0)];
-        Estimated { position, velocity, resets_s: &[], airborne_s }.without_slow_error(receiver)
+        let estimated = Estimated { position, velocity, resets_s: &[], airborne_s };
+        estimated.without_slow_error(receiver).map(|(stream, _)| stream)
     }
 
     /// Root mean square of the difference of two streams, m/s.
@@ -260,7 +261,7 @@ mod tests {
         let told = |resets_s: &[f64]| {
             let one =
                 Estimated { position: &position, velocity: &velocity, resets_s, airborne_s: &[(5.0, 90.0)] };
-            apart(&one.without_slow_error(None).unwrap(), &right)
+            apart(&one.without_slow_error(None).unwrap().0, &right)
         };
         assert!(told(&[60.0]) < 0.5 * told(&[]));
     }
@@ -296,7 +297,10 @@ mod tests {
         assert!(apart(&corrected(&position, &velocity, Some(&receiver)).unwrap(), &right) < 0.03);
         // a height that wanders, 0.3 m/s, is left out, and one that does not say how fast it climbs follows the others
         let wanders = stream(&time_s, |t| position_m(t) + Vector3::z() * (3.0 * (0.1 * t).sin()));
-        let found = corrected(&wanders, &velocity, Some(&receiver)).unwrap();
+        let airborne_s = &[(5.0, 90.0)];
+        let estimated = Estimated { position: &wanders, velocity: &velocity, resets_s: &[], airborne_s };
+        let (found, is_up) = estimated.without_slow_error(Some(&receiver)).unwrap();
+        assert!(!is_up);
         let axis = |of: &Stream, axis: usize| -> Vec<f64> { of.values.chunks(3).map(|v| v[axis]).collect() };
         assert_eq!(axis(&found, 2), axis(&velocity, 2));
         assert!(axis(&found, 0) != axis(&velocity, 0));

@@ -207,7 +207,7 @@ pub(super) fn of_bent_scale(fitted: &Fitted, stated: &Vehicle) -> Option<Note> {
         );
         return Some(Note::remark(About::Estimate, text));
     }
-    let differs = stated_mass_differs(&fitted.base, stated_kg)?.abs();
+    let differs = stated_mass_differs(&fitted.base, stated)?.abs();
     let text = format!(
         "the stated mass, {} kg, and the mass by the stated thrust, {} kg, differ by {differs:.1} standard errors, although the thrust curve is bent: \
          one of both is of another vehicle, or the vehicle carried a load. All forces rest on the stated thrust. Weigh the vehicle as it flew, and \
