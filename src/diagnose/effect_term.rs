@@ -57,6 +57,11 @@ impl EffectTerm {
         self.signature.amounts.contains(&slot)
     }
 
+    /// Whether the effect is proportional to a parameter, so that its slope is the same everywhere.
+    pub(super) fn is_proportional_to(&self, slot: usize) -> bool {
+        self.is_amount(slot) && self.signature.growth == Growth::Proportional
+    }
+
     /// Estimates the amounts as well that another one of the same effect does, from the other one's values on.
     pub(super) fn free_amounts_of(&mut self, other: &Self) {
         for &slot in other.free.iter().filter(|slot| other.is_amount(**slot)) {

@@ -1,7 +1,7 @@
 //! Rigid body, latency and effects fitted to the flights: Gauss-Newton on the weak-form rows.
 
 use super::base::{Base, follows_force};
-use super::channels::{AXES, CHANNELS, Nuisance, NuisanceColumn};
+use super::channels::{AXES, CHANNELS, Channels, Nuisance, NuisanceColumn};
 use super::evidence::Weighted;
 use super::priors::Alike;
 use super::rows::Rows;
@@ -210,12 +210,15 @@ fn converged(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted
     let mut fitted = evaluate(flights, base.clone())?;
     for pass in 1..=PASSES {
         let moves = step(&mut base, &fitted.rows, &fitted.coefficients, newton);
-        let covariance = fitted.covariance;
+        let Fitted { covariance, mut rows, weighted, .. } = fitted;
+        // on the way the errors are those of the pass before, and the effects' columns too: they change little, and cost more than
+        // the step
+        let is_on_the_way = pass < PASSES && moves.largest(&covariance) >= CONVERGED;
+        let near = is_on_the_way.then(|| std::mem::take(&mut rows.effects));
         // two of a long flight at a time take much memory
-        drop((fitted.rows, fitted.weighted));
-        fitted = linearised(flights, base.clone())?;
-        // on the way the errors are those of the pass before: they change little, and cost more than the step
-        if pass < PASSES && moves.largest(&covariance) >= CONVERGED {
+        drop((rows, weighted));
+        fitted = linearised(flights, base.clone(), near)?;
+        if is_on_the_way {
             fitted.coefficients = fitted.weighted.values(&fitted.rows);
             fitted.covariance = covariance;
             continue;
@@ -230,14 +233,19 @@ fn converged(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted
 
 /// Rows, weights and coefficients at a base, without a Gauss-Newton step.
 pub(super) fn evaluate(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
-    let fitted = linearised(flights, base)?;
+    let fitted = linearised(flights, base, None)?;
     let (coefficients, covariance) = fitted.weighted.coefficients(&fitted.rows);
     Ok(Fitted { coefficients, covariance, ..fitted })
 }
 
-/// The same for who finds the coefficients otherwise: they and their covariance are zero.
-pub(super) fn linearised(flights: &[Trace], base: Base) -> Result<Fitted, PhysicsError> {
-    let rows = Rows::new(flights, &base)?;
+/// The same for who finds the coefficients otherwise: they and their covariance are zero. Columns of the effects as in
+/// [`Rows::with_columns`].
+pub(super) fn linearised(
+    flights: &[Trace],
+    base: Base,
+    near: Option<Vec<Channels>>,
+) -> Result<Fitted, PhysicsError> {
+    let rows = Rows::with_columns(flights, &base, near)?;
     let weighted = Weighted::new(&rows);
     let count = rows.nuisances.len() + rows.effects.len();
     let (coefficients, covariance) = (DVector::zeros(count), DMatrix::zeros(count, count));

@@ -14,6 +14,7 @@ mod columns;
 mod common_values;
 mod confusable;
 mod correlation;
+mod differences;
 mod drag_law;
 mod drag_location;
 mod effect_term;

@@ -75,15 +75,18 @@ pub(super) fn fit_by_instruments(
     let mut base = fitted.base.clone();
     let Some(told) = by_instruments(flights, fitted, newton) else { return Ok(None) };
     let mut moved = step(&mut base, &fitted.rows, &told.0, newton).largest(&told.1);
+    let mut effects = fitted.rows.effects.clone();
     for _ in 0..PASSES {
         // the one before is gone: two of a long flight at a time take much memory
-        let Ok(mut by) = linearised(flights, base.clone()) else { return Ok(None) };
+        let near = (moved >= CONVERGED).then(|| std::mem::take(&mut effects));
+        let Ok(mut by) = linearised(flights, base.clone(), near) else { return Ok(None) };
         let Some(told) = by_instruments(flights, &by, newton) else { return Ok(None) };
         if moved < CONVERGED {
             (by.coefficients, by.covariance) = told;
             return Ok(Some(by));
         }
         moved = step(&mut base, &by.rows, &told.0, newton).largest(&told.1);
+        effects = by.rows.effects;
     }
     Ok(None)
 }

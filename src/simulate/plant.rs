@@ -71,52 +71,56 @@ impl<'a> Plant<'a> {
 
     /// Moves on by `step_s` (s) under a constant input, with one Runge-Kutta step.
     pub fn step(&mut self, input: &Input, step_s: f64) {
+        let at = |after_s: f64| Input { time_s: input.time_s + after_s, ..*input };
+        self.step_along([&at(0.0), &at(0.5 * step_s), &at(step_s)], step_s);
+    }
+
+    /// [`Self::step`] under an input that changes: at the beginning, in the middle and at the end.
+    pub fn step_along(&mut self, inputs: [&Input; 3], step_s: f64) {
         // no more numbers than the effects need take part
         match self.model.own_state_count() {
-            0 => self.step_of::<RIGID_STATES>(input, step_s),
-            1..=4 => self.step_of::<{ RIGID_STATES + 4 }>(input, step_s),
-            5..=10 => self.step_of::<{ RIGID_STATES + 10 }>(input, step_s),
-            _ => self.step_of::<PLANT_STATES>(input, step_s),
+            0 => self.step_of::<RIGID_STATES>(inputs, step_s),
+            1..=4 => self.step_of::<{ RIGID_STATES + 4 }>(inputs, step_s),
+            5..=10 => self.step_of::<{ RIGID_STATES + 10 }>(inputs, step_s),
+            _ => self.step_of::<PLANT_STATES>(inputs, step_s),
         }
     }
 
-    /// [`Self::step`] of the effects' own states alone, as far as no one asks where the body is meanwhile
+    /// [`Self::step_along`] of the effects' own states alone, as far as no one asks where the body is meanwhile
     /// ([`Model::own_states_are_of_rotors`]).
-    pub fn step_own(&mut self, input: &Input, step_s: f64) {
+    pub fn step_own(&mut self, inputs: [&Input; 3], step_s: f64) {
         match self.model.own_state_count() {
             0 => {}
-            1..=4 => self.step_own_of::<4>(input, step_s),
-            5..=10 => self.step_own_of::<10>(input, step_s),
-            _ => self.step_own_of::<{ PLANT_STATES - RIGID_STATES }>(input, step_s),
+            1..=4 => self.step_own_of::<4>(inputs, step_s),
+            5..=10 => self.step_own_of::<10>(inputs, step_s),
+            _ => self.step_own_of::<{ PLANT_STATES - RIGID_STATES }>(inputs, step_s),
         }
     }
 
-    fn step_own_of<const N: usize>(&mut self, input: &Input, step_s: f64) {
-        let (model, state, mut now) = (self.model, self.state(), *input);
+    fn step_own_of<const N: usize>(&mut self, inputs: [&Input; 3], step_s: f64) {
+        let (model, state, mut stages) = (self.model, self.state(), stages(inputs));
         let count = model.own_state_count();
-        let mut derivative = |time_s: f64, vector: &SVector<f64, N>| {
+        let mut derivative = |_: f64, vector: &SVector<f64, N>| {
             let mut out = SVector::<f64, N>::zeros();
-            now.time_s = time_s;
             let (states, rates) = (&vector.as_slice()[..count], &mut out.as_mut_slice()[..count]);
-            model.rotor_rates(&state, &now, OwnStates { states, rates });
+            model.rotor_rates(&state, stages(), OwnStates { states, rates });
             out
         };
         let own = &mut self.vector.as_mut_slice()[RIGID_STATES..RIGID_STATES + N];
         let vector = SVector::<f64, N>::from_column_slice(own);
-        own.copy_from_slice(rk4_step(&mut derivative, input.time_s, &vector, step_s).as_slice());
+        own.copy_from_slice(rk4_step(&mut derivative, inputs[0].time_s, &vector, step_s).as_slice());
     }
 
-    fn step_of<const N: usize>(&mut self, input: &Input, step_s: f64) {
+    fn step_of<const N: usize>(&mut self, inputs: [&Input; 3], step_s: f64) {
         let (model, push) = (self.model, self.push);
         let count = model.own_state_count();
-        let (mut now, mut rotors) = (*input, Rotors::still());
+        let (mut stages, mut rotors) = (stages(inputs), Rotors::still());
         let mut derivative = |time_s: f64, vector: &SVector<f64, N>| {
             let mut out = SVector::<f64, N>::zeros();
             let state = State::read(vector);
-            now.time_s = time_s;
             let states = &vector.as_slice()[RIGID_STATES..RIGID_STATES + count];
             let rates = &mut out.as_mut_slice()[RIGID_STATES..RIGID_STATES + count];
-            let mut wrench = model.wrench(&state, &now, OwnStates { states, rates }, &mut rotors);
+            let mut wrench = model.wrench(&state, stages(), OwnStates { states, rates }, &mut rotors);
             if let Some(push) = push {
                 wrench += push(time_s, &state);
             }
@@ -124,11 +128,17 @@ impl<'a> Plant<'a> {
             out
         };
         let mut vector = SVector::<f64, N>::from_column_slice(&self.vector.as_slice()[..N]);
-        vector = rk4_step(&mut derivative, input.time_s, &vector, step_s);
+        vector = rk4_step(&mut derivative, inputs[0].time_s, &vector, step_s);
         // back to a unit quaternion: the step leaves it by its own error
         State::read(&vector).write(&mut vector);
         self.vector.as_mut_slice()[..N].copy_from_slice(vector.as_slice());
     }
+}
+
+/// The input of each of a Runge-Kutta step's four stages, one after the other.
+fn stages<'a>([begin, middle, end]: [&'a Input; 3]) -> impl FnMut() -> &'a Input {
+    let mut order = [begin, middle, middle].into_iter();
+    move || order.next().unwrap_or(end)
 }
 
 /// Where a [`Plant`] is, own states of the effects included, while nobody steps it.

@@ -1,9 +1,8 @@
 //! What a model that is right would leave: noise of the measured states and of the logged commands.
 
-use super::windows::{Played, WindowErrors, Windows};
+use super::windows::Played;
 use crate::compare::CompareError;
 use crate::physics::{MAX_ROTORS, State};
-use crate::simulate::PlantMemory;
 use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -44,47 +43,30 @@ pub struct FloorNoise<'a> {
 
 /// What [`super::playback_windows`] would find of a model that is right: the sensors' noise at the start of
 /// each window, carried along by the model, and at every instant that is compared; and rotors that do
-/// not quite what the log says. One seeded draw a window, and a generator a length of windows.
+/// not quite what the log says. One seeded draw an instant at which windows begin; those of all lengths share it.
 pub(super) struct Floor<'a> {
     otherwise: Played<'a>,
     noise: &'a StateNoise,
-    generators: Vec<Pcg64Mcg>,
+    generator: Pcg64Mcg,
 }
 
 impl<'a> Floor<'a> {
-    /// Of so many lengths of windows.
-    pub fn of(mut played: Played<'a>, noise: FloorNoise<'a>, lengths: usize) -> Self {
+    pub fn of(mut played: Played<'a>, noise: FloorNoise<'a>) -> Self {
         let mut generator = Pcg64Mcg::seed_from_u64(noise.seed);
         if let Some(commands) = noise.commands {
             commands.disturb(&mut played, &mut generator);
         }
-        Self { otherwise: played, noise: noise.state, generators: vec![generator; lengths] }
+        Self { otherwise: played, noise: noise.state, generator }
     }
 
-    /// Ready for the windows that begin at an instant.
-    pub fn at(&mut self, start: usize) -> Result<Noisy<'_, 'a>, CompareError> {
-        let memory = self.otherwise.warm(start)?.memory();
-        Ok(Noisy { floor: self, start, memory })
-    }
-}
-
-/// A vehicle whose rotors did not quite what the log says, where windows begin.
-pub(super) struct Noisy<'f, 'a> {
-    floor: &'f mut Floor<'a>,
-    start: usize,
-    memory: PlantMemory,
-}
-
-impl Noisy<'_, '_> {
-    /// Errors of the next window of a length, of which the truth is what the model does without noise.
-    pub fn errors(&mut self, windows: &Windows, length: usize, truth: &[State]) -> WindowErrors {
-        let Floor { otherwise, noise, generators } = &mut *self.floor;
-        let generator = &mut generators[length];
-        let mut plant = otherwise.resume(self.memory);
-        plant.set_state(&noise.on(&otherwise.measured(self.start), generator));
-        let simulated = otherwise.window(plant, (self.start, truth.len()));
-        let pairs = truth.iter().zip(simulated).map(|(truth, of)| (of, noise.on(truth, generator)));
-        windows.errors_against(self.start, pairs)
+    /// What is predicted for the instants after `start`, and what is measured there, where the truth is what the model does without
+    /// noise.
+    pub fn predicted(&mut self, start: usize, truth: &[State]) -> Result<Vec<(State, State)>, CompareError> {
+        let Self { otherwise, noise, generator } = self;
+        let mut plant = otherwise.warm(start)?;
+        plant.set_state(&noise.on(&otherwise.measured(start), generator));
+        let simulated = otherwise.window(plant, (start, truth.len()));
+        Ok(simulated.into_iter().zip(truth).map(|(of, truth)| (of, noise.on(truth, generator))).collect())
     }
 }
 

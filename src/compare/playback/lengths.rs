@@ -51,7 +51,7 @@ pub fn playback_lengths(
     let of = |push| Played::of((&model, vehicle), push, signals, settings);
     let (pushed, exact) = (of(push)?, of(None)?);
     let mut floor = match floor {
-        Some(noise) => Some(Floor::of(of(None)?, noise, lengths.len())),
+        Some(noise) => Some(Floor::of(of(None)?, noise)),
         None => None,
     };
     let mut out = vec![LengthErrors::default(); lengths.len()];
@@ -67,9 +67,9 @@ pub fn playback_lengths(
             Some(_) => exact.window(exact.warm(start)?, (start, longest)),
             None => simulated,
         };
-        let mut noisy = floor.at(start)?;
-        for (length, of) in lengths.iter().enumerate().filter(|(_, of)| has(of)) {
-            out[length].floor.push(noisy.errors(of, length, &truth[..of.window]));
+        let noisy = floor.predicted(start, &truth)?;
+        for (of, out) in lengths.iter().zip(&mut out).filter(|(of, _)| has(of)) {
+            out.floor.push(of.errors_against(start, noisy[..of.window].iter().copied()));
         }
     }
     Ok(out)

@@ -138,7 +138,8 @@ impl<'a> Played<'a> {
         let states = MeasuredStates::of(signals)?;
         let commands = Commands::of(model, vehicle, signals)?;
         let step_s = signals.grid.step_s;
-        let substeps = (1..100).find(|n| step_s / f64::from(*n) <= settings.step_s + 1e-12).unwrap_or(100);
+        let longest_s = settings.longest_step_s(model);
+        let substeps = (1..100).find(|n| step_s / f64::from(*n) <= longest_s + 1e-12).unwrap_or(100);
         let warm_up = steps(settings.warm_up_s, &signals.grid);
         let carried = Cell::new(None);
         Ok(Self { model, push, states, commands, step_s, substeps, warm_up, carried })
@@ -155,11 +156,6 @@ impl<'a> Played<'a> {
         self.states.at(index)
     }
 
-    /// The vehicle that a memory is of.
-    pub fn resume(&self, memory: PlantMemory) -> Plant<'_> {
-        Plant::resume(self.model, self.push, memory)
-    }
-
     /// The vehicle as it was measured at an instant, with own states of the effects that followed the recording until then: those of rotors, which
     /// forget in a moment, over the warm-up; others, as the swing of a load, since the beginning of what can be used.
     pub fn warm(&self, start: usize) -> Result<Plant<'_>, CompareError> {
@@ -172,7 +168,7 @@ impl<'a> Played<'a> {
         for index in from..start {
             plant.set_state(&self.states.at(index));
             if of_rotors {
-                self.substeps(index, |input, step_s| plant.step_own(input, step_s));
+                self.substeps(index, |inputs, step_s| plant.step_own(inputs, step_s));
             } else {
                 self.step(&mut plant, index);
             }
@@ -189,7 +185,7 @@ impl<'a> Played<'a> {
         let usable = &self.states.signals.usable[..start];
         let is_one_run = |from: usize| from <= start && usable[from..].iter().all(|used| *used);
         if let Some((at, memory)) = self.carried.get().filter(|(at, _)| is_one_run(*at)) {
-            return Ok((at, self.resume(memory)));
+            return Ok((at, Plant::resume(self.model, self.push, memory)));
         }
         let from = start - usable.iter().rev().take_while(|used| **used).count();
         Ok((from, self.plant(from)?))
@@ -205,14 +201,19 @@ impl<'a> Played<'a> {
 
     /// One instant on, under the recorded commands.
     fn step(&self, plant: &mut Plant, index: usize) {
-        self.substeps(index, |input, step_s| plant.step(input, step_s));
+        self.substeps(index, |inputs, step_s| plant.step_along(inputs, step_s));
     }
 
-    /// Commands and length (s) of each integration step from an instant to the next one.
-    fn substeps(&self, index: usize, mut step: impl FnMut(&Input, f64)) {
+    /// Commands at the beginning, in the middle and at the end of each integration step from an instant to the next one, and
+    /// its length, s.
+    fn substeps(&self, index: usize, mut step: impl FnMut([&Input; 3], f64)) {
+        let count = f64::from(self.substeps);
+        let mut begin = self.commands.at(index, 0.0);
         for substep in 0..self.substeps {
-            let share = (f64::from(substep) + 0.5) / f64::from(self.substeps);
-            step(&self.commands.at(index, share), self.step_s / f64::from(self.substeps));
+            let at = |part: f64| self.commands.at(index, (f64::from(substep) + part) / count);
+            let (middle, end) = (at(0.5), at(1.0));
+            step([&begin, &middle, &end], self.step_s / count);
+            begin = end;
         }
     }
 

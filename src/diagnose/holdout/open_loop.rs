@@ -126,12 +126,11 @@ pub(super) fn rate_law(ready: &[Ready]) -> Result<Option<RateLaw>, HoldoutError>
     Ok(RateLaw::fit(&paths, (HALF_S, playback.stride_s)))
 }
 
-/// Playback over windows of half a second, as often as these flights together need. Grids are seldom faster than 4 ms: one step an
-/// instant.
+/// Playback over windows of half a second, as often as these flights together need.
 pub(super) fn playback_of(ready: &[Ready]) -> PlaybackSettings {
     let total_s: f64 = ready.iter().map(Ready::usable_s).sum();
     let stride_s = STRIDE_S * (total_s / SERVED_S).ceil().max(1.0);
-    PlaybackSettings { window_s: HALF_S, stride_s, step_s: 0.004, ..PlaybackSettings::default() }
+    PlaybackSettings { window_s: HALF_S, stride_s, step_s: 0.01, ..PlaybackSettings::default() }
 }
 
 /// One flight's windows, as predicted by each.
