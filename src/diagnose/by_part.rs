@@ -65,7 +65,12 @@ impl ByPart {
     /// Each part shows it by itself, in the same direction.
     #[must_use]
     pub fn is_in_each(&self) -> bool {
-        let by = |sign: f64| self.parts.iter().all(|part| sign * self.away(part) >= SHOWN);
+        self.is_in_each_by(SHOWN)
+    }
+
+    /// The same by so many standard errors.
+    pub(crate) fn is_in_each_by(&self, least: f64) -> bool {
+        let by = |sign: f64| self.parts.iter().all(|part| sign * self.away(part) >= least);
         by(1.0) || by(-1.0)
     }
 

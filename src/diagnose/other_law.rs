@@ -123,7 +123,7 @@ fn share(added: &DMatrix<f64>, covariance: &DMatrix<f64>) -> f64 {
 }
 
 /// Mean square of a size that is from none to `usual` on ordinary vehicles, where a flight tells `told` with an error `std`.
-fn second_moment(told: f64, std: f64, usual: f64) -> f64 {
+pub(super) fn second_moment(told: f64, std: f64, usual: f64) -> f64 {
     let (by_flight, by_usage) = (std.powi(-2), 3.0 * usual.powi(-2));
     let variance = (by_flight + by_usage).recip();
     variance + (variance * by_flight * told).powi(2)

@@ -5,6 +5,7 @@ use super::base::Base;
 use super::bend::Bend;
 use super::climb_alone::is_of_climb;
 use super::drag_law::settle_laws;
+use super::drag_location::add_damping;
 use super::feedback_noise::is_fed_back;
 use super::fit::{Fitted, Newton, fit};
 use super::floors::{FORM, add_floors};
@@ -67,6 +68,7 @@ pub(super) fn refine(
     }
     // which law a drag follows says nothing of whether it is there
     found.by_other_law = add_other_laws(traces, &found.last, &mut found.after);
+    add_damping(traces, &mut found.after);
     settle_scale(traces, vehicle, (&mut found.after, &mut found.by_other_law))?;
     add_floors(&mut found.after);
     // the model where nothing serves
@@ -74,6 +76,7 @@ pub(super) fn refine(
     add_floors(&mut found.before);
     found.latency.std_s = found.latency.std_s.hypot(FORM * found.latency.total_s);
     found.by_wider_window = inertia_by_wider_window(flights, vehicle);
+    tracing::debug!(?found.by_wider_window, "moments of inertia of the rigid body by another window");
     make_physical(traces, (vehicle, found.by_wider_window), &mut found.before)?;
     make_physical(traces, (vehicle, found.by_wider_window), &mut found.after)
 }

@@ -15,6 +15,9 @@ const CONTRADICTION: &str = "the recorded motion does not go with the rotors of 
 pub(super) const TWO_VEHICLES: &str =
     "the flights given together differ by more than flights of one vehicle do";
 
+/// Moments of inertia that no multirotor has.
+pub(super) const ODD_SHAPE: &str = "the moment of inertia about z is smaller than one across, which no multirotor has without a heavy load far below or above its rotors";
+
 /// Largest ratio of an estimated mass to that of the vehicle file, or its inverse, without a note: a battery or a small payload.
 const ORDINARY_MASS: f64 = 1.15;
 /// Standard errors of the estimate that do not count. The usual 95 %.
@@ -83,6 +86,19 @@ pub(in crate::study) fn of_mass((kg, std_kg): (f64, f64), stated_kg: f64) -> Opt
             "the mass is {factor:.2} times what the vehicle file states, if the rotors give the thrust that it states. If the mass was \
              weighed, the thrust is {:.2} times what is stated, and so is each force and moment of inertia of this answer: set anchor = \
              \"mass\" below [identify] in the vehicle file",
+            factor.recip()
+        )
+    };
+    (apart >= ORDINARY_MASS.ln()).then(|| Note::warning(About::Estimate, text()))
+}
+
+/// A note on a factor of the stated thrust (-), with its standard error, of a weighed vehicle that differs from one by more than files do.
+pub(in crate::study) fn of_thrust(name: &str, (factor, std): (f64, f64)) -> Option<Note> {
+    let apart = factor.ln().abs() - WITHIN * std / factor.abs();
+    let text = || {
+        format!(
+            "{name} is {factor:.2} times what the vehicle file states, if the vehicle flew with the stated mass. If it carried a load, or was not \
+             weighed, the mass is {:.2} times the stated one, and so is each force and moment of inertia of this answer",
             factor.recip()
         )
     };

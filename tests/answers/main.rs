@@ -27,6 +27,7 @@ mod fleet;
 mod hold_out_and_next_flight;
 mod identify;
 mod identify_with;
+mod other_rotor;
 mod paper_twin;
 mod prove_command;
 mod reconstruction;

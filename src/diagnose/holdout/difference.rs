@@ -23,4 +23,9 @@ pub enum Difference {
         /// ratio to the residual of the identified flights
         ratio: f64,
     },
+    /// a rotor that differs from the others in the flights explained alone
+    Rotor {
+        /// the effect, in brief, with its size
+        name: String,
+    },
 }

@@ -21,18 +21,21 @@ const BETWEEN_S: f64 = 0.5;
 /// Share of the flight that is held back. More would leave less to explain, less would make the intervals wide.
 const SHARE: f64 = 1.0 / 3.0;
 
-/// Holds back the last whole periods, about a third of the flight and at least one period; without a period the last
-/// third. `None` if too little would be left on either side.
+/// Holds back the last whole periods, about a third of the flight and at least one period; without a period, or where whole periods would
+/// leave too little, the last third. `None` if too little would be left on either side.
 #[must_use]
 pub fn split_last_periods(signals: &Signals) -> Option<Split> {
     let used: Vec<usize> = (0..signals.grid.count).filter(|&index| signals.usable[index]).collect();
     let (first_s, last_s) = (signals.grid.time_s(*used.first()?), signals.grid.time_s(*used.last()?));
+    let third_s = SHARE * (last_s - first_s);
     let period_s = flown_period_s(signals, &used);
-    let held_s = match period_s {
-        Some(period_s) => (SHARE * (last_s - first_s) / period_s).round().max(1.0) * period_s,
-        None => SHARE * (last_s - first_s),
-    };
-    let from_s = last_s - held_s;
+    tracing::debug!(first_s, last_s, ?period_s, "the end of the flight is held back");
+    let whole_s = period_s.map(|period_s| (third_s / period_s).round().max(1.0) * period_s);
+    whole_s.into_iter().chain([third_s]).find_map(|held_s| split(signals, last_s - held_s))
+}
+
+/// The flight before and after a time (s); `None` if too little is left on either side.
+fn split(signals: &Signals, from_s: f64) -> Option<Split> {
     let cut = |keep: &dyn Fn(f64) -> bool| {
         let mut part = signals.clone();
         for (index, usable) in part.usable.iter_mut().enumerate() {

@@ -12,7 +12,7 @@ documented! {
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "time", unit: "s", bounds: Bounds::of(0.0, 1e5) },
-    Parameter { name: "delta", unit: "kg", bounds: Bounds::of(-5.0, 5.0).by_mass() },
+    Parameter { name: "delta", unit: "kg", bounds: Bounds::of(-0.8, 2.0).by_mass() },
 ];
 
 /// By how much the mass differs now, kg; never so much that less than a tenth is left.

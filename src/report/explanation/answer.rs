@@ -26,10 +26,15 @@ pub fn answer(study: &ExplainStudy) -> String {
     );
     match study.doubts().as_slice() {
         [] => found,
-        [doubt] if study.doubts_torques_alone() => {
-            let doubt = doubt.strip_prefix("it ").unwrap_or(doubt);
+        doubts if study.doubts_torques_alone() => {
+            let said = |doubt: &String| match doubt.strip_prefix("it ") {
+                Some(of_inertia) => format!("the inertia {of_inertia}"),
+                None => doubt.clone(),
+            };
+            let doubts: Vec<String> = doubts.iter().map(said).collect();
             format!(
-                "{found} Moments of inertia and torques are doubtful, the forces are not: the inertia {doubt}."
+                "{found} Moments of inertia and torques are doubtful, the forces are not: {}.",
+                doubts.join("; ")
             )
         }
         doubts => format!("Doubtful: {}. {found}", doubts.join("; ")),

@@ -8,7 +8,7 @@ use super::motor::{motor, sizes};
 use super::pictures;
 use super::rivals::rival;
 use super::shown_by::shown_by;
-use super::text::{ERRORS, after, before, scale};
+use super::text::{ERRORS, after, before, scale, verdict};
 use crate::diagnose::holdout::RateLaw;
 use crate::diagnose::{Empirical, NO_LATENCY, Named, Slight, Verdict, called, clause};
 use crate::report::html::{
@@ -52,9 +52,8 @@ pub fn explanation_html(study: &ExplainStudy) -> String {
 
 fn tags(study: &ExplainStudy) -> Vec<String> {
     let flights = study.given.inputs.len();
-    let doubtful = if study.is_doubtful() { ", doubtful" } else { "" };
     let mut tags = vec![
-        format!("{}{doubtful}", study.verdict().name().replace('_', " ")),
+        verdict(study),
         format!("{flights} flight{} explained", if flights == 1 { "" } else { "s" }),
         study.shown_on.heading(),
     ];
@@ -188,7 +187,7 @@ fn rigid_body(study: &ExplainStudy) -> Markup {
             &rows,
         ))
         (note(&format!("+-: {ERRORS}.")))
-        @if let Some(sentence) = study.scale().as_ref().and_then(scale) { (note(&format!("{sentence}."))) }
+        @if let Some(sentence) = scale(study) { (note(&format!("{sentence}."))) }
         @for (reason, names) in study.body_not_determined() {
             (note(&format!("{}: not determined: {reason}.", names.join(", "))))
         }

@@ -36,8 +36,7 @@ pub fn explanation_text(study: &ExplainStudy) -> String {
 #[must_use]
 pub fn explanation_page(study: &ExplainStudy) -> String {
     let mut page = format!("{}\n\n", answer(study));
-    let doubtful = if study.is_doubtful() { ", doubtful" } else { "" };
-    let _ = writeln!(page, "  verdict: {}{doubtful}", study.verdict().name().replace('_', " "));
+    let _ = writeln!(page, "  verdict: {}", verdict(study));
     for effect in study.effects.iter().chain(&study.closest) {
         effect_lines(&mut page, study, effect);
     }
@@ -220,7 +219,7 @@ fn body_lines(page: &mut String, study: &ExplainStudy) {
         );
     }
     let _ = writeln!(page, "    +-: {ERRORS}");
-    if let Some(sentence) = study.scale().as_ref().and_then(scale) {
+    if let Some(sentence) = scale(study) {
         let _ = writeln!(page, "    {sentence}");
     }
     for (reason, names) in study.body_not_determined() {
@@ -265,8 +264,32 @@ pub(super) fn after(of: &BodyParameter) -> String {
     }
 }
 
+/// The verdict, and what takes from it.
+pub(super) fn verdict(study: &ExplainStudy) -> String {
+    let name = study.verdict().name().replace('_', " ");
+    if study.is_doubtful() {
+        format!("{name}, doubtful")
+    } else if !study.limited().is_empty() && !study.effects.is_empty() {
+        format!("{name}, no name is certain")
+    } else {
+        name
+    }
+}
+
+/// What the scale of masses and forces rests on; `None` where a note says it.
+pub(super) fn scale(study: &ExplainStudy) -> Option<String> {
+    if let Some(of) = study.scale() {
+        return of_weighed(&of);
+    }
+    study.rests_on_stated_thrust().then(|| {
+        "scale: the stated thrust is trusted (anchor = \"thrust\"): mass, moments of inertia, forces and torques are in proportion to it, and \
+         its error is not in theirs; a weighed mass sets the scale with anchor = \"mass\""
+            .to_owned()
+    })
+}
+
 /// What a weighed mass makes of the stated thrust.
-pub(super) fn scale(of: &ThrustScale) -> Option<String> {
+fn of_weighed(of: &ThrustScale) -> Option<String> {
     let (Finding::Determined { value, std }, Finding::Determined { value: factor, .. }) =
         (&of.value, &of.factor)
     else {

@@ -105,6 +105,13 @@ impl ExplainStudy {
         Some(ThrustScale::of(mass, weighed_kg, stated))
     }
 
+    /// The stated thrust alone sets the scale of masses and forces.
+    #[must_use]
+    pub fn rests_on_stated_thrust(&self) -> bool {
+        let base = &self.fitted().base;
+        base.weighed_kg.is_none() && base.stated_mass_differs.is_none()
+    }
+
     /// Mass and inertia of a fit, with the covariance that a weighed mass leaves.
     fn on_scale(&self, fitted: &Fitted) -> Estimated {
         let estimated = self.guessing(fitted.rigid_body(), fitted);

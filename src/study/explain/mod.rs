@@ -24,6 +24,7 @@ mod readers;
 mod refuted;
 mod request;
 mod result;
+mod rotor_apart;
 mod run;
 mod short;
 mod taken_back;

@@ -89,7 +89,7 @@ pub(in crate::study) fn explain_prepared(
     let is_foreign = |study: &ExplainStudy| {
         study.other_vehicle().is_some() && matches!(study.shown_on, ValidationData::Flights(_))
     };
-    if study.refuted.is_none() && is_foreign(&study) {
+    if study.refuted.is_none() && is_foreign(&study) && !study.is_rotor_apart() {
         progress.stage(Stage::Predicting);
         let day = !several && !names_wind(&study);
         let own_winds = if day { with_own_winds(held, asked.vehicle) } else { Vec::new() };
@@ -161,6 +161,8 @@ impl Task<'_> {
             let given = self.given(flights, settings.clone());
             let (mut study, in_own_wind) = self.shown(given, explanation, flights, (held, back, &shown_on));
             let held = in_own_wind.as_ref().unwrap_or(held);
+            let traces = || traces_of(&flights.signals, self.asked.vehicle, &settings);
+            study.tell_rotor_apart(traces);
             let worthless = study.worthless().filter(|of| !settings.refused.contains(&of.id));
             let worthless = worthless.or_else(|| study.unsupported());
             let refuted = study.refuted_by_holdout();
@@ -174,7 +176,6 @@ impl Task<'_> {
                 study.refuted = Some(refuted);
                 return Ok((study, notes));
             }
-            let traces = || traces_of(&flights.signals, self.asked.vehicle, &settings);
             let unshown = if is_refuted { None } else { study.unshown(&traces()) };
             let is_unshown = unshown.is_some();
             let (id, note) = match (unshown, worthless) {

@@ -52,11 +52,15 @@ pub(super) enum BetterBy {
 
 impl Worthless {
     pub(super) fn note(&self) -> Note {
-        let percent = significant(self.better_percent, 2);
+        let percent = significant(self.better_percent.abs(), 2);
         let why = match self.by {
             BetterBy::Without => {
                 format!("without it, errors over 0.5 s are {percent} % smaller in the mean on the hold-out")
             }
+            BetterBy::Baseline if self.better_percent <= 0.0 => format!(
+                "it follows the height, as a thrust that drifts does, and the model with it predicts the hold-out over 0.5 s only {percent} % \
+                 better in the mean than a state that does not change or the rigid body alone"
+            ),
             BetterBy::Baseline => format!(
                 "it follows the height, as a thrust that drifts does, and a state that does not change or the rigid body alone \
                  predicts the hold-out better than the model with it, over 0.5 s by {percent} % in the mean"

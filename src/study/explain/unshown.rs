@@ -19,6 +19,7 @@ impl ExplainStudy {
     pub(super) fn unshown(&self, traces: &[Trace]) -> Option<Unshown> {
         self.short.as_ref()?;
         let parts = by_part(traces, &self.explanation).unwrap_or_default();
+        tracing::debug!(?parts, "names of a short flight by its halves");
         let is_judged = |named: &&Named| {
             let refused = self.given.settings.refused.contains(&named.id);
             let lasts = |of: &Signature| of.role.latency.is_none() && of.role.moment.is_none();
