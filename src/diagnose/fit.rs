@@ -70,7 +70,7 @@ impl Fitted {
             by_guessed_curve: None,
             torque_exponent: None,
         }
-        .with_torque_std(self.rows.torque_std)
+        .with_torque_error(self.rows.torque_error)
     }
 
     /// The same on the scale of the stated thrust, also of a vehicle that was weighed.

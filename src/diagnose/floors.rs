@@ -94,7 +94,7 @@ pub(super) fn of_law(fitted: &Fitted, term: &EffectTerm, (slot, column): (usize,
     let signature = term.signature;
     let is_along_z = signature.is_drag() && slot == 2 || signature.role.axial_part_of.is_some();
     // what rebuilt torques are unsure by is known where commands were rebuilt, and not otherwise
-    let is_sparse = !fitted.rows.compares_torques || fitted.rows.torque_std > 0.0;
+    let is_sparse = !fitted.rows.compares_torques || fitted.rows.torque_error.rebuilt > 0.0;
     let sparse = if is_along_z && is_sparse { SPARSE } else { 0.0 };
     let guess = guessed(&fitted.base.vehicle, parameter);
     // what the whole drag is wrong by, one of its laws takes

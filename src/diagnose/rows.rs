@@ -14,6 +14,7 @@ use super::sensors::{KnownMotion, true_readings};
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::{Model, PhysicsError};
+use crate::signals::TorqueError;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -36,8 +37,8 @@ pub struct Rows {
     pub effects: Vec<Channels>,
     /// in one of the flights, torques are compared row by row, not only on average
     pub compares_torques: bool,
-    /// relative standard error that all torques about x and y have in common
-    pub torque_std: f64,
+    /// what all torques have in common as an error
+    pub torque_error: TorqueError,
     /// N m, root mean square of the torque that the motion needs, about body x, y, z
     pub torque_rms: [f64; 3],
     /// data for further columns about the same base
@@ -81,7 +82,7 @@ impl Rows {
             nuisances: Vec::new(),
             effects: Vec::new(),
             compares_torques: flights.iter().any(|trace| trace.torques),
-            torque_std: flights.iter().map(|trace| trace.torque_std).fold(0.0, f64::max),
+            torque_error: TorqueError::of_all(flights.iter().map(|trace| trace.torque_error)),
             torque_rms: [0.0; 3],
             flights: Vec::new(),
             known_motion: known_motion.clone(),
@@ -138,7 +139,7 @@ impl Rows {
             nuisances: kept.cloned().collect(),
             effects: self.effects.clone(),
             compares_torques: self.compares_torques,
-            torque_std: self.torque_std,
+            torque_error: self.torque_error,
             torque_rms: self.torque_rms,
             flights: Vec::new(),
             known_motion: None,

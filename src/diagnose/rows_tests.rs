@@ -4,7 +4,8 @@ use super::*;
 use crate::diagnose::channels::SECOND;
 use crate::recording::Quantity;
 use crate::signals::{
-    AsRecorded, Grid, OwnOfFlight, Quality, Series, Signals, ThrustSource, Usable, VelocityHeldBy,
+    AsRecorded, Grid, OwnOfFlight, Quality, Series, Signals, ThrustSource, TorqueError, Usable,
+    VelocityHeldBy,
 };
 use crate::simulate::random_vehicle;
 use crate::vehicle::{RigidBody, Rotor, Spin, Vehicle};
@@ -27,7 +28,7 @@ pub(in super::super) fn rows_of(
         nuisances,
         effects,
         compares_torques: true,
-        torque_std: 0.0,
+        torque_error: TorqueError::default(),
         torque_rms: [1.0; 3],
         flights: Vec::new(),
         known_motion: None,
@@ -88,7 +89,7 @@ pub(in super::super) fn turning_on_the_spot() -> Signals {
             velocity_held_by: VelocityHeldBy::default(),
             position_by_receiver: false,
             steady_voltage_v: None,
-            torque_std: 0.0,
+            torque_error: TorqueError::default(),
             simulated: false,
             notes: Vec::new(),
         },

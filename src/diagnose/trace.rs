@@ -9,7 +9,7 @@ use super::trace_error::TraceError;
 use crate::physics::{ActuationLatency, Airframe, State};
 use crate::reconstruction::velocity_error_m_s;
 use crate::signals::{
-    Butterworth, Grid, OwnOfFlight, Series, Signals, ThrustSource, VelocityHeldBy, WeakKernel,
+    Butterworth, Grid, OwnOfFlight, Series, Signals, ThrustSource, TorqueError, VelocityHeldBy, WeakKernel,
     central_difference, stride,
 };
 use crate::vehicle::{Propulsion, RigidBody, Vehicle};
@@ -73,8 +73,8 @@ pub struct Trace {
     pub velocity_held_by: VelocityHeldBy,
     /// a satellite receiver gives the position
     pub position_by_receiver: bool,
-    /// relative standard error that all torques about x and y have in common
-    pub torque_std: f64,
+    /// what all torques have in common as an error
+    pub torque_error: TorqueError,
     /// a simulator flew it
     pub simulated: bool,
     /// what it has beside the vehicle's other flights
@@ -150,7 +150,7 @@ impl Trace {
             gravity_m_s2: vehicle.gravity_m_s2,
             velocity_held_by: signals.quality.velocity_held_by,
             position_by_receiver: signals.quality.position_by_receiver,
-            torque_std: signals.quality.torque_std,
+            torque_error: signals.quality.torque_error,
             simulated: signals.quality.simulated,
             own: signals.own.clone(),
             velocity_error_m_s: velocity_error_m_s(signals),

@@ -16,7 +16,7 @@ use crate::note::{About, Note};
 use crate::physics::ActuationLatency;
 use crate::regression::ZeroPhase;
 use crate::signals::{
-    Butterworth, Signals, ThrustSource, WEAK_HALF_WIDTH_S, WindowedFir, highest_harmonic_hz,
+    Butterworth, Signals, ThrustSource, TorqueError, WEAK_HALF_WIDTH_S, WindowedFir, highest_harmonic_hz,
 };
 use crate::vehicle::Vehicle;
 
@@ -117,10 +117,10 @@ pub fn identify(
 
     let wider = weak.by_wider_window(&plain, &nominal.theta, settings.weak_half_width_s);
     let by_curve = moved_by_curve(flights, vehicle, compensated, &nominal.theta);
-    let torque_std = flights.iter().map(|flight| flight.quality.torque_std).fold(0.0, f64::max);
+    let torque_error = TorqueError::of_all(flights.iter().map(|flight| flight.quality.torque_error));
     let whole = |weak: &WeakEstimate| {
         let moved = by_curve.map(|by| by.on(&weak.theta));
-        Estimated::of(weak).with_torque_std(torque_std).with_wider_window(wider).with_guessed_curve(moved)
+        Estimated::of(weak).with_torque_error(torque_error).with_wider_window(wider).with_guessed_curve(moved)
     };
     let mut methods = paper.results(&whole(&plain));
     let best = Recommendation::weak(whole(&plain), &nominal);

@@ -2,8 +2,9 @@
 
 use super::method::Method;
 use super::nominal::Nominal;
-use super::theta::{NAMES, THETA, Theta, ThetaCovariance, UNITS, scale_of};
+use super::theta::{MOMENTS, NAMES, THETA, Theta, ThetaCovariance, UNITS, scale_of};
 use super::weak::WeakEstimate;
+use crate::signals::TorqueError;
 
 /// Largest standard error of a moment of inertia that counts as determined, as a share of its nominal size. A user
 /// can state as much without a flight.
@@ -113,10 +114,16 @@ impl Estimated {
         Self { by_wider_window: Some(ratios), ..self }
     }
 
-    /// The same where all torques about x and y have a relative standard error in common: the moments and products of inertia that they
+    /// The same where all torques about an axis have a relative standard error in common: the moments and products of inertia that they
     /// tell have it too.
     #[must_use]
-    pub fn with_torque_std(mut self, relative: f64) -> Self {
+    pub fn with_torque_error(mut self, error: TorqueError) -> Self {
+        for (index, relative) in [MOMENTS[0], MOMENTS[1]].into_iter().zip(error.of_moments()) {
+            if self.covariance[(index, index)] > 0.0 {
+                self.covariance[(index, index)] += (relative * self.theta[index]).powi(2);
+            }
+        }
+        let relative = error.rebuilt;
         for row in ABOUT_X_AND_Y {
             for column in ABOUT_X_AND_Y {
                 let both = self.covariance[(row, row)] > 0.0 && self.covariance[(column, column)] > 0.0;

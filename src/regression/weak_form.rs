@@ -238,7 +238,9 @@ impl GyroscopicColumns {
 mod tests {
     use super::*;
     use crate::recording::Quantity;
-    use crate::signals::{AsRecorded, OwnOfFlight, Quality, ThrustSource, Usable, VelocityHeldBy};
+    use crate::signals::{
+        AsRecorded, OwnOfFlight, Quality, ThrustSource, TorqueError, Usable, VelocityHeldBy,
+    };
     use nalgebra::SVector;
 
     const STEP_S: f64 = 0.01;
@@ -278,7 +280,7 @@ mod tests {
                 airborne_s: Vec::new(),
                 usable: Usable::default(),
                 torques: true,
-                torque_std: 0.0,
+                torque_error: TorqueError::default(),
                 gyro_noise_rad_s: None,
                 velocity_held_by: VelocityHeldBy::default(),
                 position_by_receiver: false,

@@ -15,6 +15,7 @@ use super::rotor_thrusts::ThrustSource;
 use super::select::{mean_rate_hz, median_period_s, too_short};
 use super::slow_velocity::Estimated;
 use super::sufficient::{LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, Needed};
+use super::torque_error::{TorqueError, alternating};
 use super::usable::{Evidence, Usable, airborne_spans, usable};
 use super::voltage::{battery_voltage_v, steady_voltage_v};
 use super::{Grid, SignalsError, WeakKernel, plausible, sufficient};
@@ -141,7 +142,7 @@ pub fn condition(
             airborne_s,
             usable: used,
             torques: sufficiency.torques,
-            torque_std: actuation.torque_std(),
+            torque_error: TorqueError::default(),
             velocity_held_by: VelocityHeldBy { pose: is_height_by_pose(recording), position: false },
             position_by_receiver: is_position_by_receiver(recording),
             steady_voltage_v: steady_voltage_v(recording),
@@ -149,6 +150,7 @@ pub fn condition(
             notes,
         },
     };
+    signals.quality.torque_error = torque_error(&actuation, vehicle, &signals);
     let doubts = plausible::check(&signals, vehicle);
     if plausible::position_agrees(&signals) {
         take_slow_error_out(&mut signals, &chosen, &resets_s(recording));
@@ -230,6 +232,15 @@ fn notes(
     let defaults = resting_on_defaults(autopilot, &recording.defaulted, parameters);
     let said = of_rates.into_iter().chain(actuation.notes(recording, vehicle));
     said.chain(changed).chain(defaults).collect()
+}
+
+/// What the torques of the signals have in common as an error.
+fn torque_error(actuation: &Actuation, vehicle: &Vehicle, signals: &Signals) -> TorqueError {
+    let thrusts = (actuation.stream(), actuation.source());
+    let rate = signals.rate.as_ref().map(|rate| &rate[..]);
+    let alternating = alternating(thrusts, vehicle, (&signals.grid, &signals.usable), rate);
+    tracing::debug!(?alternating, "torques from one command to the next");
+    TorqueError { rebuilt: actuation.torque_std(), alternating }
 }
 
 /// Samples between the weak form's centres: 0.05 s.

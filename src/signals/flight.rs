@@ -5,6 +5,7 @@ use super::grid::Grid;
 use super::height::VelocityHeldBy;
 use super::own::OwnOfFlight;
 use super::rotor_thrusts::ThrustSource;
+use super::torque_error::TorqueError;
 use super::usable::Usable;
 use crate::note::Note;
 use crate::recording::{Quantity, Stream};
@@ -135,8 +136,8 @@ pub struct Quality {
     pub usable: Usable,
     /// commands and body rates are fast enough to compare torques with the motion; otherwise forces are compared, and torques on average
     pub torques: bool,
-    /// relative standard error that all torques about x and y have in common, where the commands are rebuilt from others
-    pub torque_std: f64,
+    /// what all torques have in common as an error
+    pub torque_error: TorqueError,
     /// what holds the vertical velocity beside the accelerometer
     pub velocity_held_by: VelocityHeldBy,
     /// a satellite receiver gives the position
@@ -181,7 +182,7 @@ mod tests {
                 airborne_s: Vec::new(),
                 usable: Usable::default(),
                 torques: true,
-                torque_std: 0.0,
+                torque_error: TorqueError::default(),
                 velocity_held_by: VelocityHeldBy::default(),
                 position_by_receiver: false,
                 steady_voltage_v: None,

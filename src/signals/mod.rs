@@ -36,6 +36,7 @@ mod slow_velocity;
 mod spectrum;
 mod stated_rotors;
 mod sufficient;
+mod torque_error;
 mod usable;
 mod voltage;
 mod weak;
@@ -69,6 +70,7 @@ pub use stated_rotors::{ARM_NOTABLE, Differing, RotorDifference, rotor_differenc
 pub use sufficient::{
     LEAST_ACTUATOR_HZ, LEAST_BODY_RATE_HZ, LEAST_FORCE_HZ, LEAST_TORQUE_HZ, flowing_rate_within_hz,
 };
+pub use torque_error::TorqueError;
 pub use usable::{Evidence, FLYING_SHARE, Usable, usable};
 pub use voltage::airborne_voltage_v;
 pub use weak::{MAX_ORDER, WeakKernel};

@@ -15,9 +15,6 @@ const CONTRADICTION: &str = "the recorded motion does not go with the rotors of 
 pub(super) const TWO_VEHICLES: &str =
     "the flights given together differ by more than flights of one vehicle do";
 
-/// Moments of inertia that no multirotor has.
-pub(super) const ODD_SHAPE: &str = "the moment of inertia about z is smaller than one across, which no multirotor has without a heavy load far below or above its rotors";
-
 /// Largest ratio of an estimated mass to that of the vehicle file, or its inverse, without a note: a battery or a small payload.
 const ORDINARY_MASS: f64 = 1.15;
 /// Standard errors of the estimate that do not count. The usual 95 %.

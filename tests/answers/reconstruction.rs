@@ -8,7 +8,8 @@ use mavid::physics::effects::LinearDrag;
 use mavid::reconstruction::{Fit, KnownLag, STATE, State, Term, fit, force_problem};
 use mavid::recording::{Quantity, Stream};
 use mavid::signals::{
-    AsRecorded, Grid, OwnOfFlight, Quality, Series, Signals, ThrustSource, Usable, VelocityHeldBy,
+    AsRecorded, Grid, OwnOfFlight, Quality, Series, Signals, ThrustSource, TorqueError, Usable,
+    VelocityHeldBy,
 };
 use mavid::simulate::random_vehicle;
 use mavid::vehicle::Vehicle;
@@ -115,7 +116,7 @@ fn recorded(vehicle: &Vehicle, seed: u64) -> Signals {
             airborne_s: vec![(0.0, STEP_S * COUNT as f64)],
             usable: Usable::default(),
             torques: true,
-            torque_std: 0.0,
+            torque_error: TorqueError::default(),
             gyro_noise_rad_s: None,
             velocity_held_by: VelocityHeldBy::default(),
             position_by_receiver: false,

@@ -243,7 +243,7 @@ impl SimulatedSeries {
                 velocity_held_by: like.velocity_held_by,
                 position_by_receiver: like.position_by_receiver,
                 steady_voltage_v: None,
-                torque_std: like.torque_std,
+                torque_error: like.torque_error,
                 simulated: like.simulated,
                 notes: Vec::new(),
             },

@@ -26,15 +26,10 @@ pub fn answer(study: &ExplainStudy) -> String {
     );
     match study.doubts().as_slice() {
         [] => found,
-        doubts if study.doubts_torques_alone() => {
-            let said = |doubt: &String| match doubt.strip_prefix("it ") {
-                Some(of_inertia) => format!("the inertia {of_inertia}"),
-                None => doubt.clone(),
-            };
-            let doubts: Vec<String> = doubts.iter().map(said).collect();
+        [doubt] if study.doubts_torques_alone() => {
+            let doubt = doubt.strip_prefix("it ").unwrap_or(doubt);
             format!(
-                "{found} Moments of inertia and torques are doubtful, the forces are not: {}.",
-                doubts.join("; ")
+                "{found} Moments of inertia and torques are doubtful, the forces are not: the inertia {doubt}."
             )
         }
         doubts => format!("Doubtful: {}. {found}", doubts.join("; ")),

@@ -138,7 +138,7 @@ fn error_table(of: &ErrorTable) -> Markup {
 mod tests {
     use super::*;
     use crate::compare::Fit;
-    use crate::signals::{Quality, ThrustSource, Usable, VelocityHeldBy};
+    use crate::signals::{Quality, ThrustSource, TorqueError, Usable, VelocityHeldBy};
     use crate::study::{InputFile, ValidatedModel, playback_table};
 
     fn tables(second: f64) -> Vec<ErrorTable> {
@@ -163,7 +163,7 @@ mod tests {
             airborne_s: Vec::new(),
             usable: Usable::default(),
             torques: true,
-            torque_std: 0.0,
+            torque_error: TorqueError::default(),
             gyro_noise_rad_s: None,
             velocity_held_by: VelocityHeldBy::default(),
             position_by_receiver: false,

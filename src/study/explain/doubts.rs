@@ -10,7 +10,7 @@ use crate::diagnose::signatures::signature_of;
 use crate::diagnose::{CONTRADICTED, Fitted, Named, STATED_MASS, Verdict, stated_mass_differs};
 use crate::estimate::{Contradiction, Finding, FlightApart, MOMENTS, NAMES, ThrustScale, stated};
 use crate::note::{About, Note};
-use crate::study::doubts::{Moment, ODD_SHAPE, TWO_VEHICLES, doubts, of_mass, of_shape, of_thrust};
+use crate::study::doubts::{Moment, TWO_VEHICLES, doubts, of_mass, of_shape, of_thrust};
 use crate::text::significant;
 use crate::vehicle::{Guessed, Vehicle};
 
@@ -125,9 +125,7 @@ impl ExplainStudy {
         };
         let [about_x, about_y, about_z] = MOMENTS.map(moment);
         let all = about_x.zip(about_y).zip(about_z);
-        let odd = all.and_then(|((xx, yy), zz)| of_shape([xx, yy], zz));
-        self.odd_shape = odd.is_some();
-        self.notes.extend(odd);
+        self.notes.extend(all.and_then(|((xx, yy), zz)| of_shape([xx, yy], zz)));
     }
 
     /// Why the answer is doubtful, clause by clause; none where nothing speaks against it.
@@ -139,7 +137,6 @@ impl ExplainStudy {
         if self.differing.is_some() || self.given.contradicting.iter().any(other) {
             doubts.push(TWO_VEHICLES.to_owned());
         }
-        doubts.extend(self.odd_shape.then(|| ODD_SHAPE.to_owned()));
         doubts.extend(self.short.iter().map(Short::doubt));
         doubts.extend(self.much_left().filter(|(_, share)| *share > MOST_LEFT).map(|(_, share)| {
             format!(
@@ -156,8 +153,8 @@ impl ExplainStudy {
         !self.doubts().is_empty() && !self.doubts_torques_alone()
     }
 
-    /// Only moments of inertia are doubtful, against a rule of thumb or because no multirotor has them, and every named effect is a force:
-    /// its size does not rest on them, because the mass sets the scale of forces.
+    /// Only moments of inertia are doubtful, against a rule of thumb, and every named effect is a force: its size does not rest on
+    /// them, because the mass sets the scale of forces.
     #[must_use]
     pub fn doubts_torques_alone(&self) -> bool {
         let all = self.contradictions();
@@ -166,10 +163,9 @@ impl ExplainStudy {
                 effect.parameters.iter().map(|parameter| parameter.unit).filter(|unit| *unit != "-");
             units.clone().next().is_some() && units.all(|unit| unit.starts_with("N/"))
         };
-        let of_moments = usize::from(!all.is_empty()) + usize::from(self.odd_shape);
-        of_moments > 0
+        !all.is_empty()
             && all.iter().all(|of| of.guessed && of.name.starts_with('i'))
-            && self.doubts().len() == of_moments
+            && self.doubts().len() == 1
             && !self.effects.is_empty()
             && self.effects.iter().all(is_force)
     }

@@ -83,8 +83,6 @@ pub struct ExplainStudy {
     pub without_empirical: Option<Predicted>,
     /// where flights that were not used were predicted with a load of their own: the same by the model as it is written
     pub as_written: Option<Predicted>,
-    /// the moments of inertia are those of no multirotor
-    pub(super) odd_shape: bool,
     /// such a term that was left out, because flights that were not used are predicted worse with it
     pub left_out_force: Option<LeftOutForce>,
     /// a law of the rates for open-loop predictions, where the torques predict worse than no change
@@ -146,7 +144,6 @@ impl ExplainStudy {
             empirical: None,
             without_empirical: None,
             as_written: None,
-            odd_shape: false,
             left_out_force: None,
             rate_law: None,
             shown_on: ValidationData::Nothing { reason: "no hold-out".to_owned() },

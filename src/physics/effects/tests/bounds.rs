@@ -51,7 +51,8 @@ fn the_scaling_written_out() {
             ("rotor_inertia", "jr", (0.0, 0.01 * m * l * l)),
             // loads and lines that the vehicle can lift
             ("slung_load", "mass", (0.0, 5.0 * m)),
-            ("mass_change", "delta", (-5.0 * m, 5.0 * m)),
+            // not more than nearly all of the vehicle
+            ("mass_change", "delta", (-0.8 * m, 2.0 * m)),
             ("tether", "line_mass", (0.0, 0.5 * m)),
             ("tether", "stiffness", (0.0, 1000.0 * m)),
             // places in the airframe
