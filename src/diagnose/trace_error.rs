@@ -5,7 +5,8 @@
 pub enum TraceError {
     /// no gyroscope
     #[error(
-        "body rates are not recorded: expected ANGULAR_RATE from HIGHRES_IMU, ATTITUDE or similar; without them no torque can be compared"
+        "body rates are not recorded: expected HIGHRES_IMU, ATTITUDE or similar messages, or the columns rate_x_rad_s, rate_y_rad_s and rate_z_rad_s of \
+         a table; without them no torque can be compared"
     )]
     NoRates,
     /// neither accelerometer nor velocity with attitude
