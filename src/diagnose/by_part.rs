@@ -74,6 +74,14 @@ impl ByPart {
         by(1.0) || by(-1.0)
     }
 
+    /// Whether a value with its standard error, of another flight, is none within so many standard errors or less than a third of the whole, and
+    /// differs from the whole by as many.
+    pub(crate) fn lacks(&self, other: &(f64, f64), sigmas: f64) -> bool {
+        let apart = (other.0 - self.whole.0).abs();
+        let most = (sigmas * other.1).max((self.whole.0 - self.nothing).abs() / 3.0);
+        (other.0 - self.nothing).abs() < most && apart >= sigmas * other.1.hypot(self.whole.1)
+    }
+
     /// Whether the parts' sizes scatter no more than their errors let them.
     #[must_use]
     pub fn are_alike(&self) -> bool {
@@ -203,6 +211,17 @@ mod tests {
         assert!(!of(&[(0.9, f64::NAN), (0.8, 0.02)]).is_certain());
         // alike, and nothing for certain
         assert!(!of(&[(0.97, 0.02), (0.98, 0.02)]).is_certain());
+    }
+
+    #[test]
+    fn another_flight_lacks_what_it_does_not_show() {
+        let whole = of(&[(0.85, 0.003), (0.86, 0.003)]);
+        assert!(whole.is_in_each_by(8.0) && !whole.is_in_each_by(60.0));
+        // as much as rotors scatter by
+        assert!(whole.lacks(&(0.99, 0.001), 4.0));
+        assert!(!whole.lacks(&(0.92, 0.003), 4.0));
+        // a flight that tells nothing
+        assert!(!whole.lacks(&(0.97, 0.06), 4.0));
     }
 
     /// Halves with every chance of their errors that is equally likely, of those whose whole has a name's four standard errors:

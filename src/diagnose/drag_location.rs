@@ -4,6 +4,7 @@
 //! one with drag partly at the hubs. One point together with damping is the simpler description. Where the share at the hubs stays in the
 //! model, its error has what a damping that the model does not have may bring into it (consider covariance).
 
+use super::base::Base;
 use super::evidence::weighted;
 use super::fit::{Fitted, Newton, fit};
 use super::other_law::second_moment;
@@ -11,7 +12,6 @@ use super::price::Price;
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::physics::PhysicsError;
-use crate::vehicle::Vehicle;
 use nalgebra::Vector3;
 
 /// A share at the hubs that is nearer than this to 0 or 1 counts as 0 or 1. Only the form of one drag depends on it.
@@ -93,7 +93,7 @@ fn by_damping(flights: &[Trace], fitted: &Fitted, (drag, index): (&EffectTerm, u
     let present = base.effects.iter().find(|term| term.is(damping.signature));
     let has = |slot: &usize| present.is_some_and(|present| present.free.contains(slot));
     let columns = fitted.rows.columns_of(flights, base, &damping).ok()?;
-    let most = damping_at_hubs(drag, &base.vehicle);
+    let most = damping_at_hubs(drag, base);
     let each = damping.free.iter().zip(&columns).zip(most.iter()).filter(|((slot, _), _)| !has(slot));
     let each = each.map(|((_, column), &most)| {
         let evidence = fitted.weighted.test(std::slice::from_ref(column));
@@ -105,12 +105,19 @@ fn by_damping(flights: &[Trace], fitted: &Fitted, (drag, index): (&EffectTerm, u
 }
 
 /// Damping about body x, y, z (N m s) of a rotation at the centre of mass, where the whole drag acts at the hubs.
-fn damping_at_hubs(drag: &EffectTerm, vehicle: &Vehicle) -> Vector3<f64> {
-    let along = |name: &str| {
-        let slot = drag.effect().parameters().iter().position(|parameter| parameter.name == name);
-        slot.map_or(0.0, |slot| drag.values[slot].abs())
+fn damping_at_hubs(drag: &EffectTerm, base: &Base) -> Vector3<f64> {
+    let of = |term: &EffectTerm, name: &str| {
+        let slot = term.effect().parameters().iter().position(|parameter| parameter.name == name);
+        slot.map_or(0.0, |slot| term.values[slot].abs())
     };
-    let [dx, dy, dz] = ["dx", "dy", "dz"].map(along);
+    // an inflow is the drag along z of its own, or of the one that it is a part of
+    let is_part = |term: &&EffectTerm| {
+        term.signature.role.axial_part_of.is_some_and(|whole| whole.id() == drag.effect().id())
+    };
+    let [dx, dy] = ["dx", "dy"].map(|name| of(drag, name));
+    let parts: f64 = base.effects.iter().filter(is_part).map(|term| of(term, "kz")).sum();
+    let dz = of(drag, "dz") + of(drag, "kz") + parts;
+    let vehicle = &base.vehicle;
     let squares = vehicle.rotors.iter().map(|rotor| rotor.position_m.component_mul(&rotor.position_m));
     let r2 = squares.sum::<Vector3<f64>>() / vehicle.rotors.len().max(1) as f64;
     Vector3::new(dy * r2.z + dz * r2.y, dz * r2.x + dx * r2.z, dx * r2.y + dy * r2.x)

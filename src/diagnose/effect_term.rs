@@ -57,7 +57,7 @@ impl EffectTerm {
         self.signature.amounts.contains(&slot)
     }
 
-    /// Whether the effect is proportional to a parameter, so that its slope is the same everywhere.
+    /// Whether the effect is proportional to a parameter, or nearly so: its slope by a small step is the same to either side.
     pub(super) fn is_proportional_to(&self, slot: usize) -> bool {
         self.is_amount(slot) && self.signature.growth == Growth::Proportional
     }

@@ -5,7 +5,7 @@ use super::channels::{AXES, CHANNELS, Channels, Nuisance, NuisanceColumn};
 use super::evidence::Weighted;
 use super::priors::Alike;
 use super::rows::Rows;
-use super::scale_error::beyond_stated_mass;
+use super::scale_error::{beyond_stated_mass, of_scale};
 use super::signature::EffectTerm;
 use super::trace::Trace;
 use crate::estimate::{Estimated, INERTIA_ENTRIES, THETA, ThetaCovariance, theta_of};
@@ -47,6 +47,11 @@ impl Fitted {
     /// Mass and inertia with their covariance; NaN where no row bears on a parameter.
     #[must_use]
     pub fn rigid_body(&self) -> Estimated {
+        self.rigid_body_by_rows().with_torque_error(self.rows.torque_error)
+    }
+
+    /// The same without what all torques have in common as an error.
+    pub(super) fn rigid_body_by_rows(&self) -> Estimated {
         let place = |index: usize| {
             let wanted = if index == 0 { Nuisance::Mass } else { Nuisance::Inertia(index - 1) };
             self.rows.nuisances.iter().position(|column| column.nuisance == wanted)
@@ -70,7 +75,6 @@ impl Fitted {
             by_guessed_curve: None,
             torque_exponent: None,
         }
-        .with_torque_error(self.rows.torque_error)
     }
 
     /// The same on the scale of the stated thrust, also of a vehicle that was weighed.
@@ -104,6 +108,12 @@ impl Fitted {
             }
             1.0 - left.variance() / with_body.variance().max(f64::MIN_POSITIVE)
         })
+    }
+
+    /// Relative standard error of the scale of forces by a bent thrust curve (-); 0 without one.
+    #[must_use]
+    pub fn std_of_scale(&self) -> f64 {
+        of_scale(&self.base)
     }
 
     /// The model's weight, N.
@@ -206,15 +216,20 @@ fn is_no_bias(fitted: &Fitted) -> bool {
 }
 
 /// Gauss-Newton until the steps are small against their errors.
+///
+/// On the way the effects' columns stay as they were made as long as no value moves far, and the errors are those of the start: they change
+/// little, and cost more than the step. The last step is by columns and errors of its own base.
 fn converged(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted, PhysicsError> {
+    let mut made_at = base.clone();
     let mut fitted = evaluate(flights, base.clone())?;
     for pass in 1..=PASSES {
         let moves = step(&mut base, &fitted.rows, &fitted.coefficients, newton);
         let Fitted { covariance, mut rows, weighted, .. } = fitted;
-        // on the way the errors are those of the pass before, and the effects' columns too: they change little, and cost more than
-        // the step
         let is_on_the_way = pass < PASSES && moves.largest(&covariance) >= CONVERGED;
-        let near = is_on_the_way.then(|| std::mem::take(&mut rows.effects));
+        let near = (is_on_the_way && is_near(&base, &made_at)).then(|| std::mem::take(&mut rows.effects));
+        if near.is_none() {
+            made_at.clone_from(&base);
+        }
         // two of a long flight at a time take much memory
         drop((rows, weighted));
         fitted = linearised(flights, base.clone(), near)?;
@@ -224,11 +239,27 @@ fn converged(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted
             continue;
         }
         (fitted.coefficients, fitted.covariance) = fitted.weighted.coefficients(&fitted.rows);
-        if moves.largest(&fitted.covariance) < CONVERGED {
+        let left = step(&mut base.clone(), &fitted.rows, &fitted.coefficients, newton);
+        if left.largest(&fitted.covariance) < CONVERGED {
             break;
         }
     }
     Ok(fitted)
+}
+
+/// Share of its distance from nothing by which a value may move while its column stays. The slopes of effects that are not linear change by
+/// as much, and the way is then a fifth of what it was with each pass, or less.
+const NEAR: f64 = 0.2;
+
+/// Whether every estimated value of the effects is near that of a base with the same effects.
+fn is_near(base: &Base, other: &Base) -> bool {
+    let near = |(term, other): (&EffectTerm, &EffectTerm)| {
+        term.free.iter().all(|&slot| {
+            let from = other.values[slot];
+            (term.values[slot] - from).abs() <= NEAR * (from - term.nothing_at(slot)).abs()
+        })
+    };
+    base.effects.iter().zip(&other.effects).all(near)
 }
 
 /// Rows, weights and coefficients at a base, without a Gauss-Newton step.

@@ -56,7 +56,7 @@ impl Rows {
         Self::with_columns(recorded, base, None)
     }
 
-    /// The same with the effects' columns of a base that is near, where they are given: they depend on the base little.
+    /// The same with the effects' columns of another base that is near, where they are given.
     ///
     /// # Errors
     /// [`PhysicsError`] where the base is not physical.

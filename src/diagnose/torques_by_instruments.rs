@@ -34,7 +34,8 @@ pub(super) fn torques_by_instruments(
         by.covariance += &brings * brings.transpose() * latency_std_s.powi(2);
     }
     let of_latency = by_latency(flights, fitted, (latency_std_s, &[]))?;
-    let (plain, told) = (fitted.rigid_body(), by.rigid_body());
+    // what alternates is in both, which read the same commands
+    let (plain, told) = (fitted.rigid_body_by_rows(), by.rigid_body_by_rows());
     let contradicts = |at: usize| {
         let variance = |body: &Estimated| body.covariance[(at, at)];
         let moment = Nuisance::Inertia(at - 1);
@@ -75,18 +76,22 @@ pub(super) fn fit_by_instruments(
     let mut base = fitted.base.clone();
     let Some(told) = by_instruments(flights, fitted, newton) else { return Ok(None) };
     let mut moved = step(&mut base, &fitted.rows, &told.0, newton).largest(&told.1);
-    let mut effects = fitted.rows.effects.clone();
+    let mut effects = (moved >= CONVERGED).then(|| fitted.rows.effects.clone());
     for _ in 0..PASSES {
+        // what damps is linear: its columns stay on the way, and the result has its own
+        let near = effects.take().filter(|_| moved >= CONVERGED);
+        let is_own = near.is_none();
         // the one before is gone: two of a long flight at a time take much memory
-        let near = (moved >= CONVERGED).then(|| std::mem::take(&mut effects));
         let Ok(mut by) = linearised(flights, base.clone(), near) else { return Ok(None) };
         let Some(told) = by_instruments(flights, &by, newton) else { return Ok(None) };
-        if moved < CONVERGED {
+        let mut next = base.clone();
+        moved = step(&mut next, &by.rows, &told.0, newton).largest(&told.1);
+        if is_own && moved < CONVERGED {
             (by.coefficients, by.covariance) = told;
             return Ok(Some(by));
         }
-        moved = step(&mut base, &by.rows, &told.0, newton).largest(&told.1);
-        effects = by.rows.effects;
+        base = next;
+        effects = Some(by.rows.effects);
     }
     Ok(None)
 }

@@ -29,8 +29,9 @@ impl TorqueError {
         Self { alternating: all.alternating.map(|share| share / count), ..all }
     }
 
-    /// Relative standard errors of Ixx and Iyy beside the common one: a log sees two phases of a torque that comes in pulses, and its mean over all
-    /// phases differs from theirs by about half of what they differ.
+    /// Relative standard errors of Ixx and Iyy beside the common one. A log sees two phases of a torque that comes in pulses; how far the mean
+    /// over all phases is from theirs, they do not tell. With half of the share, 16 moments of eight flights of ArduCopter's simulator were
+    /// within 1.7 standard errors.
     #[must_use]
     pub fn of_moments(&self) -> [f64; 2] {
         self.alternating.map(|share| 0.5 * share)
@@ -51,7 +52,7 @@ const LEAST_BLOCKS: usize = 6;
 ///
 /// A station that sends setpoints in stairs makes the controller answer with a pulse of torque each time. A log whose rate is a multiple of
 /// that of the setpoints sees the pulses at the same few phases for the whole flight. With twice the rate, it sees two of them in turn, and
-/// their difference shows how much is at stake. `thrusts` are those of the rotors at the stamps of the commands, N.
+/// half of their difference is the share; three or four phases do not show here. `thrusts` are those of the rotors at the stamps of the commands, N.
 pub(super) fn alternating(
     (thrusts, source): (&Stream, ThrustSource),
     vehicle: &Vehicle,
@@ -73,18 +74,22 @@ pub(super) fn alternating(
     };
     let period_s = median_step(&thrusts.time_s);
     let mut blocks: Vec<[(f64, f64); 2]> = Vec::new();
-    let (mut sign, mut until_s) = (1.0, f64::NEG_INFINITY);
+    // the phase of the last regular sample, which goes on through gaps and stamps that jitter
+    let (mut sign, mut from_s) = (1.0, f64::NAN);
+    let mut until_s = f64::NEG_INFINITY;
     for sample in 2..thrusts.len().saturating_sub(2) {
         let periods = |at: usize| (thrusts.time_s[at] - thrusts.time_s[at - 1]) / period_s;
-        // the phase goes on through a gap
-        if periods(sample).round() % 2.0 != 0.0 {
+        if !(sample - 1..=sample + 2).all(|at| (periods(at) - 1.0).abs() < REGULAR) {
+            continue;
+        }
+        let time_s = thrusts.time_s[sample];
+        if ((time_s - from_s) / period_s).round() % 2.0 != 0.0 {
             sign = -sign;
         }
-        let regular = (sample - 1..=sample + 2).all(|at| (periods(at) - 1.0).abs() < REGULAR);
-        let time_s = thrusts.time_s[sample];
+        from_s = time_s;
         let instant = ((time_s - grid.start_s) / grid.step_s).round();
         let at = place.get(instant as usize).filter(|at| **at != usize::MAX && instant >= 0.0);
-        let Some(&at) = at.filter(|_| regular) else { continue };
+        let Some(&at) = at else { continue };
         if time_s > until_s {
             until_s = time_s + BLOCK_S;
             blocks.push([(0.0, 0.0); 2]);

@@ -16,8 +16,8 @@ documented! {
 
 /// Faster than this the rotor follows at once for every rate that a log has.
 const LEAST_TIME_CONSTANT_S: f64 = 1e-4;
-/// Least time constant that is integrated, s: a Runge-Kutta step of fourth order is stable up to 2.79 time constants, and steps
-/// are up to 4 ms long.
+/// Least time constant that is integrated, s: a Runge-Kutta step of fourth order is stable up to 2.79 time constants, and playback takes steps of
+/// 4 ms at most where rotors are that fast.
 const LEAST_INTEGRATED_S: f64 = 2e-3;
 
 const fn time_constant(name: &'static str) -> Parameter {

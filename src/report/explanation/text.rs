@@ -281,10 +281,15 @@ pub(super) fn scale(study: &ExplainStudy) -> Option<String> {
     if let Some(of) = study.scale() {
         return of_weighed(&of);
     }
-    study.rests_on_stated_thrust().then(|| {
-        "scale: the stated thrust is trusted (anchor = \"thrust\"): mass, moments of inertia, forces and torques are in proportion to it, and \
-         its error is not in theirs; a weighed mass sets the scale with anchor = \"mass\""
-            .to_owned()
+    study.std_of_stated_thrust().map(|std| {
+        let error = match 100.0 * std {
+            none if none <= 0.0 => "its error is not in theirs".to_owned(),
+            percent => format!("an error of {} % of it is in theirs", significant(percent, 2)),
+        };
+        format!(
+            "scale: the stated thrust is trusted (anchor = \"thrust\"): mass, moments of inertia, forces and torques are in proportion to it, and \
+             {error}; a weighed mass sets the scale with anchor = \"mass\""
+        )
     })
 }
 

@@ -6,6 +6,7 @@ use crate::diagnose::Fitted;
 use crate::estimate::{
     Estimated, Finding, NAMES, Nominal, THETA, ThrustScale, UNITS, finding, rescaled, scaling_mass, theta_of,
 };
+use crate::vehicle::Guessed;
 
 /// A parameter with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,11 +106,13 @@ impl ExplainStudy {
         Some(ThrustScale::of(mass, weighed_kg, stated))
     }
 
-    /// The stated thrust alone sets the scale of masses and forces.
+    /// Relative standard error of the stated thrust (-) that is in those of masses and forces, where it alone sets their scale: that of a guess, and
+    /// that of a bent thrust curve.
     #[must_use]
-    pub fn rests_on_stated_thrust(&self) -> bool {
+    pub fn std_of_stated_thrust(&self) -> Option<f64> {
         let base = &self.fitted().base;
-        base.weighed_kg.is_none() && base.stated_mass_differs.is_none()
+        let alone = base.weighed_kg.is_none() && base.stated_mass_differs.is_none();
+        alone.then(|| self.given.vehicle.guessed(Guessed::ThrustMax).hypot(self.fitted().std_of_scale()))
     }
 
     /// Mass and inertia of a fit, with the covariance that a weighed mass leaves.

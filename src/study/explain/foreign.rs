@@ -28,9 +28,14 @@ impl Task<'_> {
         let (alone, notes_alone) = self.explained(flights, (&Prepared::default(), None, nothing))?;
         let short = alone.short.clone();
         let (given, explanation) = alone.into_found();
-        let on_held = self.evaluated(given, explanation, flights, (held, None, shown_on));
+        let mut on_held = self.evaluated(given, explanation, flights, (held, None, shown_on));
         if on_held.other_vehicle().is_none() {
-            return Ok((told_short(first), notes));
+            // a rotor that was changed is none of this model's
+            let rotor = first.shown.as_ref().and_then(|shown| shown.other_vehicle.clone());
+            let Some(rotor) = rotor.filter(|_| first.is_rotor_apart()) else {
+                return Ok((told_short(first), notes));
+            };
+            on_held.take_rotor_apart(rotor);
         }
         Ok((ExplainStudy { short, ..on_held }, notes_alone))
     }

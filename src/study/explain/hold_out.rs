@@ -31,7 +31,7 @@ const HELPS_PERCENT: f64 = 10.0;
 
 /// Mean over the quantities of how much smaller errors over 0.5 s have to be without an effect. The model without it has the other
 /// parameters of the model with it, which speaks for the effect; predictions are repeated to a tenth of this.
-const LEAST_BETTER_PERCENT: f64 = 1.0;
+pub(super) const LEAST_BETTER_PERCENT: f64 = 1.0;
 
 /// Mean over the quantities of motion by which errors over 0.5 s have to be smaller with a model that follows the height than with the better
 /// baseline. On an indoor flight of a real vehicle, whose thrust drifts, two searches that differ by rounding gave -38 and 0.1 %. Set by judgement.
@@ -40,7 +40,7 @@ const BY_HEIGHT_PERCENT: f64 = 5.0;
 /// Largest chance of such errors of an effect that is worth nothing. A fifth, and no less: of what is worth nothing, nothing may be
 /// named, and a part that is held back has few blocks. What is worth something has larger errors without it, and is refused far more
 /// seldom. Set by judgement.
-pub(super) const BY_CHANCE: f64 = 0.2;
+const BY_CHANCE: f64 = 0.2;
 
 /// Least mean speed of another flight, as a share of that of the flights explained, with which it refutes what acts in motion. With half
 /// the speed a linear drag has half the force, and that by the square a quarter. Set by judgement.
@@ -141,7 +141,7 @@ impl ExplainStudy {
     }
 
     /// The named effect that flights which were not used do not confirm: they are predicted better without it, by most and by more than
-    /// chance, or it follows the height alone and the model predicts no better than a baseline. `None` where there is no such effect, where
+    /// chance, or it follows the height alone and the model does not predict clearly better than a baseline. `None` where there is no such effect, where
     /// the hold-out is of another vehicle, and where the wind of the explained flights was another one.
     pub(super) fn worthless(&self) -> Option<Worthless> {
         let worth = self.worth.as_ref().filter(|worth| !worth.on_explained)?;

@@ -93,7 +93,11 @@ pub(in crate::study) fn explain_prepared(
         progress.stage(Stage::Predicting);
         let day = !several && !names_wind(&study);
         let own_winds = if day { with_own_winds(held, asked.vehicle) } else { Vec::new() };
-        if let Some(own) = task.with_own_load(&study, flights, (held, &shown_on)) {
+        if let Some(mut own) = task.with_own_load(&study, flights, (held, &shown_on)) {
+            let settings = own.given.settings.clone();
+            let traces = |signals: &[Signals]| traces_of(signals, asked.vehicle, &settings);
+            let both = || [traces(&flights.signals), traces(&held.signals)];
+            own.tell_rotor_apart(both);
             study = own;
             study.tell_winds(&held.inputs, &own_winds);
         }
@@ -162,7 +166,7 @@ impl Task<'_> {
             let (mut study, in_own_wind) = self.shown(given, explanation, flights, (held, back, &shown_on));
             let held = in_own_wind.as_ref().unwrap_or(held);
             let traces = || traces_of(&flights.signals, self.asked.vehicle, &settings);
-            study.tell_rotor_apart(traces);
+            study.tell_rotor_apart(|| [traces(), traces_of(&held.signals, self.asked.vehicle, &settings)]);
             let worthless = study.worthless().filter(|of| !settings.refused.contains(&of.id));
             let worthless = worthless.or_else(|| study.unsupported());
             let refuted = study.refuted_by_holdout();
