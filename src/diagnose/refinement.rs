@@ -256,9 +256,10 @@ fn is_noise(bent: &EffectTerm, traces: &[Trace], fitted: &Fitted) -> bool {
     bent.values[0] < 0.0 && may_be_noise(traces, fitted)
 }
 
-/// Share of the mass up to which a change of it is ordinary beside a thrust that falls with the battery. A cell does not follow its voltage
-/// alone: the thrust of real vehicles differed from their commands by 1 to 5 % of the weight for some seconds.
-const BESIDE_SAG: f64 = 0.05;
+/// Share of the mass up to which a change of it is ordinary beside a thrust that falls with the battery, because a cell does not follow its voltage
+/// alone, and where commands are logged too seldom to compare torques: the thrust of real vehicles differed from such commands by 1 to 5 % of the
+/// weight for some seconds.
+const UNSURE_THRUST: f64 = 0.05;
 
 /// Whether an effect leaves the model without a name: every vehicle has this much of it, or it is too small for its
 /// name. One that every vehicle has a little of, and that is certain, stays as a trace (`EffectTerm::is_of_every_vehicle`).
@@ -268,11 +269,12 @@ fn is_ordinary(term: &EffectTerm, base: &Base, traces: &[Trace]) -> bool {
     let amounts = || term.signature.amounts.iter().filter_map(|&slot| term.values.get(slot));
     let over = if naming.by_height { heights_flown_m(traces) } else { 1.0 };
     let sags = base.effects.iter().any(|of| of.signature.needs.contains(&Need::Voltage));
-    let beside_sag = if sags && term.signature.role.moment.is_some() { BESIDE_SAG } else { 0.0 };
+    let is_unsure = sags || traces.iter().all(|trace| !trace.torques);
+    let least_change = if is_unsure && term.signature.role.moment.is_some() { UNSURE_THRUST } else { 0.0 };
     let away =
         || term.signature.amounts.iter().map(|&slot| term.from_nothing(slot).abs()).fold(0.0, f64::max);
     away() < least_weakness(traces, base, term.signature)
-        || term.size() * over < naming.least_of_mass.max(beside_sag) * base.vehicle.body.mass_kg
+        || term.size() * over < naming.least_of_mass.max(least_change) * base.vehicle.body.mass_kg
         || naming.ordinary.is_some_and(|ordinary| term.size() < ordinary)
         || naming.least > 0.0 && of_all() < naming.least
         || naming.most.is_some_and(|most| amounts().any(|amount| *amount > most))
