@@ -76,7 +76,7 @@ pub(super) fn alternating(
     let mut blocks: Vec<[(f64, f64); 2]> = Vec::new();
     // the phase of the last regular sample, which goes on through gaps and stamps that jitter
     let (mut sign, mut from_s) = (1.0, f64::NAN);
-    let mut until_s = f64::NEG_INFINITY;
+    let (mut until_s, mut nearest) = (f64::NEG_INFINITY, 0);
     for sample in 2..thrusts.len().saturating_sub(2) {
         let periods = |at: usize| (thrusts.time_s[at] - thrusts.time_s[at - 1]) / period_s;
         if !(sample - 1..=sample + 2).all(|at| (periods(at) - 1.0).abs() < REGULAR) {
@@ -87,8 +87,11 @@ pub(super) fn alternating(
             sign = -sign;
         }
         from_s = time_s;
-        let instant = ((time_s - grid.start_s) / grid.step_s).round();
-        let at = place.get(instant as usize).filter(|at| **at != usize::MAX && instant >= 0.0);
+        let from = |instant: usize| (grid.time_s(instant) - time_s).abs();
+        while nearest + 1 < grid.count && from(nearest + 1) <= from(nearest) {
+            nearest += 1;
+        }
+        let at = place.get(nearest).filter(|at| **at != usize::MAX && from(nearest) <= grid.step_s);
         let Some(&at) = at else { continue };
         if time_s > until_s {
             until_s = time_s + BLOCK_S;
