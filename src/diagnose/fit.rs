@@ -248,7 +248,7 @@ fn converged(flights: &[Trace], mut base: Base, newton: Newton) -> Result<Fitted
 }
 
 /// Share of its distance from nothing by which a value may move while its column stays. The slopes of effects that are not linear change by
-/// as much, and the way is then a fifth of what it was with each pass, or less.
+/// as much, and the way is then a fifth of what it was with each pass, or less. Set by judgement.
 const NEAR: f64 = 0.2;
 
 /// Whether every estimated value of the effects is near that of a base with the same effects.

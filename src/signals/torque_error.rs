@@ -65,13 +65,7 @@ pub(super) fn alternating(
     let turning = kernel.apply_vector(1, rate_rad_s, &centers);
     let mut place = vec![usize::MAX; grid.count];
     centers.iter().enumerate().for_each(|(at, &center)| place[center] = at);
-    let mixer = vehicle.mixer().matrix;
-    let torque_nm = |sample: usize| -> [f64; 2] {
-        let each = thrusts.sample(sample).iter().enumerate();
-        each.fold([0.0; 2], |[x, y], (rotor, thrust)| {
-            [x + mixer[(1, rotor)] * thrust, y + mixer[(2, rotor)] * thrust]
-        })
-    };
+    let mixer = vehicle.mixer();
     let period_s = median_step(&thrusts.time_s);
     let mut blocks: Vec<[(f64, f64); 2]> = Vec::new();
     // the phase of the last regular sample, which goes on through gaps and stamps that jitter
@@ -97,10 +91,12 @@ pub(super) fn alternating(
             until_s = time_s + BLOCK_S;
             blocks.push([(0.0, 0.0); 2]);
         }
-        let around = [-2_isize, -1, 0, 1, 2].map(|by| torque_nm(sample.saturating_add_signed(by)));
+        // force and torque, N and N m
+        let around =
+            [-2_isize, -1, 0, 1, 2].map(|by| mixer.wrench(thrusts.sample(sample.saturating_add_signed(by))));
         let Some(block) = blocks.last_mut() else { continue };
         for (axis, sums) in block.iter_mut().enumerate() {
-            let [a, b, c, d, e] = around.map(|of| of[axis]);
+            let [a, b, c, d, e] = around.map(|wrench| wrench[1 + axis]);
             let odd = sign * (6.0 * c - 4.0 * (b + d) + a + e) / 16.0;
             let even = (6.0 * c + 4.0 * (b + d) + a + e) / 16.0;
             // a value that is missing is not a number

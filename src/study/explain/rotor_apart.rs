@@ -5,7 +5,7 @@ use super::result::ExplainStudy;
 use super::validation_data::ValidationData;
 use crate::diagnose::holdout::{Difference, OtherVehicle};
 use crate::diagnose::signatures::signature_of;
-use crate::diagnose::{ByPart, Named, Trace, brief, by_part};
+use crate::diagnose::{Named, Trace, brief, by_part};
 use crate::note::{About, Note};
 use crate::text::significant;
 
@@ -48,18 +48,12 @@ impl ExplainStudy {
         let Some((named, better_percent)) = refuted else { return };
         let [explained, held] =
             traces().map(|traces| by_part(&traces, &self.explanation).unwrap_or_default());
-        let shows = |of: &ByPart| {
-            of.id == named.id && (of.whole.0 - of.nothing).abs() >= LEAST && of.is_in_each_by(BEYOND_DOUBT)
-        };
-        let lacks = |of: &ByPart, held: &ByPart| {
-            held.id == of.id && held.parts.iter().all(|part| of.lacks(part, APART))
-        };
-        let is_changed = explained
-            .iter()
-            .filter(|of| of.id == named.id)
-            .zip(held.iter().filter(|of| of.id == named.id))
-            .any(|(of, held)| shows(of) && lacks(of, held));
-        if !is_changed {
+        let [explained, held] =
+            [&explained, &held].map(|parts| parts.iter().find(|part| part.id == named.id));
+        let Some((explained, held)) = explained.zip(held) else { return };
+        let shows =
+            (explained.whole.0 - explained.nothing).abs() >= LEAST && explained.is_in_each_by(BEYOND_DOUBT);
+        if !(shows && held.parts.iter().all(|part| explained.lacks(part, APART))) {
             return;
         }
         let name = brief(named, &self.given.vehicle, true);
